@@ -17,19 +17,16 @@
 
 namespace promin::app {
 
-namespace {
-
-/// For the program and, as drivers read it when they start, for a device that is the host's processor.
-void choose_threads(uint32_t count) {
-  limit_threads(count);
-  setenv("LP_NUM_THREADS", std::to_string(count).c_str(), 1);
+void choose_threads(const TracingOptions& options) {
+  if (!options.threads) return;
+  limit_threads(*options.threads);
+  // Drivers read it when they start.
+  setenv("LP_NUM_THREADS", std::to_string(*options.threads).c_str(), 1);
 }
-
-}  // namespace
 
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources) {
-  if (options.threads) choose_threads(*options.threads);
+  choose_threads(options);
   const Stopwatch load;
   Scene scene = load_scene(options.scene, options.load, sources);
   stats.load_ms = load.ms();

@@ -14,6 +14,9 @@ namespace promin::app {
 // The steps that every command which traces a scene takes. Each reports to the console and leaves its times in the
 // stats.
 
+/// As many threads as the options say, for the program and for a device that is the host's processor.
+void choose_threads(const TracingOptions& options);
+
 /// Reports the scene's files as load_scene does. Throws InputError.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources);

@@ -8,9 +8,8 @@
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
-// The transform to the display: TONE_MAPPING_*, and the bits of the factor of exposure.
+// The transform to the display: TONE_MAPPING_*.
 layout(constant_id = 0) const uint TONE_MAPPING = 0u;
-layout(constant_id = 1) const uint EXPOSURE = 0x3F800000u;
 layout(constant_id = 2) const uint DITHERS = 0u;
 // Whether the film has FEATURE_UNLIT_SHARE.
 layout(constant_id = 3) const uint HAS_UNLIT = 0u;
@@ -25,6 +24,8 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
 #include "tone_mapping.glsl"
 #include "dither.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
+// The factor of the exposure, which the window changes without another pipeline.
+layout(std430, set = 0, binding = 1) readonly buffer Exposure { float exposure_factor; };
 
 vec3 encode_srgb(vec3 linear) {
   vec3 x = clamp(linear, 0.0, 1.0);
@@ -33,7 +34,7 @@ vec3 encode_srgb(vec3 linear) {
 
 // The light of a pixel as it is shown, of which unlit surfaces send so much and cover the share w.
 vec3 shown_light(vec3 radiance, vec4 unlit) {
-  float exposure = uintBitsToFloat(EXPOSURE);
+  float exposure = exposure_factor;
   float lit = max(1.0 - unlit.w, 0.0);
   if (unlit.w == 0.0) return map_tones(TONE_MAPPING, exposure * radiance);
   if (lit == 0.0) return unlit.xyz;

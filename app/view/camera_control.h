@@ -10,15 +10,20 @@
 namespace promin::app {
 
 /// Moves the free camera. Either it flies: all angles are about the camera's own axes and no direction of the world is
-/// up, so that no pose is special and there is no gimbal to lock. Or it orbits a point, which it faces.
+/// up, so that no pose is special and there is no gimbal to lock. Or it orbits a point, which it faces. The pointer
+/// takes it around what it looks at, in either case.
 class CameraControl {
  public:
-  /// `speed` is in world units a second.
-  CameraControl(const Camera& camera, double speed) : start_(camera), camera_(camera), speed_(speed) {}
+  /// `bounds` is of the scene, and `up` its direction, of any length but 0.
+  CameraControl(const Camera& camera, const Bounds& bounds, const vec3& up);
 
   /// `window_height` is in pixels. A drag over all of it turns the camera by the field of view, so that what is under
-  /// the pointer stays there.
+  /// the pointer stays there; one that orbits takes the camera half around the pivot.
   void apply(const Motion& motion, double window_height);
+
+  /// What the camera looks at: the center of an orbit, else the point of its axis that is nearest to the middle of the
+  /// scene, or that middle where it lies behind the camera.
+  dvec3 pivot() const;
 
   /// Takes another pose; the start pose is kept.
   void place(const Camera& camera);
@@ -33,19 +38,25 @@ class CameraControl {
   bool is_orbiting() const { return center_.has_value(); }
 
   double speed() const { return speed_; }
-  /// Makes the camera faster by steps of the wheel, slower by negative ones.
-  void change_speed(double steps);
+  void set_speed(double speed) { speed_ = speed; }
 
   const Camera& camera() const { return camera_.camera(); }
   const dvec3& position() const { return camera_.position(); }
 
  private:
+  void turn_around(const dvec2& pixels, double window_height);
+  void pan(const dvec2& pixels, double window_height);
+  void zoom(double steps);
   /// Moves on a sphere around the center: it turns, then goes to where the center is straight ahead.
   void swing(double alpha, double beta, double gamma, double distance);
 
   Camera start_;
   FreeCamera camera_;
   std::optional<dvec3> center_;
+  /// The middle of the scene, and its direction up, of unit length.
+  dvec3 middle_;
+  dvec3 up_;
+  /// In world units a second.
   double speed_;
 };
 

@@ -2,15 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/display_pass.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
+#include <array>
 
-#include "core/divide_up.h"
 #include "cover_window.spv.h"
 #include "display.spv.h"
-#include "encode_film.spv.h"
-#include "layout.h"
 
 namespace promin::app {
 namespace {
@@ -21,16 +16,6 @@ struct DisplayConstants {
   vec4 scale;
 };
 constexpr uint32_t kDecodes = 0;
-/// Constants of shaders/encode_film.comp.
-constexpr uint32_t kToneMapping = 0;
-constexpr uint32_t kExposure = 1;
-constexpr uint32_t kDithers = 2;
-constexpr uint32_t kHasUnlit = 3;
-constexpr uint32_t kEncodedBinding = 0;
-
-/// Most workgroups that encode a film: enough for any device, each takes its share.
-constexpr uint32_t kMostEncodingGroups = 1024;
-
 template <size_t N>
 vk::raii::ShaderModule make_module(const gpu::Device& device, const uint32_t (&spirv)[N]) {
   return {device.handle(), vk::ShaderModuleCreateInfo({}, sizeof spirv, spirv)};
@@ -64,19 +49,6 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, const Swapchain& swa
 
 }  // namespace
 
-gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
-                                  const DisplayTransform& display, bool has_unlit) {
-  const std::array constants{
-      gpu::SpecializationConstant{kToneMapping, static_cast<uint32_t>(display.tone_mapping)},
-      gpu::SpecializationConstant{kExposure, std::bit_cast<uint32_t>(std::exp2(display.exposure_ev))},
-      gpu::SpecializationConstant{kDithers, display.dithers ? 1U : 0U},
-      gpu::SpecializationConstant{kHasUnlit, has_unlit ? 1U : 0U}};
-  constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
-  const std::array buffers{gpu::BoundBuffer{layout::BINDING_FILM, kStorage, &film},
-                           gpu::BoundBuffer{kEncodedBinding, kStorage, &encoded}};
-  return {device, k_encode_film_spirv, constants, buffers};
-}
-
 DisplayPass::DisplayPass(const gpu::Device& device, const Swapchain& swapchain) : device_(&device) {
   constexpr auto kStage = vk::ShaderStageFlagBits::eFragment;
   constexpr auto kType = vk::DescriptorType::eStorageBuffer;
@@ -92,39 +64,16 @@ DisplayPass::DisplayPass(const gpu::Device& device, const Swapchain& swapchain) 
   set_ = std::move(vk::raii::DescriptorSets(device.handle(), allocation).front());
 }
 
-void DisplayPass::bind(std::array<const gpu::Buffer*, kFilmCount> films, uint32_t pixel_count,
-                       const DisplayTransform& display, bool has_unlit) {
-  constexpr auto kStorage = vk::DescriptorType::eStorageBuffer;
-  const vk::DeviceSize size = pixel_count * sizeof(uint32_t);
+void DisplayPass::take(const EncodedPicture& picture) {
+  const vk::DeviceSize size = vk::DeviceSize{picture.size.x} * picture.size.y * sizeof(uint32_t);
   if (!encoded_ || encoded_->size_bytes() < size) {
-    gpu::Buffer larger(*device_, size, vk::BufferUsageFlagBits::eStorageBuffer);
-    if (encoded_size_) {
-      device_->run([&](const vk::raii::CommandBuffer& commands) {
-        commands.copyBuffer(*encoded_->handle(), *larger.handle(), vk::BufferCopy(0, 0, encoded_->size_bytes()));
-      });
-    }
-    encoded_ = std::move(larger);
+    encoded_.emplace(*device_, size, vk::BufferUsageFlagBits::eStorageBuffer);
     const vk::DescriptorBufferInfo info(*encoded_->handle(), 0, VK_WHOLE_SIZE);
-    vk::WriteDescriptorSet write(*set_, 0, 0, 1, kStorage);
+    vk::WriteDescriptorSet write(*set_, 0, 0, 1, vk::DescriptorType::eStorageBuffer);
     write.pBufferInfo = &info;
     device_->handle().updateDescriptorSets(write, {});
   }
-  for (size_t i = 0; i < kFilmCount; ++i)
-    encoders_[i].emplace(make_encoder(*device_, *films[i], *encoded_, display, has_unlit));
-}
-
-void DisplayPass::record_encoding(const vk::raii::CommandBuffer& commands, const ShownPicture& picture) {
-  using Access = vk::AccessFlagBits;
-  using Stage = vk::PipelineStageFlagBits;
-  const vk::MemoryBarrier traced(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead);
-  // The frame before may still draw what was encoded before.
-  commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer | Stage::eFragmentShader, Stage::eComputeShader, {},
-                           traced, {}, {});
-  constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-  const uint32_t groups = divide_up(picture.size.x * picture.size.y, kLanes);
-  encoders_[picture.film]->dispatch(commands, uvec2(std::min(groups, kMostEncodingGroups), 1));
-  const vk::MemoryBarrier encoded(Access::eShaderWrite, Access::eShaderRead);
-  commands.pipelineBarrier(Stage::eComputeShader, Stage::eFragmentShader, {}, encoded, {}, {});
+  encoded_->write(std::as_bytes(picture.words).first(size));
   encoded_size_ = picture.size;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "camera_path.h"
-#include "view/frame_queue.h"
+#include "view/finished_frame.h"
 
 namespace promin::app {
 

@@ -16,6 +16,8 @@ namespace {
 constexpr uint32_t kMaxTextures = 8;
 
 void throw_failure(VkResult result) {
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) throw vk::OutOfDeviceMemoryError("Dear ImGui");
+  if (result == VK_ERROR_DEVICE_LOST) throw vk::DeviceLostError("Dear ImGui");
   if (result < 0) throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "Dear ImGui");
 }
 

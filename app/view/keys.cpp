@@ -9,10 +9,6 @@
 namespace promin::app {
 namespace {
 
-constexpr Press camera(int number) {
-  return static_cast<Press>(static_cast<int>(Press::kFirstCamera) + number - 1);
-}
-
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ", " HELP
 constexpr const char* kDebugViewHelp = "light"
 #include "promin/kinds/debug_views.def"
@@ -21,8 +17,8 @@ constexpr const char* kDebugViewHelp = "light"
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) +1
 static_assert(GLFW_KEY_F1
 #include "promin/kinds/debug_views.def"
-                  < GLFW_KEY_F12,
-              "a debug view would have the key of the screenshot: give the later ones other keys");
+                  < GLFW_KEY_F11,
+              "a debug view would have the key of the full screen or the screenshot: give the later ones other keys");
 
 constexpr Press debug_view(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstDebugView) + number);
@@ -44,15 +40,15 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_RIGHT_CONTROL, "", "", Hold::kSlow},
     KeyBinding{GLFW_KEY_O, "O", "orbit what is in the middle, or fly again", {}, Press::kOrbit},
     KeyBinding{GLFW_KEY_R, "R", "reset the camera", {}, Press::kReset},
-    KeyBinding{GLFW_KEY_1, "1...9", "the scene's cameras", {}, camera(1)},
-    KeyBinding{GLFW_KEY_2, "", "", {}, camera(2)},
-    KeyBinding{GLFW_KEY_3, "", "", {}, camera(3)},
-    KeyBinding{GLFW_KEY_4, "", "", {}, camera(4)},
-    KeyBinding{GLFW_KEY_5, "", "", {}, camera(5)},
-    KeyBinding{GLFW_KEY_6, "", "", {}, camera(6)},
-    KeyBinding{GLFW_KEY_7, "", "", {}, camera(7)},
-    KeyBinding{GLFW_KEY_8, "", "", {}, camera(8)},
-    KeyBinding{GLFW_KEY_9, "", "", {}, camera(9)},
+    KeyBinding{GLFW_KEY_F, "F", "frame the model", {}, Press::kFrame},
+    KeyBinding{GLFW_KEY_1, "1, 3, 7", "from the front, the right, the top", {}, Press::kFront},
+    KeyBinding{GLFW_KEY_3, "", "", {}, Press::kRight},
+    KeyBinding{GLFW_KEY_7, "", "", {}, Press::kTop},
+    KeyBinding{GLFW_KEY_KP_1, "", "", {}, Press::kFront},
+    KeyBinding{GLFW_KEY_KP_3, "", "", {}, Press::kRight},
+    KeyBinding{GLFW_KEY_KP_7, "", "", {}, Press::kTop},
+    KeyBinding{GLFW_KEY_PERIOD, ". and ,", "the scene's next camera, the one before", {}, Press::kNextCamera},
+    KeyBinding{GLFW_KEY_COMMA, "", "", {}, Press::kPreviousCamera},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
     KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
 // F1 shows light, F2 the first debug view, and so on; F12 is the screenshot's.
@@ -62,17 +58,19 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_P, "P", "pause refining, or a replay", {}, Press::kPause},
     KeyBinding{GLFW_KEY_C, "C", "print the command that renders this view", {}, Press::kPrintCommand},
     KeyBinding{GLFW_KEY_F12, "F12", "write promin-NNNN.exr and .png", {}, Press::kScreenshot},
-    KeyBinding{GLFW_KEY_F, "F", "full screen", {}, Press::kFullscreen},
-    KeyBinding{GLFW_KEY_TAB, "Tab", "hide or show the overlay", {}, Press::kOverlay},
+    KeyBinding{GLFW_KEY_F11, "F11", "full screen", {}, Press::kFullscreen},
+    KeyBinding{GLFW_KEY_TAB, "Tab", "hide or show the panel", {}, Press::kOverlay},
     KeyBinding{GLFW_KEY_H, "H", "this help", {}, Press::kHelp},
     KeyBinding{GLFW_KEY_ESCAPE, "Esc", "quit", {}, Press::kQuit},
 };
 
 constexpr std::array kPointer = {
-    PointerBinding{"left drag", "look around"},
+    PointerBinding{"left drag", "turn the model"},
+    PointerBinding{"right drag", "move the picture; so do the middle button and Shift with the left one"},
+    PointerBinding{"wheel", "nearer or further away"},
+    PointerBinding{"double click", "look at that point, and turn around it"},
     PointerBinding{"left click", "explain the pixel: its rays, sources, contributions"},
-    PointerBinding{"right click", "look around without a button; again to stop"},
-    PointerBinding{"wheel", "faster or slower"},
+    PointerBinding{"right click", "look around without a button, as in flight; again to stop"},
 };
 
 }  // namespace

@@ -21,10 +21,14 @@ enum class Press {
   kPrintCommand,
   kScreenshot,
   kQuit,
-  /// Cameras 1...9 follow each other.
-  kFirstCamera,
+  kFrame,
+  kFront,
+  kRight,
+  kTop,
+  kPreviousCamera,
+  kNextCamera,
   /// Light and the debug views, in the order of DebugView's values.
-  kFirstDebugView = kFirstCamera + 9
+  kFirstDebugView
 };
 
 /// A key, by GLFW's number, and its effect: a row of the help too.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "view/keys.h"
 
@@ -16,9 +17,11 @@ namespace {
 
 const ImVec4 kFailureColor(1.0F, 0.45F, 0.35F, 1.0F);
 // These lengths are for an ordinary display.
-constexpr float kFontSize = 13.0F;
+constexpr float kFontSize = 14.0F;
 constexpr float kMargin = 10.0F;
-constexpr float kPanelWidth = 270.0F;
+constexpr float kPanelWidth = 290.0F;
+constexpr float kFieldWidth = 160.0F;
+constexpr float kEffectColumn = 100.0F;
 constexpr float kBarHeight = 4.0F;
 constexpr float kRounding = 4.0F;
 
@@ -26,6 +29,11 @@ constexpr float kRounding = 4.0F;
 float scaled(float length) {
   return length * ImGui::GetFontSize() / kFontSize;
 }
+
+/// Where Debian and others have a font without serifs; the first that is there is taken, else ImGui's own.
+constexpr std::array kFonts = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+    "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"};
 
 template <typename... Arguments>
 void show_text(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -35,27 +43,43 @@ void show_text(fmt::format_string<Arguments...> format, Arguments&&... arguments
 void show_times(const OverlayContent& content) {
   const FrameStatistics& statistics = *content.statistics;
   const double ms = statistics.frame_ms();
-  show_text("{:.1f} fps, {:.1f} ms a frame", ms > 0.0 ? 1e3 / ms : 0.0, ms);
+  show_text("{}", content.device);
+  show_text("{:.1f} pictures a second, {:.1f} ms each", ms > 0.0 ? 1e3 / ms : 0.0, ms);
   const StageTimes& stages = statistics.stages();
-  show_text("trace {:.1f} ms,\ndisplay {:.1f}, overlay {:.1f} ms", stages.trace, stages.display, stages.overlay);
+  show_text("trace {:.1f} ms, display {:.1f} ms", stages.trace, stages.display);
   const dvec3& rays = statistics.mrays_per_s();
-  show_text("Mrays/s: {:.2f} primary,\n{:.2f} shadow, {:.2f} mirror", rays.x, rays.y, rays.z);
+  show_text("Mrays/s: {:.2f} primary, {:.2f} shadow, {:.2f} mirror", rays.x, rays.y, rays.z);
+  const auto& shown = content.picture->shown();
+  if (!shown) return;
+  show_text("{} x {} of {} x {} pixels", shown->size.x, shown->size.y, content.picture->full_size().x,
+            content.picture->full_size().y);
+  if (!shown->error) return show_text("samples a pixel: {}", shown->samples_per_pixel);
+  show_text("samples a pixel: {:.3g}", static_cast<double>(shown->error->samples) / shown->size.x / shown->size.y);
 }
 
-void show_picture(const ProgressivePicture& picture) {
+/// How good the picture is, in words.
+std::string describe_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
-  if (!shown) return show_text("no picture yet");
-  const auto& size = shown->size;
-  show_text("{} x {} of {} x {}", size.x, size.y, picture.full_size().x, picture.full_size().y);
-  if (const auto& error = shown->error) {
-    show_text("error {:.2g}, {:.3g} spp", error->target, static_cast<double>(error->samples) / size.x / size.y);
-    if (error->unmet_pixels > 0) {
-      show_text("but for {} pixels of at most {:.2g}", error->unmet_pixels, error->largest_claim);
-    }
-  } else {
-    show_text("{} spp", shown->samples_per_pixel);
+  if (!shown) return "the first picture comes";
+  if (shown->size != picture.full_size()) return "coarse while it moves";
+  if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
+  const std::string error = fmt::format("1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
+  if (!picture.is_settled()) return fmt::format("off by {} at most, sharpening", error);
+  if (shown->error->unmet_pixels == 0) return fmt::format("done: off by {} at most", error);
+  return fmt::format("done: off by {} at most, but for {} pixels", error, shown->error->unmet_pixels);
+}
+
+void show_state(const OverlayContent& content) {
+  if (!content.awaited.empty()) {
+    show_text("{} ...", content.awaited);
+  } else if (content.picture != nullptr) {
+    show_text("{}", describe_picture(*content.picture));
   }
-  ImGui::ProgressBar(static_cast<float>(picture.fraction_done()), ImVec2(-1.0F, scaled(kBarHeight)), "");
+  const double done = content.picture != nullptr ? content.picture->fraction_done() : 0.0;
+  ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0F, scaled(kBarHeight)), "");
+  if (content.is_failure) ImGui::PushStyleColor(ImGuiCol_Text, kFailureColor);
+  if (!content.message.empty()) show_text("{}", content.message);
+  if (content.is_failure) ImGui::PopStyleColor();
 }
 
 void choose_scale(std::optional<double>& scale) {
@@ -108,21 +132,38 @@ void choose_debug_view(DebugView& view) {
   ImGui::EndCombo();
 }
 
-void show_switches(const Scene& scene, Switches& switches) {
+void choose_exposure(const OverlayContent& content, std::optional<float>& exposure_ev) {
+  constexpr float kMostEv = 6.0F;
+  float ev = exposure_ev.value_or(content.exposure_ev);
+  if (ImGui::SliderFloat("exposure", &ev, -kMostEv, kMostEv, "%+.1f EV")) exposure_ev = ev;
+}
+
+void show_switches(const OverlayContent& content, Switches& switches) {
   ImGui::Checkbox("shadows", &switches.has_shadows);
   ImGui::SameLine();
   ImGui::Checkbox("mirrors", &switches.has_mirrors);
   ImGui::SameLine();
   ImGui::Checkbox("pause", &switches.is_paused);
   auto depth = static_cast<int>(switches.max_depth);
-  if (ImGui::SliderInt("depth", &depth, 0, 20)) switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
+  if (ImGui::SliderInt("mirrors in mirrors", &depth, 0, 20)) {
+    switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
+  }
   choose_debug_view(switches.debug_view);
-  choose_scale(switches.scale);
-  choose_builder(switches.scene);
+  choose_exposure(content, switches.exposure_ev);
   if (ImGui::TreeNode("lights")) {
-    choose_lights(scene, switches.scene.lights_off);
+    choose_lights(*content.scene, switches.scene.lights_off);
     ImGui::TreePop();
   }
+}
+
+void show_details(const OverlayContent& content, Switches& switches, OverlayAnswer& answer) {
+  if (!ImGui::TreeNode("details")) return;
+  choose_scale(switches.scale);
+  choose_builder(switches.scene);
+  auto speed = static_cast<float>(content.speed);
+  if (ImGui::DragFloat("speed", &speed, 0.02F * speed, 0.0F, 0.0F, "%.3g a second")) answer.speed = speed;
+  if (content.picture != nullptr) show_times(content);
+  ImGui::TreePop();
 }
 
 std::optional<Camera> choose_camera(const OverlayContent& content) {
@@ -152,7 +193,6 @@ void FrameStatistics::add(const FinishedFrame& frame) {
   follow(frame_ms_, frame.time_ms);
   follow(stages_.trace, frame.stages.trace);
   follow(stages_.display, frame.stages.display);
-  follow(stages_.overlay, frame.stages.overlay);
   if (!(frame.stages.trace > 0.0)) return;
   const dvec3 rays(frame.rays.primary, frame.rays.shadow, frame.rays.reflection + frame.rays.refraction);
   mrays_per_s_ += share * (1e-3 / frame.stages.trace * rays - mrays_per_s_);
@@ -160,39 +200,44 @@ void FrameStatistics::add(const FinishedFrame& frame) {
 
 void scale_overlay(const OverlayScale& scale) {
   ImGuiIO& io = ImGui::GetIO();
-  ImFontConfig font;
-  font.SizePixels = kFontSize * static_cast<float>(scale.content);
   io.Fonts->Clear();
-  io.Fonts->AddFontDefault(&font);
+  const float size = kFontSize * static_cast<float>(scale.content);
+  const auto font =
+      std::find_if(kFonts.begin(), kFonts.end(), [](const char* file) { return std::filesystem::exists(file); });
+  if (font == kFonts.end() || io.Fonts->AddFontFromFileTTF(*font, size) == nullptr) {
+    ImFontConfig config;
+    config.SizePixels = size;
+    io.Fonts->AddFontDefault(&config);
+  }
   io.FontGlobalScale = static_cast<float>(1.0 / scale.pixel_ratio);
   ImGuiStyle& style = ImGui::GetStyle();
   style = ImGuiStyle();
   ImGui::StyleColorsDark();
   style.WindowRounding = kRounding;
+  style.FrameRounding = kRounding;
   style.ScaleAllSizes(static_cast<float>(scale.content / scale.pixel_ratio));
 }
 
-std::optional<Camera> show_overlay(const OverlayContent& content, Switches& switches) {
+OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
+  OverlayAnswer answer;
   ImGui::SetNextWindowPos(ImVec2(scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize(ImVec2(scaled(kPanelWidth), 0.0F));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("promin  (H: help, Tab: hide)", nullptr,
                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PushTextWrapPos();
-  show_text("{}", content.device);
-  show_times(content);
-  show_picture(*content.picture);
-  show_text("{}, speed {:.3g} a second", content.is_orbiting ? "orbiting" : "flying", content.speed);
-  if (!content.awaited.empty()) show_text("{} ...", content.awaited);
-  if (content.is_failure) ImGui::PushStyleColor(ImGuiCol_Text, kFailureColor);
-  if (!content.message.empty()) show_text("{}", content.message);
-  if (content.is_failure) ImGui::PopStyleColor();
-  ImGui::Separator();
-  show_switches(*content.scene, switches);
-  const std::optional<Camera> picked = choose_camera(content);
+  ImGui::PushItemWidth(scaled(kFieldWidth));
+  show_state(content);
+  if (content.scene != nullptr) {
+    ImGui::Separator();
+    show_switches(content, switches);
+    answer.camera = choose_camera(content);
+    show_details(content, switches, answer);
+  }
+  ImGui::PopItemWidth();
   ImGui::PopTextWrapPos();
   ImGui::End();
-  return picked;
+  return answer;
 }
 
 void show_help() {
@@ -201,25 +246,16 @@ void show_help() {
                           ImVec2(1.0F, 0.0F));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  const auto show_row = [](const char* name, const char* effect) {
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(scaled(kEffectColumn));
+    ImGui::TextUnformatted(effect);
+  };
+  for (const PointerBinding& binding : pointer_bindings()) show_row(binding.name, binding.effect);
   for (const KeyBinding& binding : key_bindings()) {
-    if (*binding.name != '\0') show_text("{:<12}{}", binding.name, binding.effect);
+    if (*binding.name != '\0') show_row(binding.name, binding.effect);
   }
-  for (const PointerBinding& binding : pointer_bindings()) show_text("{:<12}{}", binding.name, binding.effect);
   ImGui::End();
-}
-
-bool show_explanation(const std::string& title, const std::string& text) {
-  bool is_open = true;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x - scaled(kMargin), size.y - scaled(kMargin)), ImGuiCond_FirstUseEver,
-                          ImVec2(1.0F, 1.0F));
-  ImGui::SetNextWindowSize(ImVec2(0.55F * size.x, 0.5F * size.y), ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowBgAlpha(0.85F);
-  ImGui::Begin((title + "###explanation").c_str(), &is_open,
-               ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::End();
-  return is_open;
 }
 
 }  // namespace promin::app

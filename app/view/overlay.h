@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trace/progressive_picture.h"
-#include "view/frame_queue.h"
+#include "view/finished_frame.h"
 #include "view/overlay_scale.h"
 #include "view/scene_preparer.h"
 
@@ -22,8 +22,8 @@ class FrameStatistics {
   const StageTimes& stages() const { return stages_; }
   /// The rates of primary, shadow and reflection rays, in 1e6 a second of tracing.
   const dvec3& mrays_per_s() const { return mrays_per_s_; }
-  /// The part of a frame's work that is not tracing. Waiting for the display is not work.
-  double overhead_ms() const { return stages_.display + stages_.overlay; }
+  /// The part of a frame's work that is not tracing.
+  double overhead_ms() const { return stages_.display; }
 
  private:
   bool is_first_ = true;
@@ -39,6 +39,8 @@ struct Switches {
   bool has_mirrors = true;
   bool has_shadows = true;
   DebugView debug_view = DebugView::kNone;
+  /// The scene's own where the user has chosen none.
+  std::optional<float> exposure_ev;
   /// The scale, as ProgressivePicture::fix_scale takes it.
   std::optional<double> scale;
   bool is_paused = false;
@@ -49,11 +51,14 @@ struct Switches {
 /// What else the overlay shows.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
+  /// Null before the first.
   const ProgressivePicture* picture = nullptr;
+  /// Null before it is read.
   const Scene* scene = nullptr;
   std::string device;
   double speed = 0.0;
-  bool is_orbiting = false;
+  /// That of the scene.
+  float exposure_ev = 0.0F;
   /// The work that goes on beside the picture; empty where there is none.
   std::string awaited;
   /// What happened last; a failure is highlighted.
@@ -65,14 +70,17 @@ struct OverlayContent {
 /// Makes ImGui's fonts and sizes anew; not within a frame.
 void scale_overlay(const OverlayScale& scale);
 
-/// Shows the overlay between ImguiRenderer's begin_frame and end_frame, lets the user change the switches, and returns
-/// the camera that was picked from the lists.
-std::optional<Camera> show_overlay(const OverlayContent& content, Switches& switches);
+/// What the user did in the overlay beside the switches.
+struct OverlayAnswer {
+  /// The camera that was picked from the lists.
+  std::optional<Camera> camera;
+  /// The speed to fly with.
+  std::optional<double> speed;
+};
+
+/// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.
+OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches);
 
 /// Shows what keys and pointer do.
 void show_help();
-
-/// Shows a text under a title, to scroll through; false when the user has closed it.
-bool show_explanation(const std::string& title, const std::string& text);
-
 }  // namespace promin::app

@@ -4,33 +4,51 @@
 
 #include <fmt/format.h>
 
-#include "explanation.h"
+#include <utility>
+
+#include "render/renderer_impl.h"
+#include "trace/explain_pixel.h"
 
 namespace promin::app {
+
+std::shared_ptr<PixelQuery::Place> PixelQuery::place_for(const std::shared_ptr<const ShownScene>& scene) {
+  if (scene_ != scene) place_ = std::make_shared<Place>();
+  scene_ = scene;
+  return place_;
+}
+
+Explanation PixelQuery::explain(Place& place, const ShownScene& scene, const View& view, const uvec2& pixel) {
+  const std::lock_guard lock(place.one_at_a_time);
+  if (!place.apart.scene) place.apart = scene.set_apart();
+  const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene.renderer));
+  const FeatureMask features = on_device.features({.has_shadows = view.mode.has_shadows});
+  Explanation explanation;
+  gpu::translate_vulkan_errors([&] {
+    explanation = explain_pixel(*place.apart.device, place.apart.scene, on_device.numbers(), features, view, pixel);
+  });
+  return explanation;
+}
+
 void PixelQuery::ask_why(std::shared_ptr<const ShownScene> scene, const View& view, const uvec2& pixel) {
-  if (text_.is_busy()) return;
-  text_.start([scene = std::move(scene), view, pixel] {
-    const Explanation explanation = scene->renderer->explain(view, pixel);
-    return PixelText{fmt::format("pixel {}, {} at 1 spp", pixel.x, pixel.y), explain_text(explanation, *scene->scene)};
+  if (explained_.is_busy()) return;
+  explained_.start([place = place_for(scene), scene, view, pixel] {
+    return ExplainedPixel{fmt::format("pixel {}, {} at 1 spp", pixel.x, pixel.y), explain(*place, *scene, view, pixel),
+                          scene->scene};
   });
 }
 
-void PixelQuery::ask_middle(std::shared_ptr<const ShownScene> scene, const Camera& camera) {
-  if (middle_.is_busy()) return;
-  middle_.start([scene = std::move(scene), camera]() -> std::optional<dvec3> {
-    // The sample of a picture of one pixel goes through its middle.
-    View view;
-    view.camera = camera;
-    view.size = uvec2(1);
-    view.max_depth = 0;
-    const ExplainedRay ray = scene->renderer->explain(view, uvec2(0)).samples.front().rays.front();
+void PixelQuery::ask_point(std::shared_ptr<const ShownScene> scene, View view, const uvec2& pixel) {
+  if (point_.is_busy()) return;
+  view.max_depth = 0;
+  point_.start([place = place_for(scene), scene, view, pixel]() -> std::optional<dvec3> {
+    const ExplainedRay ray = explain(*place, *scene, view, pixel).samples.front().rays.front();
     return ray.hit.object < 0 ? std::nullopt : std::optional(dvec3(ray.position));
   });
 }
 
 void PixelQuery::wait() const {
-  text_.wait();
-  middle_.wait();
+  explained_.wait();
+  point_.wait();
 }
 
 }  // namespace promin::app

@@ -9,6 +9,7 @@
 #include "device/device.h"
 #include "formats/source_file.h"
 #include "promin/error.h"
+#include "promin/validate.h"
 #include "render/renderer_impl.h"
 #include "view_setup.h"
 
@@ -43,17 +44,47 @@ std::vector<Light> lights_on(const Scene& scene, const SceneChoice& choice) {
   return lights;
 }
 
-}  // namespace
-
-void ReadyPicture::take_lights() {
-  scene->renderer->set_lights(lights_on(*scene->scene, scene->choice));
-  picture.take_scene_change();
+/// Leaves out what takes long to compile, and of what is seen as little as may be.
+FeatureMask without_slow_parts(FeatureMask features) {
+  return features.without(layout::FEATURE_SHADOWS)
+      .without(layout::FEATURE_MIRRORS)
+      .without(layout::FEATURE_GLASS)
+      .without(layout::FEATURE_BLENDING);
 }
 
-ScenePreparer::ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                             std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
-                             View first_view)
-    : device_(&device),
+}  // namespace
+
+std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device) {
+  return std::make_shared<const gpu::Device>(gpu::DeviceOptions{.selection = std::to_string(device.info().index)});
+}
+
+bool sets_apart(const gpu::Device& device) {
+  // What presents late has one queue for all that it does, compiling too.
+  return device.profile().presents_late;
+}
+
+SceneOn ShownScene::set_apart() const {
+  // A few copies of it are no matter for the memory.
+  constexpr uint64_t kMostBytes = 256U << 20;
+  if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
+  SceneOn apart{open_same_device(*first.device), nullptr};
+  const world::Scene& in_world = host->scene;
+  apart.scene = upload_scene(
+      *apart.device, host->packed,
+      {in_world.materials, in_world.textures, lights_on(*scene, choice), in_world.environment, host->glass_solids});
+  return apart;
+}
+
+void ReadyPicture::take_lights() {
+  const std::vector<Light> lights = lights_on(*scene->scene, scene->choice);
+  scene->renderer->set_lights(lights);
+  picture->picture().take_scene_change();
+}
+
+ScenePreparer::ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
+                             LoadOptions load, std::vector<SourceFile> sources, LookOptions look,
+                             EnvironmentChoice environment, View first_view)
+    : device_(std::move(device)),
       budget_ms_(budget_ms),
       file_(std::move(file)),
       load_(std::move(load)),
@@ -79,7 +110,7 @@ bool ScenePreparer::update(const std::shared_ptr<const ShownScene>& shown, const
   const bool has_another_tree = last.choice.builder != request.choice.builder || last.choice.bvh != request.choice.bvh;
   if (has_another_tree) {
     pack(shown->scene);
-  } else if (last.choice != request.choice || last.mode != request.mode) {
+  } else if (last.choice != request.choice || last.mode != request.mode || last.is_draft != request.is_draft) {
     compile(shown);
   } else {
     if (time_s < next_look_at_files_s_) return false;
@@ -101,14 +132,13 @@ void ScenePreparer::read() {
   work_.start([this, request = asked_] {
     const auto scene = std::make_shared<Scene>(load_scene(file_, load_, sources_));
     light_up(*scene, look_, environment_);
-    return make(put_on_device(scene, request), request);
+    return make_first(scene, request);
   });
 }
 
 void ScenePreparer::pack(std::shared_ptr<const Scene> scene) {
   step_ = Step::kBuilding;
-  work_.start(
-      [this, scene = std::move(scene), request = asked_] { return make(put_on_device(scene, request), request); });
+  work_.start([this, scene = std::move(scene), request = asked_] { return make_first(scene, request); });
 }
 
 void ScenePreparer::compile(std::shared_ptr<const ShownScene> scene) {
@@ -116,7 +146,8 @@ void ScenePreparer::compile(std::shared_ptr<const ShownScene> scene) {
   work_.start([this, scene = std::move(scene), request = asked_] {
     ShownScene chosen = *scene;
     chosen.choice.lights_off = keep_known(request.choice.lights_off, *scene->scene);
-    return make(std::make_shared<const ShownScene>(std::move(chosen)), request);
+    SceneOn apart = chosen.set_apart();
+    return make(std::make_shared<const ShownScene>(std::move(chosen)), std::move(apart), request);
   });
 }
 
@@ -145,9 +176,10 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
                                                                const PictureRequest& request) {
   built_ = 0.0;
   enter(Step::kBuilding);
-  ShownScene shown{scene, request.choice, choose_display(*scene, look_, DebugView::kNone), nullptr};
+  ShownScene shown{scene, request.choice, choose_display(*scene, look_, DebugView::kNone), {}, nullptr, nullptr};
+  shown.first.device = open_same_device(*device_);
   shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
-  RendererOptions options;
+  TunedRendererOptions options;
   options.builder = request.choice.builder;
   options.bvh = request.choice.bvh;
   options.mode = request.mode;
@@ -159,7 +191,17 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
     if (fraction == 1.0) step_ = Step::kUploading;
     return !is_given_up_;
   };
-  shown.renderer = std::make_shared<Renderer>(*device_, *scene, options);
+  throw_if_invalid(*scene);
+  auto host = std::make_shared<HostScene>();
+  host->scene = world::flatten(*scene);
+  host->glass_solids = std::make_shared<const GlassSolids>(host->scene);
+  options.repack = [&host](PackedScene packed) {
+    host->packed = packed;
+    return packed;
+  };
+  shown.renderer = std::make_shared<Renderer>(make_renderer(*shown.first.device, host->scene, options));
+  shown.host = std::move(host);
+  shown.first.scene = RendererAccess::scene_of(*shown.renderer).device_scene();
   if (look_.averages_exposure) {
     shown.renderer->set_lights(lights_on(*scene, shown.choice));
     shown.display.exposure_ev = meter_exposure(*shown.renderer, first_view_, request.mode.has_shadows);
@@ -167,20 +209,31 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
   return std::make_shared<const ShownScene>(std::move(shown));
 }
 
-ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, const PictureRequest& request) {
+ReadyPicture ScenePreparer::make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
+  std::shared_ptr<const ShownScene> shown = put_on_device(std::move(scene), request);
+  SceneOn first = shown->first;
+  return make(std::move(shown), std::move(first), request);
+}
+
+ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, SceneOn on, const PictureRequest& request) {
   enter(Step::kCompiling);
   const std::vector<Light> lights = lights_on(*scene->scene, scene->choice);
-  std::optional<ProgressivePicture> picture;
+  std::unique_ptr<TracedPicture> picture;
   gpu::translate_vulkan_errors([&] {
     const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene->renderer));
     FeatureMask features = on_device.features_with(lights, request.mode);
     if (shows_unlit(features, request.mode.debug_view) && shows_unlit_apart(*scene->scene, look_, scene->display)) {
       features |= layout::FEATURE_UNLIT_SHARE;
     }
-    picture.emplace(*device_, on_device.device_scene(), features, budget_ms_);
+    if (request.is_draft) features = without_slow_parts(features);
+    const bool is_light = request.mode.debug_view == DebugView::kNone;
+    picture = std::make_unique<TracedPicture>(std::move(on), features, budget_ms_,
+                                              is_light ? scene->display : DisplayTransform(),
+                                              [scene] { return scene->set_apart(); });
     picture->resize(request.size);
+    picture->warm_up();
   });
-  return {std::move(scene), request.mode, std::move(*picture)};
+  return {std::move(scene), request.mode, request.is_draft, std::move(picture)};
 }
 
 }  // namespace promin::app

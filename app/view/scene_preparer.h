@@ -7,12 +7,15 @@
 #include <optional>
 #include <string>
 
+#include "device_scene/pack_scene.h"
+#include "device_scene/scene_constants.h"
 #include "environment_options.h"
 #include "promin/renderer.h"
 #include "render_options.h"
-#include "trace/progressive_picture.h"
+#include "scene/world_scene.h"
 #include "view/background.h"
 #include "view/scene_watch.h"
+#include "view/traced_picture.h"
 
 namespace promin::app {
 
@@ -26,6 +29,18 @@ struct SceneChoice {
   bool operator==(const SceneChoice&) const = default;
 };
 
+/// A scene as it is copied to devices.
+struct HostScene {
+  world::Scene scene;
+  PackedScene packed;
+  std::shared_ptr<const GlassSolids> glass_solids;
+};
+
+/// The same physical device once more, with a queue of its own, without a window.
+std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device);
+/// Whether scenes are set apart on such a device.
+bool sets_apart(const gpu::Device& device);
+
 /// A scene in device memory.
 struct ShownScene {
   /// The scene as its file has it, lit up, whatever lights are on.
@@ -34,7 +49,16 @@ struct ShownScene {
   SceneChoice choice;
   /// How its light is shown.
   DisplayTransform display;
+  /// The device that it was put on first.
+  SceneOn first;
   std::shared_ptr<Renderer> renderer;
+  /// What was copied there.
+  std::shared_ptr<const HostScene> host;
+
+  /// The scene with its lights on a device of its own, on a CPU device and where it is not large: the driver compiles
+  /// in its queue, and what is compiled there keeps nobody waiting. Else where it was first. Throws DeviceError,
+  /// RunError.
+  SceneOn set_apart() const;
 };
 
 /// A picture that can be traced at once.
@@ -42,9 +66,10 @@ struct ReadyPicture {
   /// The lights may be others than those on the device, so take_lights() comes before anything is traced.
   std::shared_ptr<const ShownScene> scene;
   RenderMode mode;
-  ProgressivePicture picture;
+  bool is_draft = false;
+  std::unique_ptr<TracedPicture> picture;
 
-  /// Brings the lights that are on to the device, while nothing is being traced there.
+  /// Brings the lights that are on to the devices, while nothing is being traced there.
   void take_lights();
 };
 
@@ -53,17 +78,21 @@ struct PictureRequest {
   SceneChoice choice;
   RenderMode mode;
   /// The size of the window, for which room is made.
-  uvec2 size{0};
+  uvec2 size{1};
+  /// Whether it is for the time until a better one is compiled: without what takes long to compile.
+  bool is_draft = false;
 };
 
 /// Makes pictures on a thread of its own, one at a time: reads, packs, builds, uploads and compiles, while another
-/// picture is shown.
+/// picture is shown. What it compiles on a driver that compiles in its queue has a device of its own, so that it keeps
+/// no picture waiting.
 class ScenePreparer {
  public:
-  /// Takes a scene's file and how it is read, the files that it was read from, how it is lit and shown, what is changed
-  /// about its surroundings, and the view by which an average exposure goes.
-  ScenePreparer(const gpu::Device& device, double budget_ms, std::filesystem::path file, LoadOptions load,
-                std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment, View first_view);
+  /// Takes a device of which it opens others, a scene's file and how it is read, the files that it was read from, how
+  /// it is lit and shown, what is changed about its surroundings, and the view by which an average exposure goes.
+  ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
+                LoadOptions load, std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
+                View first_view);
   /// Gives up the current work: a tree that is being built is not waited for.
   ~ScenePreparer();
 
@@ -74,6 +103,8 @@ class ScenePreparer {
   bool update(const std::shared_ptr<const ShownScene>& shown, const PictureRequest& request, double time_s);
   /// Whether a picture in that mode, which is not shown, is still to come.
   bool will_show(const RenderMode& mode) const { return is_busy() || asked_.mode != mode; }
+  /// Gives up the current work as soon as may be, without waiting.
+  void give_up() { is_given_up_ = true; }
 
   bool is_busy() const { return work_.is_busy(); }
   bool is_ready() const { return work_.is_ready(); }
@@ -94,9 +125,11 @@ class ScenePreparer {
   // Parts of the work.
   void enter(Step step);
   std::shared_ptr<const ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
-  ReadyPicture make(std::shared_ptr<const ShownScene> scene, const PictureRequest& request);
+  ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  /// `on` is where it is traced.
+  ReadyPicture make(std::shared_ptr<const ShownScene> scene, SceneOn on, const PictureRequest& request);
 
-  const gpu::Device* device_;
+  std::shared_ptr<const gpu::Device> device_;
   double budget_ms_;
   std::filesystem::path file_;
   LoadOptions load_;

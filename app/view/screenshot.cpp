@@ -54,10 +54,11 @@ std::string write_pictures(const std::vector<uvec4>& records, const View& view, 
 
 }  // namespace
 
-void Screenshot::record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view,
-                             bool has_unlit) {
+void Screenshot::record_copy(std::shared_ptr<const gpu::Device> device, const vk::raii::CommandBuffer& commands,
+                             const gpu::Buffer& film, const View& view, bool has_unlit) {
   using Access = vk::AccessFlagBits;
   using Stage = vk::PipelineStageFlagBits;
+  device_ = std::move(device);
   view_ = view;
   const vk::DeviceSize size = (has_unlit ? 2 : 1) * static_cast<vk::DeviceSize>(area_of(view)) * sizeof(uvec4);
   copy_.emplace(gpu::Buffer::make_readback(*device_, size));

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -17,12 +18,11 @@ namespace promin::app {
 /// folder. It writes one at a time, and the window does not wait.
 class Screenshot {
  public:
-  explicit Screenshot(const gpu::Device& device) : device_(&device) {}
-
   bool is_busy() const { return copy_.has_value() || written_.valid(); }
   /// Records copying a film that holds all of the picture; `has_unlit` as ProgressivePicture::has_unlit. Must not be
   /// called while busy.
-  void record_copy(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const View& view, bool has_unlit);
+  void record_copy(std::shared_ptr<const gpu::Device> device, const vk::raii::CommandBuffer& commands,
+                   const gpu::Buffer& film, const View& view, bool has_unlit);
   /// Is called when the device has done that; writes on a thread of its own.
   void write(const Metadata& metadata, const DisplayTransform& display);
   /// Is called instead of writing, where the copy is not wanted after all.
@@ -33,7 +33,7 @@ class Screenshot {
   std::optional<std::string> take();
 
  private:
-  const gpu::Device* device_;
+  std::shared_ptr<const gpu::Device> device_;
   View view_;
   std::optional<gpu::Buffer> copy_;
   std::future<std::string> written_;

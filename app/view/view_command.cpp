@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include "camera_choice.h"
@@ -86,73 +88,122 @@ void check_window_options(const WindowOptions& options) {
   if (options.record) check_outputs(inputs, {*options.record}, std::nullopt);
 }
 
-/// Waits for the picture while the window answers; nullopt where the user closes the window.
-std::optional<ReadyPicture> await_first_picture(Window& window, const std::string& title, ScenePreparer& preparer) {
-  constexpr double kWait = 0.02;
-  while (!preparer.is_ready()) {
-    window.set_title(title + " (" + preparer.describe() + ")");
-    window.wait(kWait);
-    if (window.wants_to_close()) return std::nullopt;
-  }
-  window.set_title(title);
-  return preparer.take();
-}
-
-void view(const WindowOptions& options) {
-  const TracingOptions& tracing = options.tracing;
-  check_window_options(options);
-  const Console console(tracing.verbosity(), "promin-view");
-
-  RunStats stats;
-  std::vector<SourceFile> sources;
-  ViewerStart start;
-  start.file = tracing.scene;
-  auto scene = std::make_shared<Scene>(load_for(tracing, stats, console, sources));
-  const EnvironmentChoice environment(options.view.environment);
-  for (const std::string& warning : environment.warnings()) console.warn(warning);
+OpenedScene open_scene(const WindowOptions& options, const Console& console) {
+  OpenedScene opened;
+  opened.file = options.tracing.scene;
+  opened.load = options.tracing.load;
+  auto scene = std::make_shared<Scene>(load_for(options.tracing, opened.stats, console, opened.sources));
+  opened.environment = EnvironmentChoice(options.view.environment);
+  for (const std::string& warning : opened.environment.warnings()) console.warn(warning);
   ViewOptions view_options = options.view;
   if (options.replay) {
-    start.replay.emplace(PathPictures(read_camera_path(*options.replay), options.fps).moved_to(scene->center));
-    view_options.given_camera = start.replay->camera(0);
+    opened.replay.emplace(PathPictures(read_camera_path(*options.replay), options.fps).moved_to(scene->center));
+    view_options.given_camera = opened.replay->camera(0);
   }
-  start.view = make_view(*scene, view_options, console);
-  if (!options.replay) warn_of_empty_pictures(*scene, {&start.view.camera, 1}, start.view.size, console);
+  opened.view = make_view(*scene, view_options, console);
+  if (!options.replay) warn_of_empty_pictures(*scene, {&opened.view.camera, 1}, opened.view.size, console);
   const LookOptions& look = options.view.look;
-  const AssumedLight assumed = light_up(*scene, look, environment);
-  const DisplayTransform display = choose_display(*scene, look, start.view.mode.debug_view);
+  const AssumedLight assumed = light_up(*scene, look, opened.environment);
+  const DisplayTransform display = choose_display(*scene, look, opened.view.mode.debug_view);
   const std::string assumptions = describe_assumptions(*scene, view_options, assumed, display);
   if (!assumptions.empty()) console.note(assumptions);
-  start.look = look;
+  check_lights(*scene, options.view.lights_off);
+  opened.bounds = bounds_of(*scene);
+  opened.scene = std::move(scene);
+  return opened;
+}
+
+/// The options for another file than that of the command line: what names parts of that one does not count.
+WindowOptions options_for(WindowOptions options, const std::filesystem::path& file) {
+  if (file == options.tracing.scene) return options;
+  options.tracing.scene = file;
+  options.tracing.load.material_variant.clear();
+  options.tracing.load.root.clear();
+  options.view.camera.reset();
+  options.view.pose = {};
+  options.view.lights_off.clear();
+  options.replay.reset();
+  options.fps.reset();
+  return options;
+}
+
+ViewerStart make_start(const WindowOptions& options, const Console& console) {
+  const TracingOptions& tracing = options.tracing;
+  ViewerStart start;
+  start.file = tracing.scene;
+  start.open = [&options, &console](const std::filesystem::path& file) {
+    WindowOptions opened = options_for(options, file);
+    // They are chosen already.
+    opened.tracing.threads.reset();
+    return open_scene(opened, console);
+  };
+  start.look = options.view.look;
+  if (options.view.pose.up) start.up = vec3(*options.view.pose.up);
   start.environment = options.view.environment;
-  start.variant = tracing.load.material_variant;
-  start.root = tracing.load.root;
   start.error_target = options.error.target_or(ErrorTarget{}.error);
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;
-  check_lights(*scene, options.view.lights_off);
   start.choice.lights_off = options.view.lights_off;
   start.present_mode = options.present_mode;
   start.target_ms = options.target_ms;
   start.scale = options.scale;
   start.stays_open = options.stays_open;
   start.record = options.record;
+  return start;
+}
 
-  const std::string title = "promin - " + start.file.filename().string();
-  Window window(start.view.size, title);
+/// The size of the window before the scene is read, which may say another.
+uvec2 first_size(const ViewOptions& options) {
+  Camera camera;
+  const uvec2 usual = *default_size(camera);
+  if (!options.size) return usual;
+  return {options.size->x > 0 ? options.size->x : usual.x, options.size->y > 0 ? options.size->y : usual.y};
+}
+
+/// Opens the device that draws to the window, which answers meanwhile.
+std::shared_ptr<const gpu::Device> open_device(Window& window, const std::optional<std::string>& selection) {
+  constexpr double kWait = 0.005;
   const gpu::Presentation presentation = window.presentation();
-  const gpu::Device device({.selection = tracing.device, .presentation = &presentation});
-  stats.device = device.info();
-  console.detail(device.choice());
-  ScenePreparer preparer(device, start.target_ms.value_or(ViewerStart::kCpuTargetMs), start.file, tracing.load,
-                         std::move(sources), look, environment, start.view);
-  // This takes longest and comes last, because without a window it would be in vain.
-  preparer.begin(scene, {start.choice, start.view.mode, window.framebuffer_size()});
-  std::optional<ReadyPicture> picture = await_first_picture(window, title, preparer);
-  if (!picture) return;
-  for (const Problem& warning : picture->scene->renderer->setup_stats().warnings) console.warn(message_of(warning));
-  gpu::translate_vulkan_errors(
-      [&] { Viewer(window, device, console, preparer, std::move(*picture), std::move(start), stats).run(); });
-  check_validation(device, stats);
+  Background<std::shared_ptr<const gpu::Device>> opening;
+  opening.start([&] {
+    return std::make_shared<const gpu::Device>(
+        gpu::DeviceOptions{.selection = selection, .presentation = &presentation});
+  });
+  while (!opening.is_ready()) window.wait(kWait);
+  return *opening.take();
+}
+
+void view(const WindowOptions& options) {
+  check_window_options(options);
+  choose_threads(options.tracing);
+  const Console console(options.tracing.verbosity(), "promin-view");
+  ViewerStart start = make_start(options, console);
+  Background<OpenedScene> opening;
+  opening.start([&start, file = start.file] { return start.open(file); });
+  std::unique_ptr<Window> window;
+  std::shared_ptr<const gpu::Device> device;
+  try {
+    window = std::make_unique<Window>(first_size(options.view), title_of(start.file));
+    device = open_device(*window, options.tracing.device);
+  } catch (const Error&) {
+    // What is wrong with the scene comes first.
+    opening.wait();
+    static_cast<void>(opening.take());
+    throw;
+  }
+  console.detail(device->choice());
+  gpu::translate_vulkan_errors([&] {
+    Viewer viewer(*window, device, console, std::move(start), std::move(opening));
+    viewer.run();
+    // A driver does not give up what it compiles; nobody waits for that. On a machine that is busy its threads of low
+    // priority take a while to end, and the process with them.
+    if (viewer.is_busy()) {
+      window->hide();
+      std::fflush(nullptr);
+      std::_Exit(0);
+    }
+    check_validation(*device, viewer.stats());
+  });
 }
 
 }  // namespace

@@ -5,12 +5,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
 #include "deferred_signals.h"
+#include "explanation.h"
 #include "promin/error.h"
 #include "run_program.h"
+#include "view/show_explanation.h"
+#include "view_setup.h"
 
 namespace promin::app {
 namespace {
@@ -19,44 +23,43 @@ namespace {
 constexpr double kShortWait = 1e-3;
 /// The wait in seconds while there is nothing to do; the scene's files are looked at as often.
 constexpr double kLongWait = 0.1;
+/// The least time in seconds from one drawing of the window to the next.
+constexpr double kDrawInterval = 1.0 / 75.0;
 /// The least part of a frame's target time that is spent on tracing.
 constexpr double kLeastTraceShare = 0.5;
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& preparer,
-               ReadyPicture picture, ViewerStart start, RunStats stats)
+std::string title_of(const std::filesystem::path& file) {
+  return file.filename().string() + " - promin";
+}
+
+Viewer::Viewer(Window& window, std::shared_ptr<const gpu::Device> device, const Console& console, ViewerStart start,
+               Background<OpenedScene> opening)
     : window_(window),
-      device_(device),
+      device_(std::move(device)),
       console_(console),
-      preparer_(preparer),
       start_(std::move(start)),
-      stats_(std::move(stats)),
-      follows_display_(!start_.target_ms && device.profile().keeps_up_with_display),
+      follows_display_(!start_.target_ms && device_->profile().keeps_up_with_display),
       target_ms_(start_.target_ms.value_or(ViewerStart::kCpuTargetMs)),
-      control_(start_.view.camera, speed_to_cross(bounds_of(*picture.scene->scene))),
-      swapchain_(device, start_.present_mode),
-      display_(device, swapchain_),
-      frames_(device, swapchain_),
-      screenshot_(device) {
+      file_(start_.file),
+      opening_(std::move(opening)),
+      swapchain_(*device_, start_.present_mode),
+      display_(*device_, swapchain_),
+      frames_(device_, swapchain_) {
   if (start_.present_mode && *start_.present_mode != swapchain_.present_mode()) {
     console_.warn(
         fmt::format("the window has no present mode {}; {} is used", *start_.present_mode, swapchain_.present_mode()));
   }
-  if (start_.replay) replay_.emplace(*start_.replay);
   switches_.scene = start_.choice;
   switches_.scale = start_.scale;
-  switches_.has_shadows = picture.mode.has_shadows;
-  switches_.debug_view = picture.mode.debug_view;
-  switches_.max_depth = start_.view.max_depth;
-  show_picture(std::move(picture));
   fit_window();
-  imgui_ = std::make_unique<ImguiRenderer>(device, window, swapchain_);
+  imgui_ = std::make_unique<ImguiRenderer>(*device_, window, swapchain_);
 }
 
 Viewer::~Viewer() {
   try {
-    device_.wait_idle();
+    device_->wait_idle();
   } catch (const vk::SystemError&) {
     // A lost device: what threw before says so.
   }
@@ -77,56 +80,98 @@ void Viewer::run() {
   update_screenshot();
 }
 
+bool Viewer::is_busy() const {
+  const auto is_idle = [](const std::unique_ptr<TracedPicture>& picture) { return picture->is_idle(); };
+  return !disposals_.empty() || opening_.is_busy() || query_.is_busy() || framing_.is_busy() ||
+         (preparer_ && preparer_->is_busy()) || (traced_ && !traced_->is_idle()) ||
+         !std::all_of(retired_.begin(), retired_.end(), is_idle);
+}
+
+bool Viewer::is_at_rest() const {
+  return frames_to_draw_ == 0 && frames_.is_idle() && !is_busy() && !screenshot_.is_busy() && !is_replaying();
+}
+
 void Viewer::show_frames(const DeferredSignals& signals) {
-  keep_camera();
   while (!is_quitting_ && !window_.should_close() && !signals.is_pending()) {
-    window_.poll();
-    frames_.poll([&](const FinishedFrame& finished) { take_finished(finished); });
     handle_input();
+    frames_.poll();
+    update_opening();
     update_picture();
     update_answers();
     update_screenshot();
     update_replay();
-    // Asking the display for the window's size takes as long as drawing the overlay; no frame, no question.
-    if (!frames_.has_room()) {
-      if (has_work()) frames_.ask();
-      window_.wait(kShortWait);
-      continue;
+    if (describe_awaited() != shown_awaited_) draw_again();
+    if (fit_window()) {
+      if (!traced_) move_camera(false);
+      trace();
+      draw();
     }
-    if (!fit_window() || !has_work()) {
-      const bool is_at_rest =
-          frames_.is_idle() && !preparer_.is_busy() && !query_.is_busy() && !screenshot_.is_busy() && !is_replaying();
-      window_.wait(is_at_rest ? kLongWait : kShortWait);
-      // The rest lasts until the event that ends it.
-      keep_camera();
-      continue;
-    }
-    Frame* frame = frames_.begin();
-    if (frame == nullptr) {
-      window_.wait(kShortWait);
-      continue;
-    }
-    record(*frame);
-    frames_.submit(*frame);
+    window_.wait(is_at_rest() ? kLongWait : kShortWait);
+    // A rest lasts until the event that ends it.
+    if (frames_to_draw_ == 0) keep_camera();
   }
-  keep_camera();
-  finish_frames();
+  move_camera(false);
+  console_.detail(fmt::format("no input waited longer than {:.0f} ms", window_.longest_turn_ms()));
+  // A screenshot under way is written.
+  while (on_copied_) trace();
 }
 
-void Viewer::move_camera(Frame& frame) {
-  const Motion motion = window_.take_motion();
-  if (is_replaying()) {
-    frame.is_of_flight = is_picture_due();
-    if (frame.is_of_flight) control_.place(replay_->next_camera(Window::now()));
-  } else if (!wants_screenshot_) {
-    // While a screenshot waits the camera holds still.
-    control_.apply(motion, window_.framebuffer_size().y);
+void Viewer::update_opening() {
+  if (!opening_.is_ready()) return;
+  try {
+    show_scene(std::move(*opening_.take()));
+  } catch (const Error& error) {
+    // There is nothing to show instead of the first.
+    if (!opened_.scene) throw;
+    file_ = opened_.file;
+    window_.set_title(title_of(file_));
+    report_failure(error.what());
   }
+}
+
+void Viewer::show_scene(OpenedScene opened) {
+  const bool is_first = !opened_.scene;
+  opened_ = std::move(opened);
+  const View& view = opened_.view;
+  control_ = CameraControl(view.camera, opened_.bounds, start_.up);
+  camera_index_ = -1;
+  replay_.reset();
+  if (opened_.replay) replay_.emplace(*opened_.replay);
+  has_replay_started_ = false;
+  bookmarks_.clear();
+  switches_.max_depth = view.max_depth;
+  if (is_first) {
+    switches_.has_shadows = view.mode.has_shadows;
+    switches_.debug_view = view.mode.debug_view;
+    window_.resize(view.size);
+  } else {
+    switches_.scene.lights_off.clear();
+    switches_.scene.bvh.reset();
+  }
+  keep_camera();
+  preparer_ = std::make_unique<ScenePreparer>(device_, target_ms_, opened_.file, opened_.load, opened_.sources,
+                                              start_.look, opened_.environment, view);
+  preparer_->begin(opened_.scene, request());
+  draw_again();
+}
+
+PictureRequest Viewer::request() const {
+  // What is to be shown as it is from the start is not begun with a draft. Nothing else is compiled before it is seen.
+  const bool has_draft = asked_mode().debug_view == DebugView::kNone && !opened_.replay && !start_.record;
+  const bool needs_draft = !traced_ || (is_draft_ && !traced_->picture().shown());
+  return {switches_.scene, asked_mode(), glm::max(swapchain_.size(), uvec2(1)), has_draft && needs_draft};
+}
+
+void Viewer::move_camera(bool is_of_flight) {
+  const Motion motion = window_.take_motion();
+  if (is_of_flight) control_.place(replay_->next_camera(Window::now()));
+  // While a screenshot waits the camera holds still.
+  if (!is_replaying() && !wants_screenshot_ && opened_.scene) control_.apply(motion, window_.framebuffer_size().y);
   keep_camera();
 }
 
 void Viewer::keep_camera() {
-  if (start_.record) recorder_.add(Window::now(), control_.camera(), scene_->scene->center);
+  if (start_.record && opened_.scene) recorder_.add(Window::now(), control_.camera(), opened_.scene->center);
 }
 
 bool Viewer::is_picture_due() const {
@@ -134,11 +179,11 @@ bool Viewer::is_picture_due() const {
 }
 
 void Viewer::update_replay() {
-  if (!replay_) return;
+  if (!replay_ || !traced_) return;
   if (!has_replay_started_) {
-    if (!picture_->is_complete()) return;
+    if (!traced_->picture().is_complete() || is_draft_) return;
     has_replay_started_ = true;
-  } else if (replay_->is_done() && frames_.is_idle()) {
+  } else if (replay_->is_done() && !traced_->is_busy()) {
     fmt::print("{}\n", replay_->summarize());
     std::fflush(stdout);
     replay_.reset();
@@ -154,44 +199,59 @@ void Viewer::update_screenshot() {
   }
 }
 
+void Viewer::dispose() {
+  std::erase_if(disposals_, [](const std::future<void>& disposal) {
+    return disposal.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  for (std::unique_ptr<TracedPicture>& picture : retired_) {
+    if (!picture->is_idle()) continue;
+    disposals_.push_back(std::async(std::launch::async, [gone = std::move(picture)]() mutable { gone.reset(); }));
+  }
+  std::erase(retired_, nullptr);
+}
+
 void Viewer::update_picture() {
-  // All must be idle: a frame in flight traces the picture that would go, and a question and what is compiled for the
-  // picture use the lights that would change.
-  if (preparer_.is_ready() && frames_.is_idle() && !query_.is_busy() && !picture_->is_compiling()) {
+  dispose();
+  if (!preparer_) return;
+  // A question uses the lights that would change. So does what is compiled where the scene is not set apart.
+  const bool is_free = !traced_ || !traced_->picture().is_compiling() || sets_apart(*device_);
+  if (preparer_->is_ready() && !query_.is_busy() && !on_copied_ && is_free) {
     try {
-      show_picture(std::move(*preparer_.take()));
+      show_picture(std::move(*preparer_->take()));
     } catch (const std::exception& error) {
+      if (!traced_) throw;
       // Whatever the error is, lack of memory included, the old picture stays.
       report_failure(error.what());
     }
   }
-  const PictureRequest request{switches_.scene, asked_mode(), swapchain_.size()};
-  if (preparer_.update(scene_, request, Window::now())) draw_again();
+  if (traced_ && preparer_->update(scene_, request(), Window::now())) draw_again();
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
-  // The new picture may be too large for the memory, so its room is made before the old one goes.
-  if (asked_size_ != uvec2(0)) ready.picture.resize(swapchain_.size());
   ready.take_lights();
+  const bool is_first = !scene_;
   const bool is_new = scene_ && scene_->scene != ready.scene->scene;
-  if (is_new) move_cameras(scene_->scene->center - ready.scene->scene->center);
-  if (!scene_ || scene_ != ready.scene) explanation_.text.clear();
-  picture_.emplace(std::move(ready.picture));
+  if (is_new && scene_->scene != opened_.scene) move_cameras(scene_->scene->center - ready.scene->scene->center);
+  if (scene_ != ready.scene) explained_.reset();
+  if (traced_) retired_.push_back(std::move(traced_));
+  traced_ = std::move(ready.picture);
   scene_ = std::move(ready.scene);
   mode_ = ready.mode;
-  // The window has no size before it has images.
-  if (asked_size_ != uvec2(0)) fit_picture();
+  is_draft_ = ready.is_draft;
   draw_again();
-  if (!is_new) return;
-  std::string text = "read " + start_.file.filename().string();
-  report(text);
+  std::string text = is_new ? "read " + file_.filename().string() : "";
+  if (is_new) report(text);
   const auto warn = [&](const std::string& warning) {
     console_.warn(warning);
     text += "\nwarning: " + warning;
   };
-  for (const std::string& warning : scene_->scene->warnings) warn(warning);
-  for (const Problem& warning : scene_->renderer->setup_stats().warnings) warn(message_of(warning));
-  message_ = text;
+  if (is_new) {
+    for (const std::string& warning : scene_->scene->warnings) warn(warning);
+  }
+  if (is_new || is_first) {
+    for (const Problem& warning : scene_->renderer->setup_stats().warnings) warn(message_of(warning));
+  }
+  if (is_new) message_ = text;
 }
 
 void Viewer::move_cameras(const dvec3& offset) {
@@ -202,38 +262,40 @@ void Viewer::move_cameras(const dvec3& offset) {
 
 void Viewer::update_answers() {
   try {
-    if (std::optional<PixelText> answer = query_.take_text()) {
-      explanation_ = std::move(*answer);
-      console_.details(explanation_.text);
+    if (std::optional<ExplainedPixel> answer = query_.take_explained()) {
+      explained_ = std::move(*answer);
+      console_.details(explain_text(explained_->explanation, *explained_->scene));
       draw_again();
     }
-    if (const std::optional<std::optional<dvec3>> middle = query_.take_middle()) {
-      const Bounds bounds = bounds_of(*scene_->scene);
-      const std::optional<dvec3> center =
-          *middle || bounds.is_empty() ? *middle : std::optional(dvec3(bounds.center()));
+    if (const std::optional<std::optional<dvec3>> point = query_.take_point()) {
+      std::optional<dvec3> center = *point;
+      if (!center && is_of_middle_ && !opened_.bounds.is_empty()) center = dvec3(opened_.bounds.center());
       if (std::exchange(wants_orbit_, false) && center) control_.orbit(*center);
       draw_again();
     }
+    if (const std::optional<Camera> framed = framing_.take()) control_.place(*framed);
   } catch (const std::exception& error) {
-    wants_orbit_ = wants_orbit_ && query_.is_looking_for_middle();
+    wants_orbit_ = wants_orbit_ && query_.is_looking_for_point();
     report_failure(error.what());
   }
 }
 
 bool Viewer::awaits_mode() const {
-  return mode_ != asked_mode() && preparer_.will_show(asked_mode());
+  return is_draft_ || (mode_ != asked_mode() && preparer_->will_show(asked_mode()));
 }
 
 std::string Viewer::describe_awaited() const {
-  if (preparer_.is_busy()) return preparer_.describe();
-  if (picture_->is_compiling()) return "compiling what refines";
+  if (opening_.is_busy()) return "loading " + file_.filename().string();
+  if (preparer_ && preparer_->is_busy()) return preparer_->describe();
+  if (traced_ && traced_->picture().is_compiling()) return "compiling what refines";
   return query_.is_busy() ? "tracing a pixel" : "";
 }
 
 bool Viewer::fit_window() {
   if (window_.take_change_of_place() && follows_display_) target_ms_ = window_.refresh_interval_ms();
+  // Drawing takes milliseconds, so nobody waits long for its end.
   if (imgui_ && window_.overlay_scale() != imgui_->scale()) {
-    finish_frames();
+    frames_.finish();
     imgui_->set_scale(window_.overlay_scale());
     draw_again();
   }
@@ -241,119 +303,121 @@ bool Viewer::fit_window() {
   if (size.x == 0 || size.y == 0) return false;
   // The surface may have given another size than it was asked for.
   if (!swapchain_.is_out_of_date() && size == asked_size_) return true;
-  finish_frames();
-  const uvec2 before = swapchain_.size();
+  frames_.finish();
   if (!swapchain_.recreate(size)) return false;
   asked_size_ = size;
-  if (swapchain_.size() != before) fit_picture();
   draw_again();
   return true;
 }
 
-void Viewer::fit_picture() {
-  picture_->resize(swapchain_.size());
-  const uvec2 full_size = picture_->full_size();
-  display_.bind({&picture_->film(0), &picture_->film(1)}, full_size.x * full_size.y, display(), picture_->has_unlit());
-  encoded_count_ = 0;
+void Viewer::trace() {
+  for (const std::unique_ptr<TracedPicture>& retired : retired_) static_cast<void>(retired->poll(Window::now()));
+  if (!traced_) return;
+  while (const std::optional<FinishedFrame> finished = traced_->poll(Window::now())) take_finished(*finished);
+  // What is encoded is taken over before the next frame encodes again.
+  if (!frames_.is_idle()) return;
+  if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
+    display_.take(*encoded);
+    frames_to_draw_ = std::max(frames_to_draw_, 1);
+  }
+  // The ready picture takes its place, so no new frame may begin.
+  if (preparer_->is_ready() && !on_copied_) return;
+  if (traced_->size() != swapchain_.size()) {
+    if (traced_->is_busy()) return;
+    traced_->resize(swapchain_.size());
+  }
+  if (has_tracing()) begin_frame();
 }
 
-void Viewer::finish_frames() {
-  frames_.finish([&](const FinishedFrame& finished) { take_finished(finished); });
+bool Viewer::has_tracing() const {
+  if (is_replaying() && !switches_.is_paused) return is_picture_due();
+  return window_.is_moving() || window_.has_turned() || wants_screenshot_ || traced_->has_work() ||
+         traced_->display().exposure_ev != display().exposure_ev ||
+         !shows_same(current_view(), traced_->picture().wanted());
+}
+
+void Viewer::begin_frame() {
+  if (traced_->is_tracing()) return traced_->ask(Window::now());
+  const bool is_of_flight = is_replaying() && is_picture_due();
+  move_camera(is_of_flight);
+  traced_->expose(display().exposure_ev);
+  ProgressivePicture& picture = traced_->picture();
+  picture.fix_scale(switches_.scale);
+  picture.want(current_view());
+  // While paused, tracing goes on only as far as a screenshot needs.
+  picture.pause(switches_.is_paused && !(wants_screenshot_ && !picture.is_complete()));
+  traced_->begin_frame(is_of_flight, Window::now(),
+                       [this](const vk::raii::CommandBuffer& commands) { record_screenshot(commands); });
+}
+
+void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
+  const ProgressivePicture& picture = traced_->picture();
+  if (!wants_screenshot_ || !picture.is_complete() || awaits_mode() || screenshot_.is_busy()) return;
+  const View view = picture.shown()->view_of(picture.wanted());
+  screenshot_.record_copy(traced_->scene().device, commands, picture.film(picture.shown()->film), view,
+                          picture.has_unlit());
+  on_copied_ = [this, view, error = picture.shown()->error](const FinishedFrame& finished) {
+    // It is not whole.
+    if (finished.has_cut_loops) return screenshot_.drop();
+    RunStats& stats = opened_.stats;
+    stats.device = traced_->scene().device->info();
+    stats.view = view;
+    stats.errors.clear();
+    if (error) stats.errors.push_back(*error);
+    stats.display = traced_->display();
+    screenshot_.write(describe_picture(stats), stats.display);
+  };
+  wants_screenshot_ = false;
 }
 
 void Viewer::take_finished(const FinishedFrame& finished) {
+  if (!finished.has_list && on_copied_) std::exchange(on_copied_, {})(finished);
   statistics_.add(finished);
   if (finished.is_of_flight) replay_->add(finished);
   if (finished.units == 0.0) return;
-  const double trace_ms = finished.stages.trace > 0.0 ? finished.stages.trace : finished.time_ms;
   try {
-    picture_->take_finished({.units = finished.units,
-                             .time_ms = trace_ms,
-                             .has_cut_loops = finished.has_cut_loops,
-                             .has_list = finished.has_list});
+    traced_->learn(finished);
   } catch (const RunError& error) {
     if (!is_failure_) report_failure(error.what());
   }
-  picture_->set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
+  traced_->picture().set_budget(std::max(kLeastTraceShare * target_ms_, target_ms_ - statistics_.overhead_ms()));
 }
 
-bool Viewer::has_work() const {
-  // The ready picture is taken in when the last frame is done, so no new frame may begin.
-  if (preparer_.is_ready()) return false;
-  if (is_replaying() && !switches_.is_paused) return is_picture_due();
-  return frames_to_draw_ > 0 || window_.is_moving() || wants_screenshot_ ||
-         (!picture_->is_settled() && !picture_->awaits_samples());
-}
-
-void Viewer::record(Frame& frame) {
-  move_camera(frame);
+void Viewer::draw() {
+  if (frames_to_draw_ == 0 || Window::now() < next_draw_s_) return;
+  const vk::raii::CommandBuffer* commands = frames_.begin();
+  if (commands == nullptr) return;
+  next_draw_s_ = Window::now() + kDrawInterval;
+  --frames_to_draw_;
   build_overlay();
-  picture_->fix_scale(switches_.scale);
-  picture_->want(current_view());
-  // While paused, tracing goes on only as far as a screenshot needs.
-  picture_->pause(switches_.is_paused && !(wants_screenshot_ && !picture_->is_complete()));
-  record_tracing(frame);
-  record_display(frame);
-  if (frames_to_draw_ > 0) --frames_to_draw_;
-}
-
-void Viewer::record_tracing(Frame& frame) {
-  using Stage = vk::PipelineStageFlagBits;
-  // The frame before may have copied a screenshot from the film that is traced now.
-  frame.commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
-  frame.units = picture_->record(frame.commands);
-  frame.has_list = picture_->has_recorded_list();
-  if (frame.units > 0.0) picture_->record_take_counts(frame.commands, *frame.counters);
-  if (wants_screenshot_ && picture_->is_complete() && !awaits_mode() && !screenshot_.is_busy()) {
-    const View view = picture_->shown()->view_of(picture_->wanted());
-    screenshot_.record_copy(frame.commands, picture_->film(picture_->shown()->film), view, picture_->has_unlit());
-    frame.on_finished = [this, view, error = picture_->shown()->error](const FinishedFrame& finished) {
-      // It is not whole.
-      if (finished.has_cut_loops) {
-        screenshot_.drop();
-        return;
-      }
-      stats_.view = view;
-      stats_.errors.clear();
-      if (error) stats_.errors.push_back(*error);
-      stats_.display = display();
-      screenshot_.write(describe_picture(stats_), stats_.display);
-    };
-    wants_screenshot_ = false;
-  }
-  frame.mark(FrameMark::kTraced);
-}
-
-void Viewer::record_display(const Frame& frame) {
-  if (encoded_count_ != picture_->shown_count()) {
-    display_.record_encoding(frame.commands, *picture_->shown());
-    encoded_count_ = picture_->shown_count();
-  }
-  swapchain_.begin_drawing(frame.commands, frame.image);
-  display_.record_drawing(frame.commands, swapchain_.size());
-  frame.mark(FrameMark::kDisplayed);
-  imgui_->record(frame.commands);
-  frame.commands.endRenderPass();
+  swapchain_.begin_drawing(*commands, frames_.image());
+  display_.record_drawing(*commands, swapchain_.size());
+  imgui_->record(*commands);
+  commands->endRenderPass();
+  frames_.submit();
 }
 
 void Viewer::build_overlay() {
   imgui_->begin_frame();
+  shown_awaited_ = describe_awaited();
   if (has_overlay_) {
     OverlayContent content;
     content.statistics = &statistics_;
-    content.picture = &*picture_;
-    content.scene = scene_->scene.get();
-    content.device = fmt::format("{} ({})", device_.info().name, device_.info().type);
+    content.picture = traced_ ? &traced_->picture() : nullptr;
+    content.scene = scene_ ? scene_->scene.get() : nullptr;
+    content.device = fmt::format("{} ({})", device_->info().name, device_->info().type);
     content.speed = control_.speed();
-    content.is_orbiting = control_.is_orbiting();
-    content.awaited = describe_awaited();
+    if (scene_) content.exposure_ev = scene_->display.exposure_ev;
+    content.awaited = shown_awaited_;
     content.message = message_;
     content.is_failure = is_failure_;
     content.bookmarks = bookmarks_;
-    if (const std::optional<Camera> picked = show_overlay(content, switches_)) control_.place(*picked);
+    const OverlayAnswer answer = show_overlay(content, switches_);
+    if (answer.camera) control_.place(*answer.camera);
+    if (answer.speed) control_.set_speed(*answer.speed);
   }
   if (has_help_) show_help();
-  if (!explanation_.text.empty() && !show_explanation(explanation_.title, explanation_.text)) explanation_.text.clear();
+  if (explained_ && !show_explanation(*explained_, control_.camera(), scene_->display)) explained_.reset();
   imgui_->end_frame();
 }
 
@@ -372,28 +436,32 @@ void Viewer::report_failure(const std::string& text) {
 }
 
 DisplayTransform Viewer::display() const {
-  return mode_.debug_view == DebugView::kNone ? scene_->display : DisplayTransform();
+  if (mode_.debug_view != DebugView::kNone) return {};
+  DisplayTransform display = scene_->display;
+  if (switches_.exposure_ev) display.exposure_ev = *switches_.exposure_ev;
+  return display;
 }
 
 View Viewer::current_view() const {
   View view;
   view.camera = control_.camera();
-  view.size = picture_->full_size();
-  view.filter = start_.view.filter;
-  view.filter_width = start_.view.filter_width;
+  view.size = traced_->picture().full_size();
+  view.filter = opened_.view.filter;
+  view.filter_width = opened_.view.filter_width;
   view.max_depth = switches_.effective_depth();
   view.mode = mode_;
-  // A flight is never at rest, and compiling what refines would take its time.
-  if (mode_.debug_view == DebugView::kNone && !is_replaying()) {
+  // A flight is never at rest, and a draft gives way to a better picture.
+  if (mode_.debug_view == DebugView::kNone && !is_replaying() && !is_draft_) {
     view.error_target = start_.error_target;
-    fit_to_display(*view.error_target, scene_->display);
+    fit_to_display(*view.error_target, display());
   }
   return view;
 }
 
 View Viewer::reproducible_view() const {
   View view = current_view();
-  if (picture_->is_complete() && shows_same(view, picture_->wanted())) return picture_->shown()->view_of(view);
+  const ProgressivePicture& picture = traced_->picture();
+  if (picture.is_complete() && shows_same(view, picture.wanted())) return picture.shown()->view_of(view);
   view.error_target.reset();
   return view;
 }

@@ -3,19 +3,22 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "console.h"
 #include "deferred_signals.h"
+#include "promin/framing.h"
 #include "run_stats.h"
-#include "trace/progressive_picture.h"
 #include "view/camera_control.h"
 #include "view/describe_command.h"
 #include "view/display_pass.h"
 #include "view/flight.h"
 #include "view/frame_queue.h"
 #include "view/imgui_renderer.h"
+#include "view/open_scene.h"
 #include "view/overlay.h"
 #include "view/pixel_query.h"
 #include "view/scene_preparer.h"
@@ -24,17 +27,18 @@
 
 namespace promin::app {
 
+/// The title of a window that shows a file.
+std::string title_of(const std::filesystem::path& file);
+
 /// The options that a viewer starts with.
 struct ViewerStart {
   std::filesystem::path file;
+  OpenScene open;
   SceneChoice choice;
   LookOptions look;
+  /// The direction that is up in the scene.
+  vec3 up{0.0F, 1.0F, 0.0F};
   EnvironmentOptions environment;
-  /// LoadOptions::material_variant.
-  std::string variant;
-  /// LoadOptions::root.
-  std::filesystem::path root;
-  View view;
   /// Of pictures at rest that show light; what hangs on how they are shown follows from the scene.
   ErrorTarget error_target;
   std::optional<std::string> present_mode;
@@ -42,9 +46,7 @@ struct ViewerStart {
   std::optional<double> target_ms;
   /// The scale, as ProgressivePicture::fix_scale takes it.
   std::optional<double> scale;
-
-  /// The pictures of a flight to play, and whether the window stays open after it.
-  std::optional<PathPictures> replay;
+  /// Whether the window stays open after a replay.
   bool stays_open = false;
   /// The file for the camera's flight, which is written when the window closes.
   std::optional<std::filesystem::path> record;
@@ -52,23 +54,39 @@ struct ViewerStart {
   static constexpr double kCpuTargetMs = 100.0;
 };
 
-/// The window's program: it takes input, records frames and shows them, until the user quits.
+/// The window's program: it takes input, lets pictures be made and shows them, until the user quits. Nothing that may
+/// take long is done on its thread: scenes are read, trees built and kernels compiled beside it, and pictures are
+/// traced on other devices than the one that draws.
 class Viewer {
  public:
-  /// Throws RunError, vk::SystemError.
-  Viewer(Window& window, const gpu::Device& device, const Console& console, ScenePreparer& preparer,
-         ReadyPicture picture, ViewerStart start, RunStats stats);
+  /// `device` draws to the window; `opening` opens the scene. Throws RunError, vk::SystemError.
+  Viewer(Window& window, std::shared_ptr<const gpu::Device> device, const Console& console, ViewerStart start,
+         Background<OpenedScene> opening);
   ~Viewer();
 
   /// SIGINT, SIGTERM and SIGHUP end it as the user does, and the program when what was recorded is written. Throws
-  /// RunError where the flight cannot be written, vk::SystemError.
+  /// InputError where the scene is not one, RunError where the flight cannot be written, vk::SystemError.
   void run();
+  /// Whether there is work that the destructor would wait for.
+  bool is_busy() const;
+  const RunStats& stats() const { return opened_.stats; }
 
  private:
   void show_frames(const DeferredSignals& signals);
   void handle_input();
   void handle_press(Press press);
-  void move_camera(Frame& frame);
+  void print_command();
+  /// The pixel of the full picture at a place of the window, in its pixels.
+  uvec2 pixel_at(const dvec2& place) const;
+  /// Looks at what a pixel shows, and orbits it, once it is known.
+  void look_at(const View& view, const uvec2& pixel);
+  /// Opens another scene.
+  void open(const std::filesystem::path& file);
+  /// Frames the scene as it is seen now, or from a side.
+  void frame_from(std::optional<Framing> from);
+  /// Goes to another of the scene's cameras, so many further.
+  void show_camera(int step);
+  void move_camera(bool is_of_flight);
   /// Keeps all cameras where they are in the world, when a scene has another center.
   void move_cameras(const dvec3& offset);
   /// Adds the camera to the flight that is recorded, if one is.
@@ -80,29 +98,36 @@ class Viewer {
   void update_replay();
   /// Reports what has become of screenshots.
   void update_screenshot();
+  /// Takes over a scene that has been opened.
+  void update_opening();
+  void show_scene(OpenedScene opened);
+  /// Destroys pictures that are no longer needed, which may take a while.
+  void dispose();
   /// Takes over a picture that is ready, and asks for those that changed switches and files need.
   void update_picture();
   void show_picture(ReadyPicture ready);
   /// Reports the answers to questions about pixels.
   void update_answers();
   RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
+  PictureRequest request() const;
   /// Whether a picture in another mode than the one shown is being made.
   bool awaits_mode() const;
   /// The work that goes on beside the picture, in words.
   std::string describe_awaited() const;
   /// Fits everything to the window. False while it has no pixels.
   bool fit_window();
-  /// Fits the picture to the window's images.
-  void fit_picture();
-  void finish_frames();
+  /// Takes finished frames, and begins the next.
+  void trace();
   void take_finished(const FinishedFrame& finished);
-  bool has_work() const;
-  void record(Frame& frame);
-  void record_tracing(Frame& frame);
-  void record_display(const Frame& frame);
+  bool has_tracing() const;
+  void begin_frame();
+  void record_screenshot(const vk::raii::CommandBuffer& commands);
+  /// Draws the window, where there is something new.
+  void draw();
   void build_overlay();
   /// Shows what has changed beside the picture.
   void draw_again() { frames_to_draw_ = kSettlingFrames; }
+  bool is_at_rest() const;
   void report(const std::string& text);
   void report_failure(const std::string& text);
   /// What describe_command needs for the command that gives a view's picture.
@@ -110,6 +135,7 @@ class Viewer {
   /// How the picture's light is shown.
   DisplayTransform display() const;
   View current_view() const;
+  View view_of_middle() const;
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
 
@@ -117,24 +143,37 @@ class Viewer {
   static constexpr int kSettlingFrames = 3;
 
   Window& window_;
-  const gpu::Device& device_;
+  std::shared_ptr<const gpu::Device> device_;
   const Console& console_;
-  ScenePreparer& preparer_;
   /// What the window was opened with.
   const ViewerStart start_;
-  RunStats stats_;
   /// Whether the target is the refresh interval of the display that the window is on.
   bool follows_display_;
   double target_ms_;
 
+  /// The file of the scene that is being opened, or is open.
+  std::filesystem::path file_;
+  Background<OpenedScene> opening_;
+  /// Without a scene before the first is open.
+  OpenedScene opened_;
+  std::unique_ptr<ScenePreparer> preparer_;
   std::shared_ptr<const ShownScene> scene_;
   /// The mode of the picture.
   RenderMode mode_;
+  bool is_draft_ = false;
+  /// None before the first; those before it end beside it.
+  std::unique_ptr<TracedPicture> traced_;
+  std::vector<std::unique_ptr<TracedPicture>> retired_;
+  std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
   /// Whether an orbit begins when its center is found.
   bool wants_orbit_ = false;
-  CameraControl control_;
+  /// Whether it is that of the picture, for which the middle of the scene stands in.
+  bool is_of_middle_ = false;
+  CameraControl control_{Camera(), Bounds(), vec3(0.0F, 1.0F, 0.0F)};
+  Background<Camera> framing_;
+  int camera_index_ = -1;
   std::vector<Camera> bookmarks_;
   std::optional<FlightReplay> replay_;
   bool has_replay_started_ = false;
@@ -146,22 +185,26 @@ class Viewer {
   DisplayPass display_;
   std::unique_ptr<ImguiRenderer> imgui_;
   FrameQueue frames_;
-  std::optional<ProgressivePicture> picture_;
-  /// The value of ProgressivePicture::shown_count when a picture was encoded last.
-  uint64_t encoded_count_ = 0;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;
+  /// Whether the command is printed as soon as there is a picture.
+  bool wants_command_ = false;
+  /// Is called when the frame that copies a screenshot is finished.
+  std::function<void(const FinishedFrame&)> on_copied_;
 
   FrameStatistics statistics_;
+  /// The work beside the picture as the overlay shows it.
+  std::string shown_awaited_;
   std::string message_;
   bool is_failure_ = false;
-  /// Empty where no text is shown.
-  PixelText explanation_;
+  /// None where none is shown.
+  std::optional<ExplainedPixel> explained_;
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;
-  /// The number of frames to draw although there is nothing to trace, because the overlay answers to events.
-  int frames_to_draw_ = 0;
+  /// The number of frames to draw, because there is a new picture or the overlay answers to events.
+  int frames_to_draw_ = kSettlingFrames;
+  double next_draw_s_ = 0.0;
 };
 
 }  // namespace promin::app

@@ -7,22 +7,64 @@
 
 #include <cstdio>
 
+#include "promin/framing.h"
 #include "view/viewer.h"
 
 namespace promin::app {
 
+uvec2 Viewer::pixel_at(const dvec2& place) const {
+  const dvec2 full_size(traced_->picture().full_size());
+  const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
+  return uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0));
+}
+
 void Viewer::handle_input() {
   window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   for (const Press press : window_.take_presses()) handle_press(press);
-  for (const dvec2& place : window_.take_clicks()) {
-    const dvec2 full_size(picture_->full_size());
-    const dvec2 pixel = place * full_size / glm::max(dvec2(window_.framebuffer_size()), 1.0);
+  for (const std::string& file : window_.take_dropped()) open(file);
+  const std::vector<dvec2> clicks = window_.take_clicks();
+  const std::vector<dvec2> double_clicks = window_.take_double_clicks();
+  if (traced_) {
     View view = current_view();
     view.error_target.reset();
-    query_.ask_why(scene_, view, uvec2(glm::clamp(pixel, dvec2(0.0), full_size - 1.0)));
+    for (const dvec2& place : clicks) query_.ask_why(scene_, view, pixel_at(place));
+    for (const dvec2& place : double_clicks) look_at(view, pixel_at(place));
   }
-  if (const double steps = window_.take_wheel(); steps != 0.0) control_.change_speed(steps);
+  if (traced_ && std::exchange(wants_command_, false)) print_command();
   if (window_.take_activity()) draw_again();
+}
+
+void Viewer::look_at(const View& view, const uvec2& pixel) {
+  wants_orbit_ = true;
+  is_of_middle_ = false;
+  query_.ask_point(scene_, view, pixel);
+}
+
+void Viewer::open(const std::filesystem::path& file) {
+  if (opening_.is_busy()) return report_failure("a scene is being opened already");
+  file_ = file;
+  window_.set_title(title_of(file_));
+  opening_.start([this, file] { return start_.open(file); });
+  draw_again();
+}
+
+void Viewer::frame_from(std::optional<Framing> from) {
+  if (!opened_.scene || framing_.is_busy()) return;
+  const dvec2 size(glm::max(swapchain_.size(), uvec2(1)));
+  const auto aspect_ratio = static_cast<float>(size.x / size.y);
+  // It looks at every vertex.
+  framing_.start([scene = opened_.scene, camera = control_.camera(), up = start_.up, from, aspect_ratio] {
+    return from ? frame_scene(*scene, aspect_ratio, {.from = from, .up = up})
+                : fit_camera(*scene, camera, aspect_ratio);
+  });
+}
+
+void Viewer::show_camera(int step) {
+  if (!opened_.scene || opened_.scene->cameras.empty()) return;
+  const std::vector<Camera>& cameras = opened_.scene->cameras;
+  const auto count = static_cast<int>(cameras.size());
+  camera_index_ = (camera_index_ + step + count) % count;
+  control_.place(cameras[static_cast<size_t>(camera_index_)]);
 }
 
 void Viewer::handle_press(Press press) {
@@ -41,26 +83,29 @@ void Viewer::handle_press(Press press) {
       switches_.is_paused = !switches_.is_paused;
       return;
     case Press::kOrbit:
-      wants_orbit_ = !wants_orbit_ && !control_.is_orbiting();
-      if (wants_orbit_) return query_.ask_middle(scene_, control_.camera());
+      wants_orbit_ = !wants_orbit_ && !control_.is_orbiting() && traced_;
+      is_of_middle_ = true;
+      if (wants_orbit_) return query_.ask_point(scene_, view_of_middle(), uvec2(0));
       return control_.fly();
+    case Press::kFrame:
+      return frame_from(std::nullopt);
+    case Press::kFront:
+      return frame_from(Framing::kFront);
+    case Press::kRight:
+      return frame_from(Framing::kRight);
+    case Press::kTop:
+      return frame_from(Framing::kTop);
+    case Press::kNextCamera:
+      return show_camera(1);
+    case Press::kPreviousCamera:
+      return show_camera(-1);
     case Press::kBookmark:
       bookmarks_.push_back(control_.camera());
       bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
       return;
-    case Press::kPrintCommand: {
-      const View view = reproducible_view();
-      if (!can_describe(described_scene(view), view)) {
-        return report_failure(
-            fmt::format("no command of promin render gives this view: no option takes the half height "
-                        "{:g} of an orthographic camera, and the scene has none such; give the "
-                        "flight to promin render --path",
-                        view.camera.ymag));
-      }
-      fmt::print("{}\n", describe_command(described_scene(view), view));
-      std::fflush(stdout);
+    case Press::kPrintCommand:
+      wants_command_ = true;
       return;
-    }
     case Press::kScreenshot:
       wants_screenshot_ = true;
       return;
@@ -70,27 +115,42 @@ void Viewer::handle_press(Press press) {
     default:
       break;
   }
-  if (press >= Press::kFirstDebugView) {
-    switches_.debug_view = static_cast<DebugView>(static_cast<int>(press) - static_cast<int>(Press::kFirstDebugView));
-    return;
+  switches_.debug_view = static_cast<DebugView>(static_cast<int>(press) - static_cast<int>(Press::kFirstDebugView));
+}
+
+View Viewer::view_of_middle() const {
+  // The sample of a picture of one pixel goes through its middle.
+  View view;
+  view.camera = control_.camera();
+  view.size = uvec2(1);
+  return view;
+}
+
+void Viewer::print_command() {
+  const View view = reproducible_view();
+  if (!can_describe(described_scene(view), view)) {
+    return report_failure(
+        fmt::format("no command of promin render gives this view: no option takes the half height "
+                    "{:g} of an orthographic camera, and the scene has none such; give the "
+                    "flight to promin render --path",
+                    view.camera.ymag));
   }
-  const auto index = static_cast<size_t>(press) - static_cast<size_t>(Press::kFirstCamera);
-  const std::vector<Camera>& cameras = scene_->scene->cameras;
-  if (index < cameras.size()) control_.place(cameras[index]);
+  fmt::print("{}\n", describe_command(described_scene(view), view));
+  std::fflush(stdout);
 }
 
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   LookOptions look = start_.look;
-  if (look.averages_exposure) look.exposure_ev = scene_->display.exposure_ev;
+  if (look.averages_exposure || switches_.exposure_ev) look.exposure_ev = display().exposure_ev;
   DescribedScene described;
-  described.file = start_.file;
+  described.file = file_;
   described.has_shadows = mode_.has_shadows;
   described.lights_off = on.lights_off;
   described.look = look;
   described.environment = start_.environment;
-  described.variant = start_.variant;
-  described.root = start_.root;
+  described.variant = opened_.load.material_variant;
+  described.root = opened_.load.root;
   described.center = scene_->scene->center;
   described.camera_index = find_half_height(*scene_->scene, view.camera);
   described.builder = on.builder;

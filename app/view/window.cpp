@@ -19,6 +19,8 @@ namespace {
 
 /// A click that wanders further, in screen coordinates, is a drag.
 constexpr double kClickSlack = 3.0;
+/// The second of two clicks comes within so many seconds.
+constexpr double kDoubleClickTime = 0.3;
 
 [[noreturn]] void refuse(const std::string& what) {
   const char* reason = nullptr;
@@ -76,12 +78,13 @@ struct Window::Callbacks {
 
   static void set(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) { of(w).on_key(key, action); });
-    glfwSetMouseButtonCallback(window,
-                               [](GLFWwindow* w, int button, int action, int) { of(w).on_button(button, action); });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
+      of(w).on_button(button, action, modifiers);
+    });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).on_pointer({x, y}); });
-    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) {
-      of(w).is_active_ = true;
-      if (!of(w).wants_pointer_) of(w).wheel_ += y;
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).on_wheel(y); });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+      of(w).dropped_.insert(of(w).dropped_.end(), paths, paths + count);
     });
     glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int is_focused) {
       of(w).is_active_ = true;
@@ -90,11 +93,15 @@ struct Window::Callbacks {
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).is_active_ = true; });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).change_place(); });
     glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).change_place(); });
+    glfwSetWindowIconifyCallback(window, [](GLFWwindow* w, int is_minimised) {
+      of(w).is_minimised_ = is_minimised != GLFW_FALSE;
+      of(w).change_place();
+    });
     glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { of(w).change_place(); });
   }
 };
 
-Window::Window(const uvec2& size, const std::string& title) {
+Window::Window(const uvec2& size, const std::string& title) : first_size_(size) {
   choose_platform();
   if (glfwInit() == GLFW_FALSE) refuse("no display");
   if (glfwVulkanSupported() == GLFW_FALSE) {
@@ -111,6 +118,8 @@ Window::Window(const uvec2& size, const std::string& title) {
   }
   glfwSetWindowUserPointer(window_, this);
   Callbacks::set(window_);
+  ask_display();
+  last_wait_s_ = now();
 }
 
 Window::~Window() {
@@ -129,25 +138,17 @@ gpu::Presentation Window::presentation() const {
           }};
 }
 
-uvec2 Window::framebuffer_size() const {
+void Window::ask_display() {
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
-  const bool is_minimised = glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0;
-  return is_minimised ? uvec2(0) : uvec2(width, height);
-}
-
-double Window::pixel_ratio() const {
-  int width = 0;
-  glfwGetWindowSize(window_, &width, nullptr);
-  return width > 0 ? static_cast<double>(framebuffer_size().x) / width : 1.0;
-}
-
-OverlayScale Window::overlay_scale() const {
+  framebuffer_size_ = uvec2(width, height);
+  int units = 0;
+  glfwGetWindowSize(window_, &units, nullptr);
   float scale = 1.0F;
   glfwGetWindowContentScale(window_, &scale, nullptr);
-  // A minimised window has no pixels.
-  return {scale > 0.0F ? static_cast<double>(scale) : 1.0, std::max(pixel_ratio(), 0.1)};
+  const double ratio = units > 0 && width > 0 ? static_cast<double>(width) / units : 1.0;
+  overlay_scale_ = {scale > 0.0F ? static_cast<double>(scale) : 1.0, ratio};
 }
 
 double Window::refresh_interval_ms() const {
@@ -162,12 +163,10 @@ double Window::now() {
   return glfwGetTime();
 }
 
-void Window::poll() {
-  glfwPollEvents();
-}
-
 void Window::wait(double seconds) {
+  longest_turn_s_ = std::max(longest_turn_s_, now() - last_wait_s_);
   glfwWaitEventsTimeout(seconds);
+  last_wait_s_ = now();
 }
 
 bool Window::should_close() const {
@@ -180,6 +179,19 @@ bool Window::wants_to_close() const {
 
 void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::resize(const uvec2& size) {
+  int width = 0;
+  int height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  if (size == first_size_ || uvec2(width, height) != first_size_) return;
+  glfwSetWindowSize(window_, static_cast<int>(size.x), static_cast<int>(size.y));
+}
+
+void Window::hide() {
+  glfwHideWindow(window_);
+  glfwPollEvents();
 }
 
 void Window::toggle_fullscreen() {
@@ -199,11 +211,8 @@ std::vector<Press> Window::take_presses() {
   return std::exchange(presses_, {});
 }
 
-double Window::take_wheel() {
-  return std::exchange(wheel_, 0.0);
-}
-
 std::vector<dvec2> Window::take_clicks() {
+  if (click_ && now() - click_time_s_ > kDoubleClickTime) clicks_.push_back(*std::exchange(click_, std::nullopt));
   return std::exchange(clicks_, {});
 }
 
@@ -228,53 +237,73 @@ void Window::on_key(int key, int action) {
   }
 }
 
-void Window::on_button(int button, int action) {
+void Window::on_button(int button, int action, int modifiers) {
   is_active_ = true;
   const bool is_down = action == GLFW_PRESS;
   if (is_down && wants_pointer_ && !is_captured_) return;
-  if (button == GLFW_MOUSE_BUTTON_RIGHT && is_down) capture_pointer(!is_captured_);
   // A captured pointer is nowhere in the window.
-  if (button != GLFW_MOUSE_BUTTON_LEFT || is_captured_) return;
+  if (is_captured_) {
+    if (is_down && button == GLFW_MOUSE_BUTTON_RIGHT) capture_pointer(false);
+    return;
+  }
   if (is_down) {
-    is_dragging_ = true;
+    const bool is_orbit = button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT) == 0;
+    drag_ = is_orbit ? Drag::kOrbit : Drag::kPan;
     is_click_ = true;
     drag_start_ = pointer_;
-  } else if (std::exchange(is_dragging_, false) && is_click_) {
-    clicks_.push_back(pixel_ratio() * pointer_);
+  } else if (std::exchange(drag_, Drag::kNone) != Drag::kNone && is_click_) {
+    if (button == GLFW_MOUSE_BUTTON_LEFT) on_click();
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) capture_pointer(true);
   }
+}
+
+void Window::on_click() {
+  const dvec2 place = pixel_ratio() * pointer_;
+  if (click_ && now() - click_time_s_ <= kDoubleClickTime) {
+    click_.reset();
+    double_clicks_.push_back(place);
+    return;
+  }
+  click_ = place;
+  click_time_s_ = now();
+}
+
+void Window::on_wheel(double steps) {
+  is_active_ = true;
+  if (!wants_pointer_) motion_.zoom(steps);
 }
 
 void Window::on_pointer(const dvec2& place) {
   is_active_ = true;
   dvec2 way = place - std::exchange(pointer_, place);
   // A drag takes hold of the scene, the captured pointer of the camera.
-  if (is_captured_) {
-    motion_.turn(-pixel_ratio() * way);
-  } else if (is_dragging_) {
-    if (is_click_) {
-      way = place - drag_start_;
-      if (glm::length(way) <= kClickSlack) return;
-      is_click_ = false;
-    }
-    motion_.turn(pixel_ratio() * way);
+  if (is_captured_) return motion_.turn(-pixel_ratio() * way);
+  if (drag_ == Drag::kNone) return;
+  if (is_click_) {
+    way = place - drag_start_;
+    if (glm::length(way) <= kClickSlack) return;
+    is_click_ = false;
   }
+  if (drag_ == Drag::kOrbit) return motion_.orbit(pixel_ratio() * way);
+  motion_.pan(pixel_ratio() * way);
 }
 
 void Window::change_place() {
+  ask_display();
   is_active_ = true;
   may_have_moved_ = true;
 }
 
 void Window::release() {
   motion_.release_all(now());
-  is_dragging_ = false;
+  drag_ = Drag::kNone;
   capture_pointer(false);
 }
 
 void Window::capture_pointer(bool is_captured) {
   if (is_captured == is_captured_) return;
   is_captured_ = is_captured;
-  is_dragging_ = false;
+  drag_ = Drag::kNone;
   glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
   glfwGetCursorPos(window_, &pointer_.x, &pointer_.y);
 }

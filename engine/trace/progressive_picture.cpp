@@ -25,8 +25,9 @@ uvec2 scale_size(const uvec2& size, double scale) {
   return glm::max(uvec2(1), uvec2(glm::round(dvec2(size) * scale)));
 }
 
-bool is_ready(const std::future<std::unique_ptr<Film>>& film) {
-  return film.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+template <typename Result>
+bool is_ready(const std::future<Result>& result) {
+  return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 double count_blocks(const uvec2& size) {
@@ -47,18 +48,29 @@ View ShownPicture::view_of(View view) const {
 }
 
 ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
-                                       FeatureMask features, double budget_ms)
+                                       FeatureMask features, double budget_ms, std::function<SceneOn()> set_apart)
     : device_(&device),
       longest_piece_ms_(device.profile().target_dispatch_ms),
       budget_ms_(budget_ms),
       pacer_(budget_ms, TileScheduler::kMinBlocks) {
   films_.reserve(kFilmCount);
   for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
-  make_list_film_ = [&device, scene, features] {
-    auto film = std::make_unique<Film>(device, scene, features | layout::FEATURE_LISTED_SAMPLES);
+  works_beside_ = static_cast<bool>(set_apart);
+  make_list_film_ = [&device, scene, features, set_apart = std::move(set_apart)] {
+    ListFilm list;
+    std::shared_ptr<const DeviceScene> listed = scene;
+    if (set_apart) {
+      const SceneOn apart = set_apart();
+      list.device = apart.device;
+      listed = apart.scene;
+    } else {
+      // Its caller keeps it.
+      list.device = std::shared_ptr<const gpu::Device>(std::shared_ptr<void>(), &device);
+    }
+    list.film = std::make_unique<Film>(*list.device, listed, features | layout::FEATURE_LISTED_SAMPLES);
     // Drivers compile in a pipeline's first dispatch.
-    film->warm_up();
-    return film;
+    list.film->warm_up();
+    return list;
   };
 }
 
@@ -96,9 +108,13 @@ bool ProgressivePicture::is_compiling() const {
   return list_film_to_come_.valid() && !is_ready(list_film_to_come_);
 }
 
+bool ProgressivePicture::is_busy_beside() const {
+  return is_compiling() || (refined_to_come_.valid() && !is_ready(refined_to_come_));
+}
+
 bool ProgressivePicture::awaits_samples() const {
   if (picture_ || next_view() || !is_refining()) return false;
-  return is_compiling() || (refined_ && refined_->is_under_way());
+  return is_busy_beside() || (refined_ && refined_->is_under_way());
 }
 
 double ProgressivePicture::fraction_done() const {
@@ -167,22 +183,49 @@ double ProgressivePicture::record(const vk::raii::CommandBuffer& commands) {
   return units;
 }
 
+bool ProgressivePicture::refines_next() const {
+  const bool is_dropped = picture_ && picture_version_ != wanted_version_ && !is_first_;
+  return (!picture_ || is_dropped) && !next_view() && !is_paused_ && is_refining();
+}
+
+std::shared_ptr<const gpu::Device> ProgressivePicture::refining_device() {
+  if (list_film_.film) return list_film_.device;
+  if (!list_film_to_come_.valid()) list_film_to_come_ = std::async(std::launch::async, make_list_film_);
+  if (!is_ready(list_film_to_come_)) return nullptr;
+  list_film_ = list_film_to_come_.get();
+  return list_film_.device;
+}
+
 double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& commands, double most_units) {
-  if (!list_film_) {
-    // Frames go on meanwhile, as far as the driver lets them.
-    if (!list_film_to_come_.valid()) list_film_to_come_ = std::async(std::launch::async, make_list_film_);
-    if (!is_ready(list_film_to_come_)) return 0.0;
-    list_film_ = list_film_to_come_.get();
-  }
+  // Frames go on meanwhile.
+  if (!refining_device()) return 0.0;
   if (refined_ && refined_->is_under_way()) return 0.0;
-  if (!refined_ || refined_version_ != wanted_version_) {
-    refined_.emplace(*list_film_, wanted_);
-    refined_version_ = wanted_version_;
-  }
+  if (!prepare_refined()) return 0.0;
   const double units = refined_->record(commands, pacer_.units(), most_units);
   has_recorded_list_ = units > 0.0;
   if (!has_recorded_list_) show_refined();
   return units;
+}
+
+bool ProgressivePicture::prepare_refined() {
+  const auto is_wanted = [&] { return refined_ && refined_version_ == wanted_version_; };
+  if (refined_to_come_.valid()) {
+    if (!is_ready(refined_to_come_)) return false;
+    refined_ = refined_to_come_.get();
+    refined_version_ = version_to_come_;
+  }
+  if (is_wanted()) return true;
+  const auto make = [film = list_film_.film.get(), view = wanted_](std::unique_ptr<RefiningPicture> last) {
+    last.reset();
+    return std::make_unique<RefiningPicture>(*film, view);
+  };
+  version_to_come_ = wanted_version_;
+  const std::launch policy = works_beside_ ? std::launch::async : std::launch::deferred;
+  refined_to_come_ = std::async(policy, make, std::move(refined_));
+  if (works_beside_) return false;
+  refined_ = refined_to_come_.get();
+  refined_version_ = version_to_come_;
+  return true;
 }
 
 void ProgressivePicture::show_refined() {
@@ -202,7 +245,7 @@ void ProgressivePicture::finish() {
 }
 
 void ProgressivePicture::record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const {
-  const Film& film = has_recorded_list_ ? *list_film_ : films_[picture_when_done_.film];
+  const Film& film = has_recorded_list_ ? *list_film_.film : films_[picture_when_done_.film];
   film.record_take_counts(commands, target);
 }
 
@@ -223,7 +266,7 @@ void ProgressivePicture::take_finished(const Finished& finished) {
 void ProgressivePicture::take_scene_change() {
   for (Film& film : films_) film.bind_scene();
   if (list_film_to_come_.valid()) list_film_ = list_film_to_come_.get();
-  if (list_film_) list_film_->bind_scene();
+  if (list_film_.film) list_film_.film->bind_scene();
   picture_.reset();
   ++wanted_version_;
 }

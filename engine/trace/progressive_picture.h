@@ -15,6 +15,12 @@
 
 namespace promin {
 
+/// A scene and the device that it is on, which lives as long.
+struct SceneOn {
+  std::shared_ptr<const gpu::Device> device;
+  std::shared_ptr<DeviceScene> scene;
+};
+
 /// A complete picture in device memory.
 struct ShownPicture {
   /// The index of its film, below kFilmCount.
@@ -36,8 +42,10 @@ inline constexpr size_t kFilmCount = 2;
 /// `promin render` gives it. One film is traced while the other, complete, is shown.
 class ProgressivePicture {
  public:
+  /// `set_apart`, where there is one, gives the same scene, perhaps on a device of its own: the samples that refine are
+  /// traced there. It is called on another thread.
   ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
-                     double budget_ms);
+                     double budget_ms, std::function<SceneOn()> set_apart = {});
 
   /// Makes room for a window; the device must be idle. Afterwards film(i) may be another buffer, and nothing is shown.
   void resize(const uvec2& size);
@@ -67,10 +75,19 @@ class ProgressivePicture {
   double fraction_done() const;
   /// Whether the pipeline that refines pictures to an error is being compiled.
   bool is_compiling() const;
+  /// Whether the destructor would wait for another thread.
+  bool is_busy_beside() const;
 
   /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace, or
-  /// nothing yet: see awaits_samples().
+  /// nothing yet: see awaits_samples(). The commands are for the picture's device, or where refines_next() for
+  /// refining_device().
   double record(const vk::raii::CommandBuffer& commands);
+  /// Whether the next record() refines. It needs that the picture's device is idle with respect to the films.
+  bool refines_next() const;
+  /// The device that refines; null, and it is being made, before that is known.
+  std::shared_ptr<const gpu::Device> refining_device();
+  /// Compiles what traces the first pictures, and waits.
+  void warm_up() { films_[0].warm_up(); }
   /// Whether the next pieces hang on those that are under way, or on a pipeline that is being compiled.
   bool awaits_samples() const;
   /// Whether the last record() recorded samples that take_finished() must be told of.
@@ -109,6 +126,8 @@ class ProgressivePicture {
   /// Whether that is yet to be done.
   bool is_refining() const;
   double record_refinement(const vk::raii::CommandBuffer& commands, double most_units);
+  /// Makes refined_ that of the wanted view. False where it is still being made.
+  bool prepare_refined();
   void show_refined();
   uvec2 first_size() const;
   void begin(const vk::raii::CommandBuffer& commands, const View& view);
@@ -116,13 +135,23 @@ class ProgressivePicture {
 
   const gpu::Device* device_;
   std::vector<Film> films_;
-  /// Makes the film that samples are refined on; it is there as soon as somebody has needed it.
-  std::function<std::unique_ptr<Film>()> make_list_film_;
-  std::unique_ptr<Film> list_film_;
-  std::future<std::unique_ptr<Film>> list_film_to_come_;
+  /// The film that samples are refined on, and its device.
+  struct ListFilm {
+    std::shared_ptr<const gpu::Device> device;
+    std::unique_ptr<Film> film;
+  };
+  /// Makes it; it is there as soon as somebody has needed it.
+  std::function<ListFilm()> make_list_film_;
+  ListFilm list_film_;
+  std::future<ListFilm> list_film_to_come_;
+  /// Whether what takes the host long is done on other threads: only for callers with frames of their own.
+  bool works_beside_ = false;
   /// Of the view of refined_version_. While a list is under way it stays, however old that is.
-  std::optional<RefiningPicture> refined_;
+  std::unique_ptr<RefiningPicture> refined_;
   uint64_t refined_version_ = 0;
+  /// The next one, which needs much memory, and the version that it is for.
+  std::future<std::unique_ptr<RefiningPicture>> refined_to_come_;
+  uint64_t version_to_come_ = 0;
   bool has_recorded_list_ = false;
   /// The buffer that trace() takes the counts into.
   std::optional<gpu::Buffer> counters_;

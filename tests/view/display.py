@@ -98,7 +98,7 @@ class Viewer:
     def find_window(self):
         self.check_alive()
         # It fails where there is none yet.
-        found = self.run_xdotool("search", "--onlyvisible", "--name", "^promin").stdout.strip()
+        found = self.run_xdotool("search", "--onlyvisible", "--name", "promin$").stdout.strip()
         return found.split("\n")[0] if found else None
 
     def minimise(self, is_minimised):

@@ -15,7 +15,7 @@
 #include "image/dither.h"
 #include "promin/display.h"
 #include "promin/image.h"
-#include "view/display_pass.h"
+#include "view/traced_picture.h"
 
 namespace promin::app {
 namespace {
@@ -54,8 +54,11 @@ class EncodeFilmTest : public test::DeviceTest {
     for (const vec4& sum : unlit) pixels.push_back(glm::floatBitsToUint(sum));
     film.write(std::as_bytes(std::span(pixels)), sizeof head);
 
+    gpu::Buffer exposure(device(), sizeof(float), kStorage);
+    const float factor = std::exp2(display.exposure_ev);
+    exposure.write(std::as_bytes(std::span(&factor, 1)));
     const gpu::Buffer encoded(device(), sums.size() * sizeof(uint32_t), kStorage);
-    const gpu::ComputePipeline encoder = make_encoder(device(), film, encoded, display, !unlit.empty());
+    const gpu::ComputePipeline encoder = make_encoder(device(), film, encoded, exposure, display, !unlit.empty());
     device().run([&](const vk::raii::CommandBuffer& commands) { encoder.dispatch(commands, uvec2(3, 1)); });
     std::vector<uint32_t> words(sums.size());
     encoded.read(std::as_writable_bytes(std::span(words)));

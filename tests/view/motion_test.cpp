@@ -4,12 +4,23 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "view/camera_control.h"
 
 namespace promin::app {
 namespace {
 
 constexpr double kHeight = 360.0;
+constexpr vec3 kUp(0.0F, 1.0F, 0.0F);
+
+/// A cube of side 2 around a point, and a camera ten units before its middle.
+const vec3 kMiddle(1.0F, 2.0F, 3.0F);
+CameraControl make_control() {
+  Camera camera;
+  camera.eye = kMiddle + vec3(0.0F, 0.0F, 10.0F);
+  return {camera, Bounds{kMiddle - 1.0F, kMiddle + 1.0F}, kUp};
+}
 
 /// Holds ahead for a second and fast for the middle half, with frames at these times.
 Motion fly(const std::vector<double>& frame_times) {
@@ -63,7 +74,7 @@ TEST(CameraControl, KeepsTheBitsOfACameraThatRests) {
   camera.eye = vec3(0.1F, 0.2F, 0.3F);
   camera.look = glm::normalize(vec3(0.3F, -0.2F, -0.9F));
   camera.up = glm::normalize(glm::cross(glm::cross(camera.look, vec3(0, 1, 0)), camera.look));
-  CameraControl control(camera, 1.0);
+  CameraControl control(camera, Bounds(), kUp);
   control.apply({}, kHeight);
   EXPECT_EQ(control.camera().look, camera.look);
   EXPECT_EQ(control.camera().up, camera.up);
@@ -72,7 +83,7 @@ TEST(CameraControl, KeepsTheBitsOfACameraThatRests) {
 
 // What was under the pointer in the middle stays under it, to first order.
 TEST(CameraControl, ADragTurnsByTheFieldOfView) {
-  CameraControl control(Camera{}, 1.0);
+  CameraControl control(Camera{}, Bounds(), kUp);
   Motion motion;
   motion.turn = dvec2(kHeight, 0.0);
   control.apply(motion, kHeight);
@@ -84,7 +95,7 @@ TEST(CameraControl, ADragTurnsByTheFieldOfView) {
 TEST(CameraControl, AnOrbitFacesItsCenterAtTheSameDistance) {
   Camera camera;
   camera.eye = vec3(3, 1, 8);
-  CameraControl control(camera, 1.0);
+  CameraControl control(camera, Bounds(), kUp);
   const dvec3 center(0.5, -1.0, 0.25);
   const double distance = glm::distance(dvec3(camera.eye), center);
   control.orbit(center);
@@ -105,10 +116,49 @@ TEST(CameraControl, AnOrbitFacesItsCenterAtTheSameDistance) {
   EXPECT_LT(glm::distance(control.position(), center), 0.5 * distance);
 }
 
+TEST(CameraControl, ADragTakesItAroundTheMiddleOfTheScene) {
+  CameraControl control = make_control();
+  Motion motion;
+  motion.orbit = dvec2(0.5 * kHeight, 0.0);  // half of the window's height is a quarter of the circle
+  control.apply(motion, kHeight);
+  EXPECT_NEAR(glm::distance(control.position(), dvec3(kMiddle) + dvec3(-10.0, 0.0, 0.0)), 0.0, 1e-5);
+  EXPECT_NEAR(glm::dot(dvec3(control.camera().look), dvec3(1.0, 0.0, 0.0)), 1.0, 1e-6);
+  // However far the pointer goes down, the camera stays short of straight above, and upright.
+  motion.orbit = dvec2(0.0, 10.0 * kHeight);
+  for (int i = 0; i < 5; ++i) control.apply(motion, kHeight);
+  EXPECT_NEAR(glm::distance(control.position(), dvec3(kMiddle)), 10.0, 1e-4);
+  EXPECT_GT(control.position().y, 11.99);
+  EXPECT_GT(control.camera().up.y, 0.0F);
+}
+
+TEST(CameraControl, TheWheelGoesNearerToWhatItLooksAt) {
+  CameraControl control = make_control();
+  Motion motion;
+  motion.zoom = 3.0;
+  control.apply(motion, kHeight);
+  const double near = glm::distance(control.position(), dvec3(kMiddle));
+  EXPECT_LT(near, 7.0);
+  EXPECT_GT(near, 5.0);
+  motion.zoom = -3.0;
+  control.apply(motion, kHeight);
+  EXPECT_NEAR(glm::distance(control.position(), dvec3(kMiddle)), 10.0, 1e-5);
+}
+
+TEST(CameraControl, WhatIsUnderThePointerGoesWithIt) {
+  CameraControl control = make_control();
+  Motion motion;
+  motion.pan = dvec2(kHeight, 0.0);
+  control.apply(motion, kHeight);
+  const double height = 2.0 * 10.0 * std::tan(0.5 * double{control.camera().yfov});
+  EXPECT_NEAR(control.position().x, double{kMiddle.x} - height, 1e-5);
+  EXPECT_NEAR(control.position().z, double{kMiddle.z} + 10.0, 1e-5);
+}
+
 TEST(CameraControl, ResetGoesBackToTheStart) {
   Camera camera;
   camera.eye = vec3(1, 2, 3);
-  CameraControl control(camera, 2.0);
+  CameraControl control(camera, Bounds(), kUp);
+  control.set_speed(2.0);
   Motion motion;
   motion.travel = dvec3(0, 0, 3);
   control.apply(motion, kHeight);

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "promin/ray_counts.h"
+
+namespace promin::app {
+
+/// Device time of a frame's stages, in milliseconds; 0 where the queue has no timestamps.
+struct StageTimes {
+  double trace = 0.0;
+  /// Encoding for the display.
+  double display = 0.0;
+};
+
+/// What is known of a frame of tracing once the device has finished it.
+struct FinishedFrame {
+  StageTimes stages;
+  RayCounts rays;
+  /// The driver cut the tracing short (trace/film.h): pixels are wrong.
+  bool has_cut_loops = false;
+  /// The units of tracing (ProgressivePicture::record).
+  double units = 0.0;
+  /// Whether they are samples that refine (ProgressivePicture::has_recorded_list).
+  bool has_list = false;
+  /// Whether it shows the next camera of a flight.
+  bool is_of_flight = false;
+  /// The time to its end, from when it was first asked for, or from the end of the frame before if that was later. A
+  /// rest does not count.
+  double time_ms = 0.0;
+};
+
+}  // namespace promin::app

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "camera_path.h"
+#include "environment_options.h"
+#include "formats/source_file.h"
+#include "promin/load_scene.h"
+#include "promin/scene.h"
+#include "promin/view.h"
+#include "run_stats.h"
+
+namespace promin::app {
+
+/// A scene as a window opens it: read, lit up, and seen from somewhere.
+struct OpenedScene {
+  std::filesystem::path file;
+  LoadOptions load;
+  EnvironmentChoice environment;
+  std::shared_ptr<const Scene> scene;
+  Bounds bounds;
+  /// The files that it was read from.
+  std::vector<SourceFile> sources;
+  View view;
+  /// The flight to play.
+  std::optional<PathPictures> replay;
+  RunStats stats;
+};
+
+/// Opens the scene of a file. Throws Error.
+using OpenScene = std::function<OpenedScene(const std::filesystem::path& file)>;
+
+}  // namespace promin::app
