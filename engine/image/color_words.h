@@ -10,8 +10,8 @@
 
 namespace promin {
 
-/// Reads a colour as web pages name it: a name of color_names(), "#rrggbb" or "#rgb", upper or lower case. Returns sRGB, 0
-/// to 1, and nothing for other words.
+/// Reads a colour as web pages name it: a name of color_names(), "#rrggbb" or "#rgb", upper or lower case. Returns
+/// sRGB, 0 to 1, and nothing for other words.
 std::optional<vec3> find_color(std::string_view word);
 
 /// The names of colours, in lower case: the basic ones of CSS and a few more.
