@@ -18,7 +18,7 @@ from promin_farm.files import read_json, write_whole
 BEAT_S = 10.0
 _LOOK_S = 0.5
 _MOST_TOLD = 8
-"""Processes of which what they are at is told; of more nobody reads it."""
+"""Processes whose starts are shown; nobody reads more."""
 STALE_S = 60.0
 """A worker of another host that has not touched its file for so long is gone."""
 
@@ -108,7 +108,7 @@ class Starts:
     def __init__(self, folder: Path) -> None:
         self._folder = folder / "farm" / "starts"
         self._ends = {file.name: file.stat().st_size for file in self._folder.glob("*")}
-        """Of what is told, by the names of ledgers."""
+        """Where the text that was shown ends, by the names of ledgers."""
         self._told: set[str] = set()
         self._read_at = 0.0
 

@@ -36,7 +36,7 @@ class Bench:
     """A job opened in this process: its scene, its device, and the kernels that are compiled for it."""
 
     def __init__(self, folder: str, device: str | None, say: Callable[[str], None]) -> None:
-        """say: is told what it is at. Raises promin's errors."""
+        """say: gets what it does. Raises promin's errors."""
         self.folder = Path(folder)
         self.stamp = _stamp_of(self.folder)
         self.job = jobs.open(folder)
