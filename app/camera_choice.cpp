@@ -10,6 +10,7 @@
 
 #include "camera.h"
 #include "promin/error.h"
+#include "promin/scene.h"
 #include "scene/framing.h"
 
 namespace promin::app {
@@ -191,6 +192,7 @@ void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras,
                             const Console& console) {
   const float aspect_ratio = static_cast<float>(size.x) / static_cast<float>(size.y);
   if (std::ranges::any_of(cameras, [&](const Camera& camera) { return may_see(scene, camera, aspect_ratio); })) return;
+  if (bounds_of(scene).is_empty()) return;  // what has read it says so
   const dvec3 middle = middle_of(scene) + scene.center;
   console.warn(fmt::format(
       "nothing of the scene is in the picture; --look-at {:.6g} {:.6g} {:.6g} in place of a direction shows "

@@ -52,8 +52,8 @@ struct AssumedLight {
 PROMIN_EXPORT AssumedLight light_scene(Scene& scene, LightChoice choice = LightChoice::kAuto);
 
 /// The backdrop of scenes without a background: a grey gradient, linear.
-inline constexpr float kStudioBackdropTop = 0.42F;
-inline constexpr float kStudioBackdropBottom = 0.2F;
+inline constexpr float kStudioBackdropTop = 0.85F;
+inline constexpr float kStudioBackdropBottom = 0.55F;
 /// The illuminance of the studio's directional light on a surface that faces it, lux.
 inline constexpr float kStudioLightPower = 1.35F;
 /// The studio's intensity in a scene with lights, before the exposure is taken out of it.
