@@ -331,6 +331,8 @@ void Viewer::trace() {
 
 bool Viewer::has_tracing() const {
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
+  // A frame hands over what is switched.
+  if (switches_.is_paused != traced_->picture().is_paused()) return true;
   return window_.is_moving() || window_.has_turned() || wants_screenshot_ || traced_->has_work() ||
          traced_->display().exposure_ev != display().exposure_ev ||
          !shows_same(current_view(), traced_->picture().wanted());

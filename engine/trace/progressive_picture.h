@@ -63,6 +63,7 @@ class ProgressivePicture {
   void fix_scale(std::optional<double> scale) { fixed_scale_ = scale; }
   /// While paused, nothing is refined beyond a view's first picture.
   void pause(bool is_paused) { is_paused_ = is_paused; }
+  bool is_paused() const { return is_paused_; }
 
   /// Whether there is nothing to trace.
   bool is_settled() const;
