@@ -234,7 +234,8 @@ def test_no_display_changes_unlit_colours(tmp_path: Path) -> None:
     scene.add_box((-1, 0, 0), material=scene.add_material(promin.MetallicRoughness(metallic=0)))
     scene.add_box((1, 0, 0), material=scene.add_material(promin.Unlit(color=(0.5, 0.25, 0.02))))
     camera = promin.Camera.look_at((0, 0, 6), (0, 0, 0), yfov=0.6)
-    frame = promin.Renderer(scene).render(camera=camera, size=(60, 30), spp=1)
+    behind = "linear:0.2,0.2,0.2"
+    frame = promin.Renderer(scene, background=behind).render(camera=camera, size=(60, 30), spp=1)
     assert not frame.aovs and frame.unlit is not None
     row, column = 15, int(np.argmax(frame.unlit[15, :, 3]))
     assert (frame.unlit[row, column] == np.float32((0.5, 0.25, 0.02, 1))).all()
@@ -248,7 +249,8 @@ def test_no_display_changes_unlit_colours(tmp_path: Path) -> None:
     assert (brighter[frame.unlit[..., 3] == 0] >= 0).all() and (brighter[frame.unlit[..., 3] == 0] > 20).any()
     plain = promin.Scene()
     plain.add_box()
-    assert promin.Renderer(plain).render(size=(8, 8)).unlit is None
+    assert promin.Renderer(plain, background=behind).render(size=(8, 8)).unlit is None
+    assert promin.Renderer(plain).render(size=(8, 8)).unlit[0, 0, 3] == 1, "the backdrop is shown as it is"
 
 
 def test_updates_are_whole_or_none() -> None:
@@ -388,7 +390,7 @@ def test_no_time_gives_the_first_picture_alone(box: promin.Scene) -> None:
     frame = renderer.render(size=(8, 8), time_limit=1e-9)
     assert frame.error is None and frame.metadata["promin:spp"] == "1"
     assert (renderer.render(size=(8, 8), spp=1).rgb == frame.rgb).all()
-    with pytest.raises(promin.UsageError, match="time_limit is 'soon'; give a positive number of seconds"):
+    with pytest.raises(promin.UsageError, match="time-limit takes a number from 0.001 to 1e.06, not .soon"):
         renderer.render(size=(8, 8), time_limit="soon")  # type: ignore[arg-type]
 
 

@@ -20,7 +20,7 @@ from promin import testing
 def frame() -> promin.Frame:
     scene = promin.Scene()
     scene.add_sphere()
-    return promin.Renderer(scene).render(size=(32, 24))
+    return promin.Renderer(scene, background="linear:0.2,0.2,0.2").render(size=(32, 24))
 
 
 @pytest.mark.parametrize("ending", ["exr", "png"])
