@@ -126,11 +126,15 @@ def size_of(view: View) -> tuple[int, ...]:
         return (0, 0)
     if isinstance(view.size, str):
         return _promin.read_size(view.size or "-")
-    is_width = isinstance(view.size, (int, np.integer))
-    sides = (view.size,) if is_width else _integers(view.size, 2, "size")
-    if min(sides) < 1:
+    if isinstance(view.size, (int, np.integer)):
+        sides = _integers((view.size, 0), 2, "size")
+        least = sides[0]
+    else:
+        sides = _integers(view.size, 2, "size")
+        least = min(sides)
+    if least < 1:
         raise UsageError(f"size is {view.size!r:.80}; give pixels, 1 or more each way")
-    return _integers((view.size, 0), 2, "size") if is_width else sides
+    return sides
 
 
 def limit_of(view: View) -> float | None:
