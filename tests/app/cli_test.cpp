@@ -681,7 +681,7 @@ TEST_F(InfoJsonTest, HoldsTexelsByTheirHash) {
 TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   const std::string lit = run({"info", "square.gltf"}).out;
   EXPECT_THAT(lit, ContainsRegex("lights +1 \\(point: 1.*; assumed: a studio's weaker light around the scene's own\n"));
-  EXPECT_THAT(lit, ContainsRegex("background +0.36 0.36 0.36 above to 0.17 0.17 0.17 below, as shown \\(assumed\\)\n"));
+  EXPECT_THAT(lit, ContainsRegex("background +0.85 0.85 0.85 above to 0.55 0.55 0.55 below, as shown \\(assumed\\)\n"));
   EXPECT_THAT(lit, ContainsRegex("display +exposure \\+2 EV, tone mapping neutral\n"));
 
   const std::string bare = run({"info", "triangle.obj"}).out;
