@@ -1049,7 +1049,7 @@ TEST_F(CliTest, ErrorsMayBeFractions) {
 TEST_F(CliTest, ErrorsAsTheyAreShownAreTold) {
   const auto told = [&](const OptionValues& how) {
     OptionValues words = {"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "--stats", "s.json"};
-    words.insert(words.end(), {"--target-error", "0.0625", "--background", "linear:0.01,0.01,0.01"});
+    words.insert(words.end(), {"--target-error", "0.0625", "--background", "linear:0.1,0.1,0.1"});
     words.insert(words.end(), how.begin(), how.end());
     const ProcessResult result = run(words);
     EXPECT_EQ(result.exit_code, 0) << result.err;
