@@ -407,10 +407,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   OptionTable table(command);
 
   add_scene_argument(table, options.tracing);
-  table.add_repeated("-o,--output", "FILE",
-                     "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit), or - for a PNG on "
-                     "the standard output; repeatable [the scene's name with .exr and .png, here]",
-                     [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add_repeated(
+      "-o,--output", "FILE",
+      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit), or - for a PNG on "
+      "the standard output; repeatable [the scene's name with .exr and .png, here]",
+      [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));

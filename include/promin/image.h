@@ -81,12 +81,12 @@ struct ExrOptions {
 /// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
 /// picture's display window), .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for one named
 /// "A", by which the pixels are taken as multiplied, and those of Aovs::unlit, which are shown as they are; a crop is a
-/// picture of its own; it names the scene of `metadata`), .jpg and .jpeg (the same without "A", by libjpeg-turbo, quality
-/// 92, 4:4:4), .webp (with "A", by libwebp, quality 92), .tif and .tiff (with "A") or .hdr (R, G, B linear). Equal
-/// arguments give equal bytes. The last three kinds are written by the plugin for pictures.
-/// Atomic: the picture is written to a temporary file beside the target and renamed; on failure the target is as it
-/// was. Any thread may call it. Throws UsageError for another ending, for a picture without pixels and where the
-/// pixels, a channel's values or the crop do not suit the size; RunError where the file cannot be written.
+/// picture of its own; it names the scene of `metadata`), .jpg and .jpeg (the same without "A", by libjpeg-turbo,
+/// quality 92, 4:4:4), .webp (with "A", by libwebp, quality 92), .tif and .tiff (with "A") or .hdr (R, G, B linear).
+/// Equal arguments give equal bytes. The last three kinds are written by the plugin for pictures. Atomic: the picture
+/// is written to a temporary file beside the target and renamed; on failure the target is as it was. Any thread may
+/// call it. Throws UsageError for another ending, for a picture without pixels and where the pixels, a channel's values
+/// or the crop do not suit the size; RunError where the file cannot be written.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
                                std::span<const Channel> channels = {}, const DisplayTransform& display = {},
