@@ -72,9 +72,7 @@ std::string nearest_option(const std::string& name, const CLI::App& command) {
 /// The same of the program's commands.
 std::string nearest_command(const std::string& name, const CLI::App& program) {
   std::vector<std::string> names;
-  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
+  for (const CLI::App* command : commands_of(program)) names.push_back(command->get_name());
   return nearest_of(name, names);
 }
 
@@ -92,8 +90,7 @@ void refuse_leftovers(const CLI::App& program) {
     throw UsageError({"unknown option " + name, kWhere, cure_for(path, nearest_option(name, command))});
   }
   // A program without commands is one itself.
-  const bool lacks_command =
-      &command == &program && !program.get_subcommands([](const CLI::App*) { return true; }).empty();
+  const bool lacks_command = &command == &program && !commands_of(program).empty();
   const std::string& word = leftovers.front();
   if (!lacks_command) throw UsageError({"unexpected argument " + word, kWhere, cure_for(path)});
   throw UsageError({"unknown command " + word, kWhere, cure_for(path, nearest_command(word, program))});
@@ -120,8 +117,7 @@ struct Alternative {
     return std::ranges::any_of(words, [&](const std::string& word) { return std::ranges::all_of(word, is_upper); });
   }
   static bool is_no_number(std::string_view word) {
-    double number = 0.0;
-    return !word.empty() && word.front() != '-' && !parse_number(std::string(word), number);
+    return !word.empty() && word.front() != '-' && !is_number(std::string(word));
   }
 };
 
@@ -145,9 +141,7 @@ void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& 
       found[std::string("--").append(name)] = {words, static_cast<size_t>(option->get_type_size())};
     }
   }
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    find_alternatives(*command, found);
-  }
+  for (const CLI::App* command : commands_of(app)) find_alternatives(*command, found);
 }
 
 /// The words of a command line, with each alternative repeated until it is as many words as its option takes: CLI11
@@ -170,6 +164,15 @@ std::vector<const char*> fill_up_alternatives(const std::vector<std::string>& wo
 }
 
 }  // namespace
+
+bool is_number(const std::string& word) {
+  double number = 0.0;
+  return parse_number(word, number);
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+  return program.get_subcommands([](const CLI::App*) { return true; });
+}
 
 /// Where an option stands in place of a number, values are missing.
 void OptionValues::refuse_option(size_t i) const {

@@ -96,6 +96,12 @@ struct Command {
   std::function<void()> run;
 };
 
+/// Whether a word is a decimal number and nothing else.
+bool is_number(const std::string& word);
+
+/// All commands that a program has.
+std::vector<const CLI::App*> commands_of(const CLI::App& program);
+
 /// The options and arguments that a parsed command was given, by the names that messages have, in the order of its
 /// table; with the words that give them again: of what is repeated those that hold, one where one stands for several,
 /// of a flag none.

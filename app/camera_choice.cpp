@@ -46,12 +46,6 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   return scene.cameras[index];
 }
 
-/// The middle of what is framed, in the scene.
-dvec3 middle_of(const Scene& scene) {
-  const Bounds bounds = frame_of(scene);
-  return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
-}
-
 /// Up where nobody says: +Y or, where that is the direction of view, what puts the front of the scene at the lower edge
 /// of a picture from above.
 dvec3 default_up(const dvec3& direction) {
@@ -110,9 +104,10 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
   camera.eye = vec3(*pose.eye - scene.center);
   std::optional<dvec3> direction = find_direction(pose, camera, scene.center);
   if (!direction) {
-    direction = middle_of(scene) + scene.center - *pose.eye;
+    const Bounds bounds = frame_of(scene);
+    direction = middle_of(bounds) + scene.center - *pose.eye;
     // The bounds of shapes are rounded to fp32.
-    if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(frame_of(scene).extent()))) {
+    if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(bounds.extent()))) {
       throw UsageError({"--eye is in the middle of the scene", kWhere, "give --look-at or --direction as well"});
     }
   }
@@ -193,7 +188,7 @@ void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras,
   const float aspect_ratio = static_cast<float>(size.x) / static_cast<float>(size.y);
   if (std::ranges::any_of(cameras, [&](const Camera& camera) { return may_see(scene, camera, aspect_ratio); })) return;
   if (bounds_of(scene).is_empty()) return;  // what has read it says so
-  const dvec3 middle = middle_of(scene) + scene.center;
+  const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
   console.warn(fmt::format(
       "nothing of the scene is in the picture; --look-at {:.6g} {:.6g} {:.6g} in place of a direction shows "
       "its middle, and --from three-quarter in place of a camera shows all of it",

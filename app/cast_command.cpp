@@ -20,6 +20,7 @@
 #include "console.h"
 #include "core/count_of.h"
 #include "core/file.h"
+#include "core/rounding.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "outputs.h"
@@ -34,7 +35,6 @@ namespace {
 
 /// Whether the ray misses every scene (promin/ray.h).
 bool misses_all(const Ray& ray) {
-  const auto is_finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   return !is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == vec3(0.0F) ||
          !(std::max(ray.tmin, 0.0F) < ray.tmax) || std::isnan(ray.tmin);
 }

@@ -11,12 +11,10 @@
 #include <sstream>
 #include <vector>
 
+#include "arguments.h"
+
 namespace promin::app {
 namespace {
-
-std::vector<const CLI::App*> commands_of(const CLI::App& program) {
-  return program.get_subcommands([](const CLI::App*) { return true; });
-}
 
 /// Whatever has options: the program itself, then its commands.
 std::vector<const CLI::App*> with_commands(const CLI::App& program) {

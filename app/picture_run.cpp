@@ -32,7 +32,7 @@ std::vector<Camera> cameras_of(const PictureRun& run) {
 PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame> frames, const Console& console) {
   PictureRun run{.options = given, .frames = std::move(frames), .scene = {}, .sources = {}, .stats = {}};
   apply_quality(run.options);
-  const RenderOptions options = run.options;
+  const RenderOptions& options = run.options;
   RunStats& stats = run.stats;
   run.scene = load_for(options.tracing, stats, console, run.sources);
   Scene& scene = run.scene;

@@ -118,8 +118,7 @@ void run_command(const std::string& name, const std::string& help,
   for (const auto add : add_commands) commands.push_back(add(program));
   if (argc == 3 && argv[1] == kMakeManual) return print_manual(program, argv[2]);
   // A program that is its own command has work to do without a word.
-  const bool has_commands = !program.get_subcommands([](const CLI::App*) { return true; }).empty();
-  if (argc == 1 && has_commands) {
+  if (argc == 1 && !commands_of(program).empty()) {
     fmt::print("{}", program.help());
     return;
   }

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "image/picture_endings.h"
+
 namespace promin::app {
 namespace {
 
@@ -115,7 +117,7 @@ void put_error(Metadata& metadata, const PictureError& error, uint64_t pixel_cou
 
 Metadata describe_picture(const RunStats& stats) {
   Metadata metadata = {{"promin:version", PROMIN_VERSION},
-                       {"promin:scene", stats.scene_file},
+                       {std::string(kSceneKey), stats.scene_file},
                        {"promin:device", stats.device.name},
                        {"promin:driver", stats.device.driver},
                        {"promin:size", fmt::format("{}x{}", stats.view->size.x, stats.view->size.y)},

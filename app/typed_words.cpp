@@ -4,8 +4,9 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
+
+#include "arguments.h"
 
 namespace promin::app {
 namespace {
@@ -95,17 +96,12 @@ bool has_option(const CLI::App& command, std::string_view name) {
 }
 
 bool is_command(const CLI::App& program, const std::string& word) {
-  return !program.get_subcommands([&](const CLI::App* each) { return each->get_name() == word; }).empty();
+  return std::ranges::any_of(commands_of(program), [&](const CLI::App* each) { return each->get_name() == word; });
 }
 
 const CLI::App& find_command(const CLI::App& program, const std::vector<std::string>& words) {
   const auto word = std::ranges::find_if(words, [&](const std::string& each) { return is_command(program, each); });
   return word == words.end() ? program : *program.get_subcommand(*word);
-}
-
-bool is_number(const std::string& word) {
-  double number = 0.0;
-  return std::from_chars(word.data(), word.data() + word.size(), number).ptr == word.data() + word.size();
 }
 
 /// Takes "--name VALUE" or "--name=VALUE" out of the words; the last of several holds.

@@ -292,7 +292,7 @@ Camera orbit_camera(const Camera& camera, const dvec3& target, const Orbit& orbi
 
 dvec3 orbit_target(const Scene& scene, const Camera& camera) {
   const Bounds bounds = frame_of(scene);
-  const dvec3 center = 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
+  const dvec3 center = middle_of(bounds);
   const dvec3 look = glm::normalize(dvec3(camera.look));
   const double depth = glm::dot(center - dvec3(camera.eye), look);
   return depth > 0.0 ? dvec3(camera.eye) + depth * look : center;

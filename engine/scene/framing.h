@@ -15,6 +15,11 @@ AddedLights add_default_lights(std::vector<Light>& lights, Environment& environm
 /// first plane's point or the origin. Throws InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 
+/// The point in the middle of a box that is not empty, without the rounding of Bounds::center().
+inline dvec3 middle_of(const Bounds& bounds) {
+  return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
+}
+
 /// Bounds of an object that has a geometry, if it is finite; else empty. Throws as bounds_of() does.
 Bounds bounds_of(const Scene& scene, const Object& object);
 

@@ -76,7 +76,7 @@ double illuminance_of(const Scene& scene) {
   // Bounds of a large scene take time.
   if (std::ranges::any_of(scene.lights, falls_off)) {
     const Bounds bounds = frame_of(scene);
-    center = 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
+    center = middle_of(bounds);
     least_distance = 0.25 * glm::length(dvec3(bounds.hi) - dvec3(bounds.lo));
   }
   double sum = 0.0;

@@ -46,10 +46,6 @@ std::vector<vec3> find_corners_within(const Bounds& box, const Mesh& mesh, const
   return found;
 }
 
-dvec3 middle_of(const Bounds& bounds) {
-  return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
-}
-
 }  // namespace
 
 /// Adds a geometry of an object.

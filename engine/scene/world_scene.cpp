@@ -134,7 +134,7 @@ Bounds bounds_of(const Scene& scene) {
 
 Camera look_from_front(const Scene& scene, float aspect_ratio) {
   const Bounds frame = box_to_look_at(scene);
-  const dvec3 center = 0.5 * (dvec3(frame.lo) + dvec3(frame.hi));
+  const dvec3 center = middle_of(frame);
   const dvec3 half = 0.5 * (dvec3(frame.hi) - dvec3(frame.lo));
   const double sine = std::sin(kFrontElevation);
   const double cosine = std::cos(kFrontElevation);
