@@ -15,8 +15,8 @@
 
 namespace promin::app {
 
-/// The channels of an EXR that tell a choice of AOVs, with their values; `hides_unlit`: those of Aovs::unlit are
-/// hidden. Of a wide picture either takes much memory, so what is moved here gives its own back as it goes.
+/// Returns the channels of an EXR for a choice of AOVs, with their values. With `hides_unlit` those of Aovs::unlit are
+/// hidden. AOVs and channels of a wide picture take much memory, so each AOV is freed when its channels are made.
 std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit);
 
 /// What the header of an EXR tells of these AOVs, without values.

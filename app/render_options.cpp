@@ -364,9 +364,9 @@ std::string describe_unmet(const PictureError& error) {
 namespace {
 
 constexpr uint32_t kHighSamples = 32;
-/// Of what has no error: a debug shading, or a picture that finds its own exposure.
+/// Samples of `best` where pictures have no error: with a debug shading or --exposure average.
 constexpr uint32_t kBestSamples = 128;
-/// Of shown colours, a code of 8 bits.
+/// The error of `best`: one code of 8 bits in the shown colours.
 constexpr float kBestError = 1.0F / 256.0F;
 
 std::span<const std::string_view> quality_names() {

@@ -346,7 +346,7 @@ void Viewer::begin_frame() {
   ProgressivePicture& picture = traced_->picture();
   picture.fix_scale(switches_.scale);
   picture.want(current_view());
-  // While paused, tracing goes on only as far as a screenshot needs.
+  // While paused, only what a screenshot needs is traced.
   picture.pause(switches_.is_paused && !(wants_screenshot_ && !picture.is_complete()));
   traced_->begin_frame(is_of_flight, Window::now(),
                        [this](const vk::raii::CommandBuffer& commands) { record_screenshot(commands); });

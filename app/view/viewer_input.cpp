@@ -131,7 +131,7 @@ void Viewer::print_command() {
   if (!can_describe(described_scene(view), view)) {
     return report_failure(
         fmt::format("no command of promin render gives this view: no option takes the half height "
-                    "{:g} of an orthographic camera, and the scene has none such; give the "
+                    "{:g} of an orthographic camera, and no camera of the scene has it; give the "
                     "flight to promin render --path",
                     view.camera.ymag));
   }

@@ -20,7 +20,7 @@ namespace promin {
 class PngEncoder {
  public:
   /// The bytes outlive it. Everything throws RunError where they cannot be written, std::runtime_error where libpng has
-  /// another reason. `scene` is told in an iTXt chunk named promin:scene, unless it is empty.
+  /// another reason. An iTXt chunk named promin:scene holds `scene`, unless that is empty.
   PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene = "");
   ~PngEncoder();
   PngEncoder(const PngEncoder&) = delete;

@@ -52,8 +52,8 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
 /// of it alone, and no crop or cut reaches a bit. Vulkan-free.
 class Refinement {
  public:
-  /// Of a view with an error target; the window is not empty. `has_unlit`: take() gets what samples see of
-  /// unlit surfaces.
+  /// The view has an error target, and the window is not empty. With `has_unlit` take() gets what samples see of unlit
+  /// surfaces.
   Refinement(const View& view, const PixelWindow& window, bool has_unlit = false);
 
   /// The samples to trace next, at most about `most`, whose colors take() gets before the next call. Empty where the

@@ -12,8 +12,8 @@
 namespace promin {
 
 /// The built-in surroundings for scenes without light (docs/model.md, "Studio"): a grey gradient, dark below the
-/// horizon, with four soft lamps in it, made to show form and gloss. The studio stands by the viewer of whom `front`
-/// tells. What casts its shadows is a light of its own, make_studio_light (promin/lighting.h).
+/// horizon, with four soft lamps in it, made to show form and gloss. The studio stands by the viewer, in the
+/// direction `front`. A separate light casts its shadows: make_studio_light (promin/lighting.h).
 struct Studio {
   /// The azimuth from which the scene is looked at, radians about +Y from +Z towards +X: where its front is. Finite.
   float front = 0.0F;

@@ -56,7 +56,7 @@ struct RenderResult {
   Aovs aovs;
   /// Of pictures with an error target.
   std::optional<PictureError> error;
-  /// Of pictures of a fixed number of samples; 0 with an error target.
+  /// How many samples each pixel has; 0 with an error target, where the number differs from pixel to pixel.
   uint32_t samples_per_pixel = 0;
   /// Rays of the whole picture, and where Aovs::error is told of the pixels around it, which are traced for it.
   RayCounts rays;

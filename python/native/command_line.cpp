@@ -112,7 +112,7 @@ std::vector<std::string> list_options() {
 
 using Size = std::pair<uint32_t, uint32_t>;
 
-/// Width and height of a camera's pictures of which these sides are asked, 0 being open; None where there are none.
+/// Returns width and height of a camera's pictures where these sides are requested, 0 being open. None: no size fits.
 std::optional<Size> choose_size(const nb::dict& camera, const Size& sides) {
   const std::optional<uvec2> size = app::size_for({sides.first, sides.second}, read_camera(camera));
   if (!size) return {};

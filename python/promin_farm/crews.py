@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Crews by Dask distributed: a cluster that there is, and workers that a queue starts.
 
-Of Dask is used what its versions from 2022 on have: Client, SpecCluster, Nanny. Its scheduler carries numbers and
-receipts between the foreman and the workers; where a piece is made the foreman says."""
+It uses a Client of Dask, any version from 2022 on. Dask's scheduler carries numbers and receipts between the foreman and
+the workers; the foreman decides where a piece is made."""
 
 from __future__ import annotations
 

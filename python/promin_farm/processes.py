@@ -37,7 +37,7 @@ class Seat:
 
     @property
     def environment(self) -> dict[str, str]:
-        """Of the worker's process: lavapipe reads it when the first device is opened."""
+        """Variables of the worker's process; lavapipe reads them when the first device is opened."""
         words = {"PROMIN_DEVICE": self.device} if self.device else {}
         return words | ({"LP_NUM_THREADS": str(self.threads)} if self.threads else {})
 

@@ -892,7 +892,7 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
   EXPECT_EQ(read_image(folder() / "square.png").size, uvec2(9));
   EXPECT_EQ(read_image(folder() / "square.exr").size, uvec2(9));
   for (const char* name : {"square.png", "square.exr"}) {
-    // Of another scene, and of none.
+    // A picture of another scene, and one that names no scene.
     run({"render", "triangle.obj", "-o", name, "--size", "8", "8"});
     const std::string other = read(name);
     expect_failure(run({"render", "square.gltf", "--size", "7", "7"}), 2,
