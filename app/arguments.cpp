@@ -255,7 +255,9 @@ void OptionTable::add_repeated(const std::string& names, const std::string& plac
 void OptionTable::add_required_repeated(const std::string& names, const std::string& placeholder,
                                         const std::string& help, Setter set) {
   add_repeated(names, placeholder, help, std::move(set));
-  command_.get_option(display_name(names))->required();
+  CLI::Option* option = command_.get_option(display_name(names))->required();
+  // One word or more.
+  if (option->get_positional()) option->expected(-1);
 }
 
 void OptionTable::add_hidden(const std::string& name, Setter set) {

@@ -80,6 +80,7 @@ class OptionTable {
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// An option of one word that may be given several times; the setter gets all.
   void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);
+  /// The same, which the command cannot do without; for an argument without a dash too.
   void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
                              Setter set);
   /// An option that help and suggestions do not name, as `set` refuses it. It takes one word.

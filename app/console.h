@@ -27,6 +27,7 @@ class Console {
   void details(const std::string& lines) const;
 
   bool is_quiet() const { return verbosity_ == Verbosity::kQuiet; }
+  bool is_verbose() const { return verbosity_ == Verbosity::kVerbose; }
 
  private:
   void print(const std::string& text, Verbosity least) const;

@@ -7,6 +7,7 @@
 #include "merge_command.h"
 #include "render_command.h"
 #include "run_program.h"
+#include "sheet_commands.h"
 
 int main(int argc, char** argv) {
   using namespace promin::app;
@@ -14,6 +15,6 @@ int main(int argc, char** argv) {
                      "Ray tracer in Vulkan compute shaders: glTF, OBJ, PLY, STL and NFF scenes to EXR and PNG "
                      "pictures, or rays to hits.",
                      {add_render_command, add_merge_command, add_cast_command, add_compare_command, add_info_command,
-                      add_devices_command},
+                      add_thumbnail_command, add_contact_sheet_command, add_devices_command},
                      argc, argv);
 }

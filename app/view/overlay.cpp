@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "font.h"
 #include "view/keys.h"
 
 namespace promin::app {
@@ -29,11 +30,6 @@ constexpr float kRounding = 4.0F;
 float scaled(float length) {
   return length * ImGui::GetFontSize() / kFontSize;
 }
-
-/// Where Debian and others have a font without serifs; the first that is there is taken, else ImGui's own.
-constexpr std::array kFonts = {
-    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
-    "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"};
 
 template <typename... Arguments>
 void show_text(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -202,9 +198,8 @@ void scale_overlay(const OverlayScale& scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.Fonts->Clear();
   const float size = kFontSize * static_cast<float>(scale.content);
-  const auto font =
-      std::find_if(kFonts.begin(), kFonts.end(), [](const char* file) { return std::filesystem::exists(file); });
-  if (font == kFonts.end() || io.Fonts->AddFontFromFileTTF(*font, size) == nullptr) {
+  const std::optional<std::filesystem::path> font = find_font();
+  if (!font || io.Fonts->AddFontFromFileTTF(font->c_str(), size) == nullptr) {
     ImFontConfig config;
     config.SizePixels = size;
     io.Fonts->AddFontDefault(&config);

@@ -167,6 +167,7 @@ PicturesPlugin load_plugin() {
   find_function(library, "promin_pictures_describe_part", file, plugin.describe_part);
   find_function(library, "promin_pictures_read_rows", file, plugin.read_rows);
   find_function(library, "promin_pictures_write", file, plugin.write);
+  find_function(library, "promin_pictures_draw_text", file, plugin.draw_text);
   find_function(library, "promin_pictures_close", file, plugin.close);
   return plugin;
 }

@@ -16,6 +16,7 @@ struct PicturesPlugin {
   decltype(&promin_pictures_describe_part) describe_part = nullptr;
   decltype(&promin_pictures_read_rows) read_rows = nullptr;
   decltype(&promin_pictures_write) write = nullptr;
+  decltype(&promin_pictures_draw_text) draw_text = nullptr;
   decltype(&promin_pictures_close) close = nullptr;
 };
 

@@ -3,6 +3,8 @@
 #include "image/plugin/pictures.h"
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -212,6 +214,25 @@ void write_picture(const char* file, const std::string& format, OIIO::ImageSpec 
   }
 }
 
+/// Throws std::runtime_error where the font or the text cannot be drawn.
+void draw_text(const char* font, const char* text, int width, int height, unsigned char* coverage) {
+  // Lines of text, with what hangs below them, are this much higher than their letters.
+  constexpr double kLine = 1.35;
+  constexpr int kLeastSize = 6;
+  int size = std::max(static_cast<int>(height / kLine), kLeastSize);
+  OIIO::ROI place = OIIO::ImageBufAlgo::text_size(text, size, font);
+  while (place.defined() && place.width() > width && size > kLeastSize) {
+    place = OIIO::ImageBufAlgo::text_size(text, --size, font);
+  }
+  OIIO::ImageBuf strip(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::UINT8), coverage);
+  OIIO::ImageBufAlgo::zero(strip);
+  const int x = std::max((width - place.width()) / 2 - place.xbegin, 0);
+  const int y = (height + static_cast<int>(size / kLine)) / 2;
+  if (!place.defined() || !OIIO::ImageBufAlgo::render_text(strip, x, y, text, size, font)) {
+    throw std::runtime_error(strip.has_error() ? first_line(strip.geterror()) : "the text cannot be drawn");
+  }
+}
+
 }  // namespace
 
 uint32_t promin_pictures_interface() {
@@ -314,6 +335,11 @@ int promin_pictures_write(const char* file, const char* format, uint32_t width, 
                     pixels);
     }
   });
+}
+
+int promin_pictures_draw_text(const char* font, const char* text, uint32_t width, uint32_t height,
+                              unsigned char* coverage, ProminPicturesMessage* message) {
+  return guard(message, [&] { draw_text(font, text, static_cast<int>(width), static_cast<int>(height), coverage); });
 }
 
 void promin_pictures_close(ProminPicturesReader* reader) {

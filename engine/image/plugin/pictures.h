@@ -15,7 +15,7 @@ extern "C" {
 
 /// This number changes with every change of this file. The engine refuses a plugin of another number before it calls
 /// anything else.
-#define PROMIN_PICTURES_INTERFACE 8
+#define PROMIN_PICTURES_INTERFACE 9
 
 /// The result of a call.
 enum ProminPicturesStatus {
@@ -103,6 +103,11 @@ int promin_pictures_read_rows(struct ProminPicturesReader* reader, uint32_t part
 /// pixels give equal bytes.
 int promin_pictures_write(const char* file, const char* format, uint32_t width, uint32_t height, uint32_t channel_count,
                           const void* pixels, struct ProminPicturesMessage* message);
+
+/// Draws a line of UTF-8 text by the font of a file, as large as a strip of so many pixels holds it, in the strip's
+/// middle. Fills the caller's width * height bytes with the share of each pixel that letters cover, 255 for all of it.
+int promin_pictures_draw_text(const char* font, const char* text, uint32_t width, uint32_t height,
+                              unsigned char* coverage, struct ProminPicturesMessage* message);
 
 /// Closes what promin_pictures_open gave; nothing happens to null.
 void promin_pictures_close(struct ProminPicturesReader* reader);
