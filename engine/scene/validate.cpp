@@ -3,10 +3,13 @@
 #include "promin/validate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
 
 #include "core/rounding.h"
 #include "scene/limits.h"
@@ -31,9 +34,34 @@ constexpr uint32_t kLightKindCount = 0
 #include "promin/kinds/lights.def"
     ;
 
-std::string place_of(const char* array, size_t index) {
-  return std::string(array) + "[" + std::to_string(index) + "]";
-}
+/// Names a part of a scene: "materials[3].ior". It becomes a text only where that part is wrong, as scenes have
+/// millions of parts that are right.
+class Place {
+ public:
+  Place(const char* name) : name_(name) {}  // NOLINT(google-explicit-constructor): a name is a place.
+  Place(const char* array, size_t index) : name_(array), index_(index) {}
+
+  /// A part of this part. The name must outlive the place.
+  Place operator+(const char* member) const {
+    Place part = *this;
+    part.members_.at(part.member_count_++) = member;
+    return part;
+  }
+
+  std::string text() const {
+    std::ostringstream text;
+    text << name_;
+    if (index_) text << '[' << *index_ << ']';
+    for (size_t i = 0; i < member_count_; ++i) text << members_.at(i);
+    return text.str();
+  }
+
+ private:
+  const char* name_;
+  std::optional<size_t> index_;
+  std::array<const char*, 4> members_{};
+  size_t member_count_ = 0;
+};
 
 bool is_color(const vec3& color) {
   const auto is_power = [](float value) { return value >= 0.0F && value <= kMaxPower; };
@@ -57,27 +85,33 @@ class Validation {
  public:
   explicit Validation(std::vector<Problem>& problems) : problems_(problems) {}
 
-  /// Adds a problem unless `is_so`.
-  bool check(bool is_so, const std::string& what, const std::string& where, const std::string& cure) {
-    if (!is_so) problems_.push_back({what, where, cure});
-    return is_so;
+  /// Adds a problem unless `is_so`. `what` is a sentence, or a function that makes it.
+  template <class What>
+  bool check(bool is_so, const What& what, const Place& where, const char* cure) {
+    if (is_so) return true;
+    if constexpr (std::is_invocable_v<What>) {
+      problems_.push_back({what(), where.text(), cure});
+    } else {
+      problems_.push_back({what, where.text(), cure});
+    }
+    return false;
   }
 
-  void check_color(const vec3& color, const std::string& where) {
+  void check_color(const vec3& color, const Place& where) {
     check(is_color(color), "a colour or factor is negative, beyond 1e15 or not a number", where,
           "use numbers from 0 to 1e15");
   }
 
-  void check_share(float share, const std::string& where) {
+  void check_share(float share, const Place& where) {
     check(share >= 0.0F && share <= 1.0F, "a share is not from 0 to 1", where, "stay within");
   }
 
-  void check_film(float thickness, const std::string& where) {
+  void check_film(float thickness, const Place& where) {
     check(thickness >= 0.0F && std::isfinite(thickness), "the thickness is negative or not finite", where,
           "use 0 or a positive number of nanometres");
   }
 
-  void check_model(const Phong& phong, const std::string& place) {
+  void check_model(const Phong& phong, const Place& place) {
     check_color(phong.ambient, place + ".ambient");
     check_color(phong.diffuse, place + ".diffuse");
     check_color(phong.specular, place + ".specular");
@@ -88,7 +122,7 @@ class Validation {
     check(std::isfinite(phong.shininess), "the shininess is not finite", place + ".shininess", "use a finite exponent");
   }
 
-  void check_model(const MetallicRoughness& material, const std::string& place) {
+  void check_model(const MetallicRoughness& material, const Place& place) {
     for (int i = 0; i < 3; ++i) check_share(material.base_color[i], place + ".base_color");
     check_share(material.metallic, place + ".metallic");
     check_share(material.roughness, place + ".roughness");
@@ -126,9 +160,9 @@ class Validation {
           "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
   }
 
-  void check_model(const Unlit& unlit, const std::string& place) { check_color(unlit.color, place + ".color"); }
+  void check_model(const Unlit& unlit, const Place& place) { check_color(unlit.color, place + ".color"); }
 
-  void check_place(const TextureSlot& slot, const std::string& place) {
+  void check_place(const TextureSlot& slot, const Place& place) {
     check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set",
           "take one of these");
     check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
@@ -137,7 +171,7 @@ class Validation {
   void check_materials(std::span<const Material> materials) {
     for (size_t i = 0; i < materials.size(); ++i) {
       const Material& material = materials[i];
-      const std::string place = place_of("materials", i);
+      const Place place("materials", i);
       std::visit([&](const auto& model) { check_model(model, place); }, material.model);
       check_color(material.emissive, place + ".emissive");
       for_each_slot(material, [&](const TextureSlot& slot, const char* name, ImageUse /*use*/) {
@@ -153,22 +187,27 @@ class Validation {
 
   void check_images(const Scene& scene) {
     for (size_t i = 0; i < scene.images.size(); ++i) {
-      const std::string place = place_of("images", i);
+      const Place place("images", i);
       if (!check(scene.images[i] != nullptr, "there is no image", place, "give an empty one where it is absent"))
         continue;
       const TextureImage& image = *scene.images[i];
       check(static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal), "the use is none of ImageUse",
             place + ".use", "name one that there is");
       if (image.texels.empty()) continue;
-      check(image.size.x <= kMaxTextureSide && image.size.y <= kMaxTextureSide,
-            "an image has a side over " + std::to_string(kMaxTextureSide), place + ".size", "make it smaller");
-      check(image.texels.size() == uint64_t{image.size.x} * image.size.y,
-            "there are " + std::to_string(image.texels.size()) + " texels of another number than the size says",
-            place + ".texels", "give one for each pixel, or none");
+      check(
+          image.size.x <= kMaxTextureSide && image.size.y <= kMaxTextureSide,
+          [] { return "an image has a side over " + std::to_string(kMaxTextureSide); }, place + ".size",
+          "make it smaller");
+      check(
+          image.texels.size() == uint64_t{image.size.x} * image.size.y,
+          [&] {
+            return "there are " + std::to_string(image.texels.size()) + " texels of another number than the size says";
+          },
+          place + ".texels", "give one for each pixel, or none");
     }
     for (size_t i = 0; i < scene.textures.size(); ++i) {
       const Texture& texture = scene.textures[i];
-      const std::string place = place_of("textures", i);
+      const Place place("textures", i);
       check(texture.image < scene.images.size(), "the image is out of range", place + ".image",
             "name one that there is");
       for (const TextureWrap wrap : {texture.wrap_u, texture.wrap_v}) {
@@ -179,7 +218,7 @@ class Validation {
   }
 
   /// How many textures there are is known where there is a scene.
-  void check_slot(const TextureSlot& slot, size_t texture_count, const std::string& place) {
+  void check_slot(const TextureSlot& slot, size_t texture_count, const Place& place) {
     if (!slot.exists()) return;
     check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "name one that there is");
   }
@@ -187,7 +226,7 @@ class Validation {
   void check_slots(const Scene& scene) {
     for (size_t i = 0; i < scene.materials.size(); ++i) {
       for_each_slot(scene.materials[i], [&](const TextureSlot& slot, const char* name, ImageUse /*use*/) {
-        check_slot(slot, scene.textures.size(), place_of("materials", i) + "." + name);
+        check_slot(slot, scene.textures.size(), Place("materials", i) + "." + name);
       });
     }
   }
@@ -195,7 +234,7 @@ class Validation {
   void check_lights(std::span<const Light> lights) {
     for (size_t i = 0; i < lights.size(); ++i) {
       const Light& light = lights[i];
-      const std::string place = place_of("lights", i);
+      const Place place("lights", i);
       check_color(light.diffuse, place + ".diffuse");
       check_color(light.specular, place + ".specular");
       check(is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15", place + ".position",
@@ -243,7 +282,7 @@ class Validation {
     check_color(sky.top, "environment.sky.top");
     check_color(sky.horizon, "environment.sky.horizon");
     check_color(sky.bottom, "environment.sky.bottom");
-    const auto check_curve = [&](float curve, const std::string& where) {
+    const auto check_curve = [&](float curve, const Place& where) {
       check(curve > 0.0F && std::isfinite(curve), "the curve is not positive", where, "use 1 for an even transition");
     };
     check_curve(sky.top_curve, "environment.sky.top_curve");
@@ -251,7 +290,7 @@ class Validation {
   }
 
   void check_sky(const Panorama& panorama) {
-    const std::string place = "environment.sky.image";
+    const Place place = "environment.sky.image";
     if (!check(panorama.image != nullptr, "the panorama has no picture", place, "give it one")) return;
     const Image& image = *panorama.image;
     const uint64_t pixel_count = uint64_t{image.size.x} * image.size.y;
@@ -270,7 +309,7 @@ class Validation {
 
   void check_cameras(std::span<const Camera> cameras) {
     for (size_t i = 0; i < cameras.size(); ++i) {
-      const std::string place = place_of("cameras", i);
+      const Place place("cameras", i);
       check(is_in_range(dvec3(cameras[i].eye)), "the eye is not finite or beyond 1e15", place + ".eye",
             "use a smaller coordinate");
       const uvec2& resolution = cameras[i].resolution;
@@ -281,7 +320,7 @@ class Validation {
     }
   }
 
-  void check_camera(const Camera& camera, const std::string& place) {
+  void check_camera(const Camera& camera, const Place& place) {
     const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::length(camera.up) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::dot(camera.look, camera.up)) <= kBasisTolerance;
@@ -345,26 +384,30 @@ class Validation {
 
   void check_geometry(const Scene& scene, size_t index) {
     if (const auto* mesh = std::get_if<Mesh>(&scene.geometries[index])) {
-      check_mesh(*mesh, scene, place_of("geometries", index));
+      check_mesh(*mesh, scene, Place("geometries", index));
     }
   }
 
   /// Checks an object's references. False where it names what is not there.
   bool check_references(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
-    const std::string place = place_of("objects", index);
-    const bool has_material = check(object.material < scene.materials.size(),
-                                    "the material " + std::to_string(object.material) + " is out of range, there are " +
-                                        std::to_string(scene.materials.size()),
-                                    place + ".material", "name one that there is");
-    const bool has_geometry = check(object.geometry < scene.geometries.size(),
-                                    "the geometry " + std::to_string(object.geometry) + " is out of range, there are " +
-                                        std::to_string(scene.geometries.size()),
-                                    place + ".geometry", "name one that there is, or Object::kNoGeometry");
+    const Place place("objects", index);
+    const auto describe = [](const char* kind, uint32_t named, size_t count) {
+      return [=] {
+        return std::string("the ") + kind + " " + std::to_string(named) + " is out of range, there are " +
+               std::to_string(count);
+      };
+    };
+    const bool has_material =
+        check(object.material < scene.materials.size(), describe("material", object.material, scene.materials.size()),
+              place + ".material", "name one that there is");
+    const bool has_geometry =
+        check(object.geometry < scene.geometries.size(), describe("geometry", object.geometry, scene.geometries.size()),
+              place + ".geometry", "name one that there is, or Object::kNoGeometry");
     return has_material && has_geometry;
   }
 
-  void check_transform(const Object& object, const std::string& place) {
+  void check_transform(const Object& object, const Place& place) {
     const dmat4& m = object.world_from_object;
     bool is_finite = true;
     for (int column = 0; column < 4; ++column) {
@@ -383,7 +426,7 @@ class Validation {
   /// Checks an object whose references are there.
   void check_placed(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
-    const std::string place = place_of("objects", index);
+    const Place place("objects", index);
     const size_t before = problems_.size();
     check_transform(object, place + ".world_from_object");
     if (problems_.size() > before) return;
@@ -392,7 +435,7 @@ class Validation {
   }
 
  private:
-  void check_in_world(const Mesh& mesh, const Object& object, const std::string& place) {
+  void check_in_world(const Mesh& mesh, const Object& object, const Place& place) {
     Bounds box;
     for (const vec3& position : mesh.positions) box.extend(position);
     for (int corner = 0; corner < 8 && !mesh.positions.empty(); ++corner) {
@@ -406,7 +449,7 @@ class Validation {
   }
 
   template <class Shape>
-  void check_in_world(const Shape& shape, const Object& object, const std::string& place) {
+  void check_in_world(const Shape& shape, const Object& object, const Place& place) {
     const Placement placement(object.world_from_object);
     if (!check(promin::place(shape, placement).has_value(), "the shape does not keep its form under the transform",
                place + ".world_from_object", "scale it alike, or use a mesh")) {
@@ -415,21 +458,23 @@ class Validation {
     check(is_in_range(center_of(shape, placement)), "the shape lies beyond 1e15 in the world", place,
           "use a smaller translation");
     for (const NamedSize& size : sizes_of(shape, placement)) {
-      check(is_valid(size), "the " + std::string(size.name) + " is " + std::to_string(size.size) + " in the world",
-            place, "use sizes and scales that leave it between 1e-22 and 1e15");
+      check(
+          is_valid(size),
+          [&] { return "the " + std::string(size.name) + " is " + std::to_string(size.size) + " in the world"; }, place,
+          "use sizes and scales that leave it between 1e-22 and 1e15");
     }
   }
 
   /// The first element that is wrong, if any is.
   template <class Elements, class IsRight>
-  void check_each(const Elements& elements, const IsRight& is_right, const char* what, const std::string& place,
+  void check_each(const Elements& elements, const IsRight& is_right, const char* what, const Place& place,
                   const char* cure) {
     const auto wrong = std::find_if_not(elements.begin(), elements.end(), is_right);
     if (wrong == elements.end()) return;
-    check(false, what, place + "[" + std::to_string(wrong - elements.begin()) + "]", cure);
+    problems_.push_back({what, place.text() + "[" + std::to_string(wrong - elements.begin()) + "]", cure});
   }
 
-  void check_mesh(const Mesh& mesh, const Scene& scene, const std::string& place) {
+  void check_mesh(const Mesh& mesh, const Scene& scene, const Place& place) {
     const size_t vertices = mesh.positions.size();
     check_each(
         mesh.positions, [](const vec3& p) { return is_in_range(dvec3(p)); },
@@ -456,9 +501,10 @@ class Validation {
         mesh.triangle_materials, [&](uint32_t material) { return material < scene.materials.size(); },
         "a material is out of range", place + ".triangle_materials", "name one that there is");
     const auto check_count = [&](size_t count, size_t wanted, const char* array, const char* one) {
-      check(count == 0 || count == wanted,
-            "there are " + std::to_string(count) + " where there are " + std::to_string(wanted) + one, place + array,
-            "give none, or one each");
+      check(
+          count == 0 || count == wanted,
+          [&] { return "there are " + std::to_string(count) + " where there are " + std::to_string(wanted) + one; },
+          place + array, "give none, or one each");
     };
     check_count(mesh.normals.size(), vertices, ".normals", " positions");
     check_count(mesh.colors.size(), vertices, ".colors", " positions");

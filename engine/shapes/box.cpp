@@ -66,7 +66,7 @@ dmat3 axes_of(const vec3& turn) {
 
 std::optional<world::Box> place(const Box& box, const Placement& placement) {
   if (!placement.keeps_boxes()) return std::nullopt;
-  const std::vector<NamedSize> sizes = sizes_of(box, placement);
+  const NamedSizes sizes = sizes_of(box, placement);
   Orientation given;
   for (int i = 0; i < 3; ++i) {
     given.axes[i] = dvec3(0.0);
@@ -79,7 +79,7 @@ std::optional<world::Box> place(const Box& box, const Placement& placement) {
   return world::Box{vec3(center_of(box, placement)), vec3(nearest.half_size), vec3(turn_of(nearest.axes))};
 }
 
-std::vector<NamedSize> sizes_of(const Box& box, const Placement& placement) {
+NamedSizes sizes_of(const Box& box, const Placement& placement) {
   return {{"half width", box.half_size.x * placement.scale_along(dvec3(1, 0, 0))},
           {"half height", box.half_size.y * placement.scale_along(dvec3(0, 1, 0))},
           {"half depth", box.half_size.z * placement.scale_along(dvec3(0, 0, 1))}};

@@ -9,14 +9,14 @@ namespace promin {
 
 std::optional<world::Capsule> place(const Capsule& capsule, const Placement& placement) {
   if (!placement.keeps_spheres()) return std::nullopt;
-  const std::vector<NamedSize> sizes = sizes_of(capsule, placement);
+  const NamedSizes sizes = sizes_of(capsule, placement);
   const dvec3 axis = placement.direction(capsule.axis);
   return world::Capsule{vec3(center_of(capsule, placement)), vec3(axis / glm::length(axis)),
                         static_cast<float>(sizes[0].size), static_cast<float>(sizes[1].size),
                         static_cast<float>(sizes[2].size)};
 }
 
-std::vector<NamedSize> sizes_of(const Capsule& capsule, const Placement& placement) {
+NamedSizes sizes_of(const Capsule& capsule, const Placement& placement) {
   const double scale = placement.scale_along(capsule.axis);
   // If both radii are 0 neither may be.
   return {{"half height", capsule.half_height * scale, true},

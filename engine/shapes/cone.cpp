@@ -9,14 +9,14 @@ namespace promin {
 
 std::optional<world::Cone> place(const Cone& cone, const Placement& placement) {
   if (!placement.keeps_cylinders(cone.axis)) return std::nullopt;
-  const std::vector<NamedSize> sizes = sizes_of(cone, placement);
+  const NamedSizes sizes = sizes_of(cone, placement);
   const dvec3 axis = placement.direction(cone.axis);
   return world::Cone{vec3(center_of(cone, placement)),  vec3(axis / glm::length(axis)),
                      static_cast<float>(sizes[0].size), static_cast<float>(sizes[1].size),
                      static_cast<float>(sizes[2].size), cone.is_open};
 }
 
-std::vector<NamedSize> sizes_of(const Cone& cone, const Placement& placement) {
+NamedSizes sizes_of(const Cone& cone, const Placement& placement) {
   const double scale = placement.scale_across(cone.axis);
   // Of two that are 0 neither may be.
   return {{"half height", cone.half_height * placement.scale_along(cone.axis)},

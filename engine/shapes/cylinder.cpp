@@ -7,13 +7,13 @@ namespace promin {
 
 std::optional<world::Cylinder> place(const Cylinder& cylinder, const Placement& placement) {
   if (!placement.keeps_cylinders(cylinder.axis)) return std::nullopt;
-  const std::vector<NamedSize> sizes = sizes_of(cylinder, placement);
+  const NamedSizes sizes = sizes_of(cylinder, placement);
   const dvec3 axis = placement.direction(cylinder.axis);
   return world::Cylinder{vec3(center_of(cylinder, placement)), vec3(axis / glm::length(axis)),
                          static_cast<float>(sizes[0].size), static_cast<float>(sizes[1].size), cylinder.is_open};
 }
 
-std::vector<NamedSize> sizes_of(const Cylinder& cylinder, const Placement& placement) {
+NamedSizes sizes_of(const Cylinder& cylinder, const Placement& placement) {
   return {{"half height", cylinder.half_height * placement.scale_along(cylinder.axis)},
           {"radius", cylinder.radius * placement.scale_across(cylinder.axis)}};
 }

@@ -50,7 +50,8 @@ Placement::Placement(const dmat4& m)
     : origin_(m[3]), columns_{dvec3(m[0]), dvec3(m[1]), dvec3(m[2])}, is_identity_(m == dmat4(1.0)) {}
 
 bool Placement::keeps_spheres() const {
-  return keeps_cylinders(dvec3(0, 1, 0)) && is_close(glm::length(columns_[1]), glm::length(columns_[0]));
+  return is_identity_ ||
+         (keeps_cylinders(dvec3(0, 1, 0)) && is_close(glm::length(columns_[1]), glm::length(columns_[0])));
 }
 
 bool Placement::keeps_cylinders(const dvec3& axis) const {

@@ -13,7 +13,7 @@ std::optional<world::Plane> place(const Plane& plane, const Placement& placement
   return world::Plane{vec3(center_of(plane, placement)), vec3(1.0 / length * normal)};
 }
 
-std::vector<NamedSize> sizes_of(const Plane&, const Placement&) {
+NamedSizes sizes_of(const Plane&, const Placement&) {
   return {};
 }
 

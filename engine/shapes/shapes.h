@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <initializer_list>
 #include <optional>
-#include <vector>
 
 #include "promin/shapes.h"
 #include "shapes/placement.h"
@@ -22,6 +24,23 @@ struct NamedSize {
   bool may_be_zero = false;
 };
 
+/// The sizes of a shape, at most three, without memory of their own: every shape of a scene is asked for them.
+class NamedSizes {
+ public:
+  NamedSizes(std::initializer_list<NamedSize> sizes) : count_(sizes.size()) {
+    std::copy(sizes.begin(), sizes.end(), sizes_.begin());
+  }
+
+  const NamedSize* begin() const { return sizes_.data(); }
+  const NamedSize* end() const { return begin() + count_; }
+  const NamedSize& front() const { return sizes_.front(); }
+  const NamedSize& operator[](size_t i) const { return sizes_.at(i); }
+
+ private:
+  std::array<NamedSize, 3> sizes_;
+  size_t count_;
+};
+
 /// From device records back to the numbers they hold; for each shape a specialisation in its own file.
 template <class Shape>
 Shape unpack(const layout::Primitive& primitive);
@@ -34,7 +53,7 @@ Shape unpack(const layout::Primitive& primitive);
 //   unpack     the same numbers back
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)               \
   std::optional<world::TYPE> place(const TYPE& shape, const Placement& placement); \
-  std::vector<NamedSize> sizes_of(const TYPE& shape, const Placement& placement);  \
+  NamedSizes sizes_of(const TYPE& shape, const Placement& placement);              \
   dvec3 center_of(const TYPE& shape, const Placement& placement);                  \
   layout::Primitive pack(const world::TYPE& shape);                                \
   template <>                                                                      \

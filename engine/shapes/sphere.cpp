@@ -11,7 +11,7 @@ std::optional<world::Sphere> place(const Sphere& sphere, const Placement& placem
                        static_cast<float>(sizes_of(sphere, placement).front().size)};
 }
 
-std::vector<NamedSize> sizes_of(const Sphere& sphere, const Placement& placement) {
+NamedSizes sizes_of(const Sphere& sphere, const Placement& placement) {
   return {{"radius", sphere.radius * placement.scale_across(dvec3(0, 1, 0))}};
 }
 
