@@ -6,6 +6,7 @@ Needs slurm-wlm and munge (tools/setup --queue) and root, as daemons that switch
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import shutil
@@ -157,6 +158,15 @@ def slurm(tmp_path: Path) -> Iterator[Slurm]:
         one.stop()
 
 
+def is_at_a_piece(farm: Farm, pids: list[int]) -> bool:
+    """Whether a worker of one of these processes has begun a piece that is not done."""
+    for ledger in farm.job.glob("ledger/*.jsonl"):
+        lines = ledger.read_text().splitlines()
+        if int(ledger.stem.rpartition("-")[2]) in pids and lines and json.loads(lines[-1])["event"] == "begun":
+            return True
+    return False
+
+
 def test_workers_of_slurm_of_which_a_node_dies(farm: Farm, slurm: Slurm) -> None:
     pytest.importorskip("dask_jobqueue")
     farm.write_scene(40, ms=500)
@@ -169,6 +179,7 @@ def test_workers_of_slurm_of_which_a_node_dies(farm: Farm, slurm: Slurm) -> None
         "--queue-config", configuration, **slurm.environment,
     )  # fmt: skip
     wait_for(lambda: len(set(farm.worker_pids())) == 2 and len(set(farm.events("done"))) > 4, 90)
+    wait_for(lambda: is_at_a_piece(farm, slurm.pids_of("n2")))
     slurm.kill_node("n2")
     out, err = process.communicate(timeout=200)
     assert process.returncode == 0, (out, err)
@@ -182,7 +193,7 @@ def test_an_array_of_slurm_of_which_a_node_dies(farm: Farm, slurm: Slurm) -> Non
     farm.render("--prepare")
     array = slurm.submit(farm, ["work", str(farm.job), "--quiet"], "--array=0-3")
     after = slurm.submit(farm, ["resume", str(farm.job), "--quiet"], f"--dependency=afterany:{array}")
-    wait_for(lambda: len(set(farm.events("done"))) > 3 and slurm.pids_of("n2"), 60)
+    wait_for(lambda: len(set(farm.events("done"))) > 3 and is_at_a_piece(farm, slurm.pids_of("n2")), 60)
     slurm.kill_node("n2")
     time.sleep(1)
     slurm.start_node("n2")
