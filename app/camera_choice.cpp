@@ -139,7 +139,7 @@ Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio) {
 const Camera* find_file_camera(const Scene& scene, const ViewOptions& options) {
   if (options.given_camera) return nullptr;
   if (options.camera) return &find_camera(scene, *options.camera);
-  return scene.cameras.empty() || options.pose.from ? nullptr : &scene.cameras.front();
+  return scene.cameras.empty() || options.pose.from || options.frames_scene ? nullptr : &scene.cameras.front();
 }
 
 Framing choose_framing(const Scene& scene, const PoseOptions& pose) {

@@ -78,7 +78,8 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
   choose_tree(options.tracing, result);
   result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
   result.force_all_features = options.has_all_features;
-  result.has_error_target = options.error.is_given();
+  // A time limit begins with a picture of one sample a pixel.
+  result.has_error_target = options.error.target && !options.error.time_limit_s;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
   result.aovs = options.aovs;
   // The average takes pixels that hit something.

@@ -67,17 +67,19 @@ std::string describe_samples(const RunStats& stats) {
 /// The options that give the last picture of a time limit again.
 std::string describe_reached(const RunStats& stats) {
   const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
-  if (!stats.view->error_target) return fmt::format("the picture{} of --spp {}", name, stats.view->samples_per_pixel);
+  if (!stats.view->error_target)
+    return fmt::format("the same picture{} again: --spp {}", name, stats.view->samples_per_pixel);
   ErrorTarget target = *stats.view->error_target;
   target.error = stats.errors.back().target;
-  return fmt::format("the picture{} of {}", name, describe_options(target));
+  return fmt::format("the same picture{} again: {}", name, describe_options(target));
 }
 
 /// Says what a time limit has come to.
 void tell_reached(const RunStats& stats, double limit_s, double taken_s, const Console& console) {
   if (taken_s > kLateShare * limit_s) {
-    console.note(fmt::format("{:.1f} s instead of {:g} s: loading, compiling and one sample a pixel took the time",
-                             taken_s, limit_s));
+    const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
+    console.note(fmt::format("the picture took {:.1f} s, not {:g} s{}", taken_s, limit_s,
+                             is_least ? ": even one sample a pixel takes longer" : ""));
   }
   console.note(describe_reached(stats));
 }

@@ -70,6 +70,8 @@ struct ViewOptions {
   std::vector<uint32_t> lights_off;
   /// The name or number of a camera.
   std::optional<std::string> camera;
+  /// Whether the scene's cameras are left out unless one is named: the scene is framed.
+  bool frames_scene = false;
   /// A pose that takes the place of the scene's cameras.
   std::optional<Camera> given_camera;
   PoseOptions pose;

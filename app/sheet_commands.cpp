@@ -181,6 +181,7 @@ Command add_thumbnail_command(CLI::App& program) {
   CLI::App& command = add_command(program, "thumbnail", "Write a small picture of a scene, as file managers show it");
   const auto options = std::make_shared<RenderOptions>();
   options->view.size = uvec2(kThumbnailSide);
+  options->view.frames_scene = true;
   OptionTable table(command);
   add_scene_argument(table, options->tracing);
   table.add_required("OUTPUT", "", "Picture to write; a PNG where its name has no ending",
@@ -193,6 +194,7 @@ Command add_thumbnail_command(CLI::App& program) {
 Command add_contact_sheet_command(CLI::App& program) {
   CLI::App& command = add_command(program, "contact-sheet", "Write one picture of many scenes, each with its name");
   const auto options = std::make_shared<SheetOptions>();
+  options->each.view.frames_scene = true;
   OptionTable table(command);
   table.add_required_repeated("SCENES", "", "Scene files, in the order of the sheet",
                               [=](const OptionValues& w) { options->scenes.assign(w.all().begin(), w.all().end()); });

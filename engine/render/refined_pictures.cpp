@@ -19,8 +19,10 @@ constexpr double kListedCost = 1.5;
 constexpr double kTimesFirstError = 2.0;
 /// The share of the remaining time that a picture of fixed samples is planned to take.
 constexpr double kPlannedShare = 0.85;
-/// A picture that takes longer than this factor of the limit is abandoned.
-constexpr double kLongest = 1.1;
+/// A picture that takes longer than this factor of the limit, or is foretold to, is abandoned.
+constexpr double kLongest = 1.15;
+/// A picture of which this share is traced foretells how long it takes.
+constexpr double kForetells = 0.1;
 
 }  // namespace
 
@@ -164,24 +166,38 @@ RenderResult PictureTracer::render_within(const View& view, double seconds, cons
   View fixed = view;
   fixed.error_target.reset();
   fixed.samples_per_pixel = 1;
-  RenderResult first = render(fixed, tell);
-  const double compiling_ms = elapsed.ms() - first.trace_ms;
-  const double left_ms = limit_ms - elapsed.ms();
-  const double refining_ms = compiling_ms + kListedCost * first.trace_ms * view.error_target->min_samples;
-  const double samples = std::floor(kPlannedShare * left_ms / std::max(first.trace_ms, 1e-3));
-  if (samples < 2.0) return first;
-  bool is_late = false;
-  const auto tell_in_time = [&](double fraction) {
-    is_late = elapsed.ms() > kLongest * limit_ms;
-    return !is_late && tell(fraction);
-  };
-  try {
-    if (kTimesFirstError * refining_ms < left_ms) return refine_within(view, 1e-3 * left_ms, tell_in_time);
+  RenderResult best = render(fixed, tell);
+  // What refines takes as long to compile as what has traced this picture, before this call or in it.
+  const double compiling_ms = std::max(elapsed.ms() - best.trace_ms, stats_.pipeline_ms);
+  const double refining_ms = compiling_ms + kListedCost * best.trace_ms * view.error_target->min_samples;
+  if (kTimesFirstError * refining_ms < limit_ms - elapsed.ms()) {
+    bool is_late = false;
+    try {
+      return refine_within(view, seconds - 1e-3 * elapsed.ms(), [&](double fraction) {
+        is_late = elapsed.ms() > kLongest * limit_ms;
+        return !is_late && tell(fraction);
+      });
+    } catch (const Cancelled&) {
+      if (!is_late) throw;
+      return best;
+    }
+  }
+  for (double ms_a_sample = std::max(best.trace_ms, 1e-3);;) {
+    const double begin_ms = elapsed.ms();
+    const double samples = std::floor(kPlannedShare * (limit_ms - begin_ms) / ms_a_sample);
+    if (samples < 2.0) return best;
     fixed.samples_per_pixel = static_cast<uint32_t>(std::min(samples, double{kMaxSamplesPerPixel}));
-    return render(fixed, tell_in_time);
-  } catch (const Cancelled&) {
-    if (!is_late) throw;
-    return first;
+    bool is_late = false;
+    try {
+      return render(fixed, [&](double fraction) {
+        const double taken_ms = elapsed.ms() - begin_ms;
+        ms_a_sample = taken_ms / (fraction * fixed.samples_per_pixel);
+        is_late = fraction > kForetells && begin_ms + taken_ms / fraction > kLongest * limit_ms;
+        return !is_late && tell(fraction);
+      });
+    } catch (const Cancelled&) {
+      if (!is_late) throw;
+    }
   }
 }
 

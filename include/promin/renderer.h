@@ -75,7 +75,8 @@ struct RendererOptions {
   std::optional<std::filesystem::path> bvh = std::nullopt;
   /// What the first pictures will show: its pipeline is compiled at once, others as they are asked for.
   RenderMode mode = {};
-  /// Whether the first pictures have an error target, for which another pipeline is compiled.
+  /// Whether the first pictures have an error target, for which another pipeline is compiled. render_within begins
+  /// without.
   bool has_error_target = false;
   /// About how many samples all pictures will have together, over all pixels. Where they are few, kernels are taken
   /// that are compiled sooner and trace slower. Pictures have the same bits.
@@ -119,9 +120,9 @@ class PROMIN_EXPORT Renderer {
   /// The best whole picture that fits into about `seconds`, compilation included. It begins with one sample a pixel.
   /// Where there is time it refines to an error of 1/8 and below, down to the view's own, in steps of the root of 2:
   /// PictureError::target has the last. With less time it takes a fixed number of samples, RenderResult::
-  /// samples_per_pixel. `render` gives the same bits by either number. What takes longer than 1.1 of the time is
-  /// abandoned, and the picture of one sample is the result, which is never abandoned. Takes 200 bytes of memory a
-  /// pixel. `seconds` is finite; at most 0: one sample. Throws as `render`, and UsageError for a view without an error
+  /// samples_per_pixel. `render` gives the same bits by either number. What takes longer than 1.15 of the time, or
+  /// is foretold to when a tenth is traced, is abandoned: fewer samples come in its place, or the picture of one sample,
+  /// which is never abandoned. Takes 200 bytes of memory a pixel. `seconds` is finite; at most 0: one sample. Throws as `render`, and UsageError for a view without an error
   /// target.
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress = {});
 

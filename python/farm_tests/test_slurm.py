@@ -6,6 +6,7 @@ Needs slurm-wlm and munge (tools/setup --queue) and root, as daemons that switch
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shlex
@@ -105,8 +106,11 @@ class Slurm:
     def kill_node(self, name: str) -> None:
         """The node with all that runs on it, as if its power were cut."""
         self._daemons.pop(name).kill()
-        for pid in self.pids_of(name):
-            os.kill(pid, signal.SIGKILL)
+        # What starts while others are killed is killed in the next turn.
+        while pids := self.pids_of(name):
+            for pid in pids:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
 
     def pids_of(self, name: str) -> list[int]:
         """Processes of the node's jobs."""

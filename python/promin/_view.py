@@ -115,6 +115,11 @@ def has_target(view: View) -> bool:
     return view.target_error is not None or view.time_limit is not None
 
 
+def begins_with_target(view: View) -> bool:
+    """Whether the first picture has an error target: a time limit begins with one sample a pixel."""
+    return view.target_error is not None and view.time_limit is None
+
+
 def mode_of(view: View) -> dict[str, Any]:
     """What of the view is compiled in."""
     return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}

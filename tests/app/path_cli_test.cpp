@@ -120,10 +120,10 @@ TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
   const ProcessResult limited = render_path({"--frames", "0-1", "-o", "limited#.exr", "--time-limit", "2s", "--size",
                                              "320", "180", "--max-spp", "4096", "--background", "0", "0", "0"});
   ASSERT_EQ(limited.exit_code, 0) << limited.err;
-  EXPECT_THAT(limited.err, HasSubstr("of frame 1 of --target-error 1.5258789e-05 "));
-  EXPECT_THAT(limited.err, Not(HasSubstr("of frame 0 of --target-error 1.5258789e-05 ")));
+  EXPECT_THAT(limited.err, HasSubstr("of frame 1 again: --target-error 1.5258789e-05 "));
+  EXPECT_THAT(limited.err, Not(HasSubstr("of frame 0 again: --target-error 1.5258789e-05 ")));
   for (const std::string number : {"0", "1"}) {
-    const std::string before = "the picture of frame " + number + " of ";
+    const std::string before = "the same picture of frame " + number + " again: ";
     const size_t place = limited.err.find(before);
     ASSERT_NE(place, std::string::npos) << limited.err;
     const size_t begin = place + before.size();

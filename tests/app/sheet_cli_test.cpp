@@ -31,14 +31,15 @@ TEST_F(ContactSheetTest, AThumbnailIsTheRenderedPicture) {
   std::filesystem::rename(folder() / "thumbnail", folder() / "thumbnail.png");
   const Image thumbnail = read_image(folder() / "thumbnail.png");
   EXPECT_EQ(thumbnail.size, uvec2(32));
-  EXPECT_EQ(thumbnail.pixels, render({"square.gltf", "--size", "32x32"}, "picture.png").pixels);
+  EXPECT_EQ(thumbnail.pixels,
+            render({"square.gltf", "--from", "three-quarter", "--size", "32x32"}, "picture.png").pixels);
 }
 
 TEST_F(ContactSheetTest, ColorsWithoutLightKeepClearOfToneMapping) {
   write("mixed.gltf", make_mixed_gltf());
   ASSERT_EQ(run({"thumbnail", "mixed.gltf", "thumbnail.png", "32"}).exit_code, 0);
   EXPECT_EQ(read_image(folder() / "thumbnail.png").pixels,
-            render({"mixed.gltf", "--size", "32x32"}, "picture.png").pixels);
+            render({"mixed.gltf", "--from", "three-quarter", "--size", "32x32"}, "picture.png").pixels);
 }
 
 TEST_F(ContactSheetTest, ASheetHasThePicturesAndTheirNames) {
@@ -48,7 +49,7 @@ TEST_F(ContactSheetTest, ASheetHasThePicturesAndTheirNames) {
   const Image sheet = read_image(folder() / "sheet.png");
   // Two columns and rows with a gap of 12 around, names of 20 pixels below.
   ASSERT_EQ(sheet.size, uvec2(12 + 2 * (32 + 12), 12 + 2 * (24 + 20 + 12)));
-  const OptionValues options = {"--size", "32x24", "--exposure", "-1"};
+  const OptionValues options = {"--from", "three-quarter", "--size", "32x24", "--exposure", "-1"};
   const auto rendered = [&](const std::string& scene) {
     OptionValues arguments = options;
     arguments.insert(arguments.begin(), scene);
