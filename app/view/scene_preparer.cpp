@@ -226,10 +226,13 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, SceneO
       features |= layout::FEATURE_UNLIT_SHARE;
     }
     if (request.is_draft) features = without_slow_parts(features);
+    FilmOptions film_options;
+    // A draft gives way too soon for more to repay compiling.
+    if (request.is_draft) film_options.expected_samples = 0;
     const bool is_light = request.mode.debug_view == DebugView::kNone;
     picture = std::make_unique<TracedPicture>(std::move(on), features, budget_ms_,
                                               is_light ? scene->display : DisplayTransform(),
-                                              [scene] { return scene->set_apart(); });
+                                              [scene] { return scene->set_apart(); }, film_options);
     picture->resize(request.size);
     picture->warm_up();
   });

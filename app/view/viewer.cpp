@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -111,7 +112,8 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     if (frames_to_draw_ == 0) keep_camera();
   }
   move_camera(false);
-  console_.detail(fmt::format("no input waited longer than {:.0f} ms", window_.longest_turn_ms()));
+  console_.detail(fmt::format("no input waited longer than {:.0f} ms, for work of at most {:.0f} ms; {} keys pressed",
+                              window_.longest_turn_ms(), window_.longest_work_ms(), window_.key_count()));
   // A screenshot under way is written.
   while (on_copied_) trace();
 }
@@ -264,6 +266,7 @@ void Viewer::update_answers() {
   try {
     if (std::optional<ExplainedPixel> answer = query_.take_explained()) {
       explained_ = std::move(*answer);
+      console_.detail(fmt::format("explained: {}; {} keys pressed before", explained_->title, window_.key_count()));
       console_.details(explain_text(explained_->explanation, *explained_->scene));
       draw_again();
     }
@@ -318,6 +321,7 @@ void Viewer::trace() {
   if (!frames_.is_idle()) return;
   if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
     display_.take(*encoded);
+    log_shown();
     frames_to_draw_ = std::max(frames_to_draw_, 1);
   }
   // The ready picture takes its place, so no new frame may begin.
@@ -327,6 +331,16 @@ void Viewer::trace() {
     traced_->resize(swapchain_.size());
   }
   if (has_tracing()) begin_frame();
+}
+
+void Viewer::log_shown() {
+  static constexpr std::array kWords = {"nothing", "a draft", "a picture", "a refined picture"};
+  const bool is_refined = traced_->picture().shown()->error.has_value();
+  const Shown shown = is_draft_ ? Shown::kDraft : is_refined ? Shown::kRefined : Shown::kWhole;
+  if (shown <= best_shown_) return;
+  best_shown_ = shown;
+  console_.detail(fmt::format("shown: {}; {} keys pressed before", kWords[static_cast<size_t>(shown)],
+                              window_.key_count()));
 }
 
 bool Viewer::has_tracing() const {

@@ -119,6 +119,8 @@ class Viewer {
   /// Takes finished frames, and begins the next.
   void trace();
   void take_finished(const FinishedFrame& finished);
+  /// Says when a better kind of picture is shown first, if verbose.
+  void log_shown();
   bool has_tracing() const;
   void begin_frame();
   void record_screenshot(const vk::raii::CommandBuffer& commands);
@@ -138,6 +140,9 @@ class Viewer {
   View view_of_middle() const;
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
+
+  /// The kinds of pictures that come one after the other.
+  enum class Shown { kNothing, kDraft, kWhole, kRefined };
 
   /// ImGui settles its windows within this many frames.
   static constexpr int kSettlingFrames = 3;
@@ -193,6 +198,7 @@ class Viewer {
   std::function<void(const FinishedFrame&)> on_copied_;
 
   FrameStatistics statistics_;
+  Shown best_shown_ = Shown::kNothing;
   /// The work beside the picture as the overlay shows it.
   std::string shown_awaited_;
   std::string message_;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <utility>
 
 #include "promin/error.h"
@@ -47,6 +48,13 @@ GLFWmonitor* find_monitor(GLFWwindow* window) {
     }
   }
   return areas.empty() ? nullptr : monitors[find_display(areas, place)];
+}
+
+/// The seconds that this thread has had a processor.
+double work_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 #ifdef GLFW_PLATFORM
@@ -120,6 +128,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   Callbacks::set(window_);
   ask_display();
   last_wait_s_ = now();
+  last_wait_work_s_ = work_seconds();
 }
 
 Window::~Window() {
@@ -165,8 +174,10 @@ double Window::now() {
 
 void Window::wait(double seconds) {
   longest_turn_s_ = std::max(longest_turn_s_, now() - last_wait_s_);
+  longest_work_s_ = std::max(longest_work_s_, work_seconds() - last_wait_work_s_);
   glfwWaitEventsTimeout(seconds);
   last_wait_s_ = now();
+  last_wait_work_s_ = work_seconds();
 }
 
 bool Window::should_close() const {
@@ -227,6 +238,7 @@ void Window::set_overlay_wants(bool keys, bool pointer) {
 
 void Window::on_key(int key, int action) {
   is_active_ = true;
+  if (action == GLFW_PRESS) ++key_count_;
   for (const KeyBinding& binding : key_bindings()) {
     if (binding.key != key) continue;
     // A key that was down when the overlay took them over still comes up.

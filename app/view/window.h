@@ -43,6 +43,11 @@ class Window {
   void wait(double seconds);
   /// The longest time from one wait() to the next, in milliseconds: no event has waited longer.
   double longest_turn_ms() const { return 1e3 * longest_turn_s_; }
+  /// The most time of a processor that was taken from one wait() to the next, in milliseconds: what the longest turn
+  /// would be on a machine that does nothing else.
+  double longest_work_ms() const { return 1e3 * longest_work_s_; }
+  /// How many times keys have gone down.
+  uint64_t key_count() const { return key_count_; }
 
   bool should_close() const;
   /// Whether the window was asked to close, or the key to quit is among the presses that are to be taken.
@@ -108,6 +113,9 @@ class Window {
   OverlayScale overlay_scale_;
   double last_wait_s_ = 0.0;
   double longest_turn_s_ = 0.0;
+  double last_wait_work_s_ = 0.0;
+  double longest_work_s_ = 0.0;
+  uint64_t key_count_ = 0;
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
   /// What the pointer does while a button is down.

@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-from display import Display, Failure, Viewer, wait_for
+from display import Display, Failure, Typist, Viewer, wait_for
 
 SIZE = (160, 96)
 
@@ -397,6 +397,35 @@ def quits_while_it_compiles(bin_folder, scenes, folder):
                 viewer.wait_for_line(awaited, 1, "scene")
             session.quit()
             expect("no input waited longer than" in viewer.err, f"it did not end as it should: {viewer.err}")
+
+
+def answers_while_it_works(bin_folder, scenes, folder):
+    """A key every 20 ms, while it loads, compiles, refines and explains with nothing in the driver's cache."""
+    session = Session(bin_folder, scenes, folder, "-v", MESA_SHADER_CACHE_DIR=str(folder / "no cache"))
+    with session as viewer:
+        viewer.press("Tab")  # the panel would take the click
+        typed = {}
+        with Typist(viewer.display) as typist:
+            for pattern, stage in (
+                ("shown: a draft", "draft"),
+                ("shown: a picture", "picture"),
+                ("shown: a refined", "refined picture"),
+                ("explained: ", "explanation"),
+            ):
+                if stage == "explanation":
+                    viewer.xdotool("mousemove", "--window", viewer.window, 100, 60, "click", 1)
+                line = viewer.wait_for_line(pattern, 1, stage)
+                typed[stage] = (typist.count, int(re.search(r"(\d+) keys? pressed", line).group(1)))
+        session.quit()
+        worst = re.search(r"no input waited longer than (\d+) ms, for work of at most (\d+) ms; (\d+) keys", viewer.err)
+    # Tab and Esc are keys, too; the last is not waited for.
+    expect(int(worst.group(3)) >= typist.count + 1, f"{typist.count} keys were typed: {worst.group(0)}")
+    stages = [(0, 0), *typed.values()]
+    for stage, (typed_before, answered_before), (typed_then, answered_then) in zip(typed, stages, stages[1:]):
+        # A window that stands still meanwhile answers one, and all others after the stage.
+        few = typed_then - typed_before < 10
+        expect(few or answered_then - answered_before > 2, f"no key was answered before the {stage}: {typed}")
+    print(f"{worst.group(0)}; typed and answered: {typed}")
 
 
 def reads_a_changed_scene(bin_folder, scenes, folder):
