@@ -34,6 +34,8 @@ std::string options_of(const EnvironmentOptions& environment) {
   if (environment.panorama) options += " --environment " + quote(environment.panorama->string());
   if (environment.rotation_deg != 0.0) options += fmt::format(" --environment-rotation {}", environment.rotation_deg);
   if (environment.intensity != 1.0) options += fmt::format(" --environment-intensity {}", environment.intensity);
+  if (environment.light_rotation_deg != 0.0)
+    options += fmt::format(" --light-rotation {}", environment.light_rotation_deg);
   return options;
 }
 

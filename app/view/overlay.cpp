@@ -138,6 +138,20 @@ void choose_exposure(const OverlayContent& content, std::optional<float>& exposu
   if (ImGui::SliderFloat("exposure", &ev, -kMostEv, kMostEv, "%+.1f EV")) exposure_ev = ev;
 }
 
+void choose_background(const OverlayContent& content, std::optional<vec3>& background) {
+  vec3 color = background.value_or(content.background);
+  constexpr ImGuiColorEditFlags kSwatch = ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel;
+  if (ImGui::ColorEdit3("##color of the background", &color.x, kSwatch)) background = color;
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  ImGui::SameLine(0.0F, gap);
+  ImGui::SetNextItemWidth(scaled(kFieldWidth) - ImGui::GetFrameHeight() - gap);
+  const float brightest = std::max({color.x, color.y, color.z});
+  float wanted = brightest;
+  if (!ImGui::SliderFloat("background", &wanted, 0.0F, 1.0F, "%.2f")) return;
+  wanted = std::clamp(wanted, 0.0F, 1.0F);
+  background = brightest > 0.0F ? wanted / brightest * color : vec3(wanted);
+}
+
 void show_switches(const OverlayContent& content, Switches& switches) {
   ImGui::Checkbox("shadows", &switches.has_shadows);
   ImGui::SameLine();
@@ -150,6 +164,7 @@ void show_switches(const OverlayContent& content, Switches& switches) {
   }
   choose_debug_view(switches.debug_view);
   choose_exposure(content, switches.exposure_ev);
+  choose_background(content, switches.surroundings.background);
   if (ImGui::TreeNode("lights")) {
     choose_lights(*content.scene, switches.scene.lights_off);
     ImGui::TreePop();

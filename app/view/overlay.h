@@ -35,6 +35,7 @@ class FrameStatistics {
 /// What the user has chosen, in the overlay or otherwise.
 struct Switches {
   SceneChoice scene;
+  Surroundings surroundings;
   uint32_t max_depth = View{}.max_depth;
   bool has_mirrors = true;
   bool has_shadows = true;
@@ -59,6 +60,8 @@ struct OverlayContent {
   double speed = 0.0;
   /// That of the scene.
   float exposure_ev = 0.0F;
+  /// The colour of its background, sRGB.
+  vec3 background{0.0F};
   /// The work that goes on beside the picture; empty where there is none.
   std::string awaited;
   /// What happened last; a failure is highlighted.

@@ -75,6 +75,7 @@ class Viewer {
   void show_frames(const DeferredSignals& signals);
   void handle_input();
   void handle_press(Press press);
+  void handle_clicks();
   void print_command();
   /// The pixel of the full picture at a place of the window, in its pixels.
   uvec2 pixel_at(const dvec2& place) const;
@@ -103,6 +104,10 @@ class Viewer {
   void show_scene(OpenedScene opened);
   /// Destroys pictures that are no longer needed, which may take a while.
   void dispose();
+  /// Brings the surroundings that the user has changed to the devices, while nothing is traced there.
+  void update_surroundings();
+  /// Whether that is to be done, and nothing that may take long goes on there.
+  bool may_put_surroundings() const;
   /// Takes over a picture that is ready, and asks for those that changed switches and files need.
   void update_picture();
   void show_picture(ReadyPicture ready);
@@ -162,7 +167,7 @@ class Viewer {
   /// Without a scene before the first is open.
   OpenedScene opened_;
   std::unique_ptr<ScenePreparer> preparer_;
-  std::shared_ptr<const ShownScene> scene_;
+  std::shared_ptr<ShownScene> scene_;
   /// The mode of the picture.
   RenderMode mode_;
   bool is_draft_ = false;
@@ -172,6 +177,8 @@ class Viewer {
   std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
+  /// True once the surroundings are on the devices.
+  Background<bool> putting_;
   /// Whether an orbit begins when its center is found.
   bool wants_orbit_ = false;
   /// Whether it is that of the picture, for which the middle of the scene stands in.

@@ -22,6 +22,13 @@ void Viewer::handle_input() {
   window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   for (const Press press : window_.take_presses()) handle_press(press);
   for (const std::string& file : window_.take_dropped()) open(file);
+  // Where surroundings are put no pixel is traced.
+  if (!putting_.is_busy()) handle_clicks();
+  if (traced_ && std::exchange(wants_command_, false)) print_command();
+  if (window_.take_activity()) draw_again();
+}
+
+void Viewer::handle_clicks() {
   const std::vector<dvec2> clicks = window_.take_clicks();
   const std::vector<dvec2> double_clicks = window_.take_double_clicks();
   if (traced_) {
@@ -30,8 +37,6 @@ void Viewer::handle_input() {
     for (const dvec2& place : clicks) query_.ask_why(scene_, view, pixel_at(place));
     for (const dvec2& place : double_clicks) look_at(view, pixel_at(place));
   }
-  if (traced_ && std::exchange(wants_command_, false)) print_command();
-  if (window_.take_activity()) draw_again();
 }
 
 void Viewer::look_at(const View& view, const uvec2& pixel) {
@@ -83,6 +88,7 @@ void Viewer::handle_press(Press press) {
       switches_.is_paused = !switches_.is_paused;
       return;
     case Press::kOrbit:
+      if (putting_.is_busy()) return;
       wants_orbit_ = !wants_orbit_ && !control_.is_orbiting() && traced_;
       is_of_middle_ = true;
       if (wants_orbit_) return query_.ask_point(scene_, view_of_middle(), uvec2(0));
@@ -142,6 +148,8 @@ void Viewer::print_command() {
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   LookOptions look = start_.look;
+  const Surroundings& surroundings = scene_->surroundings;
+  if (surroundings.background) look.background = BackgroundChoice{.color = *surroundings.background};
   if (look.averages_exposure || switches_.exposure_ev) look.exposure_ev = display().exposure_ev;
   DescribedScene described;
   described.file = file_;
@@ -149,6 +157,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.lights_off = on.lights_off;
   described.look = look;
   described.environment = start_.environment;
+  described.environment.light_rotation_deg = surroundings.light_rotation_deg;
   described.variant = opened_.load.material_variant;
   described.root = opened_.load.root;
   described.center = scene_->scene->center;

@@ -259,8 +259,8 @@ void Window::on_button(int button, int action, int modifiers) {
     return;
   }
   if (is_down) {
-    const bool is_orbit = button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT) == 0;
-    drag_ = is_orbit ? Drag::kOrbit : Drag::kPan;
+    const Drag left = (modifiers & GLFW_MOD_SHIFT) == 0 ? Drag::kOrbit : Drag::kLight;
+    drag_ = button == GLFW_MOUSE_BUTTON_LEFT ? left : Drag::kPan;
     is_click_ = true;
     drag_start_ = pointer_;
   } else if (std::exchange(drag_, Drag::kNone) != Drag::kNone && is_click_) {
@@ -297,6 +297,7 @@ void Window::on_pointer(const dvec2& place) {
     is_click_ = false;
   }
   if (drag_ == Drag::kOrbit) return motion_.orbit(pixel_ratio() * way);
+  if (drag_ == Drag::kLight) return motion_.turn_light(pixel_ratio() * way.x);
   motion_.pan(pixel_ratio() * way);
 }
 

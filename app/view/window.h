@@ -119,7 +119,7 @@ class Window {
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
   /// What the pointer does while a button is down.
-  enum class Drag { kNone, kOrbit, kPan };
+  enum class Drag { kNone, kOrbit, kPan, kLight };
   Drag drag_ = Drag::kNone;
   /// Whether the pointer has not wandered since the button went down.
   bool is_click_ = false;

@@ -42,8 +42,8 @@ inline constexpr size_t kFilmCount = 2;
 /// `promin render` gives it. One film is traced while the other, complete, is shown.
 class ProgressivePicture {
  public:
-  /// `options` are those of the first pictures' films. `set_apart`, where there is one, gives the same scene, perhaps on a device of its own: the samples that refine are
-  /// traced there. It is called on another thread.
+  /// `options` are those of the first pictures' films. `set_apart`, where there is one, gives the same scene, perhaps
+  /// on a device of its own: the samples that refine are traced there. It is called on another thread.
   ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
                      double budget_ms, std::function<SceneOn()> set_apart = {}, const FilmOptions& options = {});
 
