@@ -82,9 +82,9 @@ bool can_describe(const DescribedScene& scene, const View& view) {
 
 std::string describe_command(const DescribedScene& scene, const View& view) {
   const Camera& camera = view.camera;
-  std::string command =
-      fmt::format("promin render {} -o view.exr --size {} {}{} --max-depth {}", quote(scene.file.string()), view.size.x,
-                  view.size.y, samples_of(view), view.max_depth);
+  std::string command = fmt::format("promin render {} -o {} --size {} {}{} --max-depth {}", quote(scene.file.string()),
+                                    scene.output ? quote(scene.output->string()) : "view.exr", view.size.x, view.size.y,
+                                    samples_of(view), view.max_depth);
   if (view.filter != PixelFilter::kBox || view.filter_width != default_width(view.filter)) {
     command += fmt::format(" --filter {} --filter-width {}", pixel_filter_names()[static_cast<size_t>(view.filter)],
                            view.filter_width);

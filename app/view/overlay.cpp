@@ -197,6 +197,18 @@ std::optional<Camera> choose_camera(const OverlayContent& content) {
   return picked;
 }
 
+void show_files(const OverlayContent& content, OverlayAnswer& answer) {
+  if (ImGui::Button("Open ...")) answer.asked = FileUse::kOpen;
+  ImGui::SameLine();
+  ImGui::BeginDisabled(content.scene == nullptr);
+  if (ImGui::Button("Save ...")) answer.asked = FileUse::kSave;
+  ImGui::EndDisabled();
+  if (content.entry == nullptr) return;
+  const char* label = content.entry->use == FileUse::kOpen ? "open" : "save as";
+  answer.has_typed = ImGui::InputText(label, content.entry->text.data(), content.entry->text.size(),
+                                      ImGuiInputTextFlags_EnterReturnsTrue);
+}
+
 }  // namespace
 
 void FrameStatistics::add(const FinishedFrame& frame) {
@@ -243,6 +255,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   ImGui::PushTextWrapPos();
   ImGui::PushItemWidth(scaled(kFieldWidth));
   show_state(content);
+  show_files(content, answer);
   if (content.scene != nullptr) {
     ImGui::Separator();
     show_switches(content, switches);

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "trace/progressive_picture.h"
+#include "view/file_dialog.h"
 #include "view/finished_frame.h"
 #include "view/overlay_scale.h"
 #include "view/scene_preparer.h"
@@ -49,6 +51,12 @@ struct Switches {
   uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
 };
 
+/// A path that the user types where the desktop has no dialog.
+struct PathEntry {
+  FileUse use = FileUse::kOpen;
+  std::array<char, 4096> text{};
+};
+
 /// What else the overlay shows.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
@@ -68,6 +76,8 @@ struct OverlayContent {
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
+  /// Null where none is typed.
+  PathEntry* entry = nullptr;
 };
 
 /// Makes ImGui's fonts and sizes anew; not within a frame.
@@ -79,6 +89,10 @@ struct OverlayAnswer {
   std::optional<Camera> camera;
   /// The speed to fly with.
   std::optional<double> speed;
+  /// What a file is asked for.
+  std::optional<FileUse> asked;
+  /// Whether the path is typed.
+  bool has_typed = false;
 };
 
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.

@@ -96,6 +96,7 @@ void Viewer::run() {
   if (start_.record) write_camera_path(*start_.record, recorder_.path());
   screenshot_.wait();
   update_screenshot();
+  dialog_.close();
 }
 
 bool Viewer::is_busy() const {
@@ -216,8 +217,13 @@ void Viewer::update_replay() {
 
 void Viewer::update_screenshot() {
   try {
-    if (const std::optional<std::string> text = screenshot_.take()) report(*text);
+    if (std::optional<std::string> text = screenshot_.take()) {
+      const std::string command = std::exchange(saved_command_, {});
+      if (!command.empty()) window_.copy(command);
+      report(*text + (command.empty() ? "" : "; this gives the same, and is on the clipboard: " + command));
+    }
   } catch (const Error& error) {
+    saved_command_.clear();
     report_failure(error.what());
   }
 }
@@ -418,7 +424,11 @@ void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
   const View view = picture.shown()->view_of(picture.wanted());
   screenshot_.record_copy(traced_->scene().device, commands, picture.film(picture.shown()->film), view,
                           picture.has_unlit());
-  on_copied_ = [this, view, error = picture.shown()->error](const FinishedFrame& finished) {
+  const std::optional<std::filesystem::path> file = std::exchange(saved_file_, std::nullopt);
+  DescribedScene described = described_scene(view);
+  described.output = file;
+  saved_command_ = file && can_describe(described, view) ? describe_command(described, view) : "";
+  on_copied_ = [this, view, file, error = picture.shown()->error](const FinishedFrame& finished) {
     // It is not whole.
     if (finished.has_cut_loops) return screenshot_.drop();
     RunStats& stats = opened_.stats;
@@ -427,7 +437,7 @@ void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
     stats.errors.clear();
     if (error) stats.errors.push_back(*error);
     stats.display = traced_->display();
-    screenshot_.write(describe_picture(stats), stats.display);
+    screenshot_.write(describe_picture(stats), stats.display, file);
   };
   wants_screenshot_ = false;
 }
@@ -475,7 +485,10 @@ void Viewer::build_overlay() {
     content.message = message_;
     content.is_failure = is_failure_;
     content.bookmarks = bookmarks_;
+    content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
+    if (answer.asked) ask_for_file(*answer.asked);
+    if (answer.has_typed) take_file(path_entry_->use, path_entry_->text.data());
     if (answer.camera) control_.place(*answer.camera);
     if (answer.speed) control_.set_speed(*answer.speed);
   }

@@ -15,6 +15,7 @@
 #include "view/camera_control.h"
 #include "view/describe_command.h"
 #include "view/display_pass.h"
+#include "view/file_dialog.h"
 #include "view/flight.h"
 #include "view/frame_queue.h"
 #include "view/imgui_renderer.h"
@@ -83,6 +84,11 @@ class Viewer {
   void look_at(const View& view, const uvec2& pixel);
   /// Opens another scene.
   void open(const std::filesystem::path& file);
+  /// Asks the user for a file, by a dialog of the desktop or in the panel.
+  void ask_for_file(FileUse use);
+  void take_file(FileUse use, const std::filesystem::path& file);
+  /// Writes the picture to a file as soon as it is complete.
+  void save(std::filesystem::path file);
   /// Frames the scene as it is seen now, or from a side.
   void frame_from(std::optional<Framing> from);
   /// Goes to another of the scene's cameras, so many further.
@@ -199,6 +205,12 @@ class Viewer {
   FrameQueue frames_;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;
+  /// Where the picture is to be saved; none for a screenshot.
+  std::optional<std::filesystem::path> saved_file_;
+  /// The command that gives the picture which is being saved; empty where there is none.
+  std::string saved_command_;
+  FileDialog dialog_;
+  std::optional<PathEntry> path_entry_;
   /// Whether the command is printed as soon as there is a picture.
   bool wants_command_ = false;
   /// Is called when the frame that copies a screenshot is finished.

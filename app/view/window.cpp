@@ -205,8 +205,16 @@ void Window::hide() {
   glfwPollEvents();
 }
 
+bool Window::is_fullscreen() const {
+  return glfwGetWindowMonitor(window_) != nullptr;
+}
+
+void Window::copy(const std::string& text) const {
+  glfwSetClipboardString(window_, text.c_str());
+}
+
 void Window::toggle_fullscreen() {
-  if (glfwGetWindowMonitor(window_) != nullptr) {
+  if (is_fullscreen()) {
     glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
     return;
   }

@@ -56,6 +56,9 @@ class Window {
   /// Makes it as large, in screen coordinates, where the user has left it as it was made.
   void resize(const uvec2& size);
   void toggle_fullscreen();
+  bool is_fullscreen() const;
+  /// Puts a text on the clipboard.
+  void copy(const std::string& text) const;
   /// Takes it off the display at once.
   void hide();
 

@@ -32,6 +32,7 @@ class Display:
     def __init__(self, size="1024x768x24"):
         # Another server that ends just now may take this one's socket along. Without -noreset a server begins anew when
         # its last client goes, and refuses the next one meanwhile.
+        self.size = tuple(map(int, size.split("x")[:2]))
         for _ in range(3):
             self._start(size)
             if self._answers():
