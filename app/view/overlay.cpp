@@ -66,7 +66,7 @@ std::string describe_picture(const ProgressivePicture& picture) {
   const std::string error = fmt::format("1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
   if (!picture.is_settled()) return fmt::format("off by {} at most, sharpening", error);
   if (shown->error->unmet_pixels == 0) return fmt::format("done: off by {} at most", error);
-  return fmt::format("done: off by {} at most, but for {} pixels", error, shown->error->unmet_pixels);
+  return fmt::format("done: off by {}, {} pixels by more", error, shown->error->unmet_pixels);
 }
 
 void show_state(const OverlayContent& content) {
@@ -264,6 +264,9 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   }
   ImGui::PopItemWidth();
   ImGui::PopTextWrapPos();
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float height = ImGui::GetCursorPosY() - style.ItemSpacing.y + style.WindowPadding.y;
+  answer.is_unsettled = !ImGui::IsWindowCollapsed() && std::abs(height - ImGui::GetWindowHeight()) > 1.0F;
   ImGui::End();
   return answer;
 }

@@ -93,6 +93,8 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the path is typed.
   bool has_typed = false;
+  /// Whether the panel's text has another height than before, which the panel has in the next frame.
+  bool is_unsettled = false;
 };
 
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.

@@ -23,15 +23,6 @@ constexpr double kLookInterval = 0.1;
 /// The longest side of the picture that an average exposure goes by, in pixels.
 constexpr float kMeteredSide = 320.0F;
 
-float meter_exposure(Renderer& renderer, View view, bool has_shadows) {
-  view.mode = {.has_shadows = has_shadows};
-  view.samples_per_pixel = 1;
-  const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
-  view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
-  const RenderResult metered = renderer.render(view);
-  return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
-}
-
 /// Keeps the lights that a scene has.
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
   std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
@@ -95,9 +86,9 @@ bool ShownScene::takes(const Surroundings& other) const {
 void ShownScene::put() const {
   const std::vector<Light> all_lights = lights();
   const Environment around = environment();
-  renderer->set_lights(all_lights);
-  renderer->set_environment(around);
   gpu::translate_vulkan_errors([&] {
+    on_device->set_lights(all_lights);
+    on_device->set_environment(around);
     for (const SceneOn& copy : copies->list()) {
       copy.scene->set_lights(all_lights);
       copy.scene->set_environment(around);
@@ -229,9 +220,6 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   TunedRendererOptions options;
   options.builder = request.choice.builder;
   options.bvh = request.choice.bvh;
-  options.mode = request.mode;
-  options.aovs.object = look_.averages_exposure;
-  options.aovs.unlit = look_.averages_exposure && mixes_unlit(*scene);
   options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
@@ -247,14 +235,29 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
     host->packed = packed;
     return packed;
   };
-  shown.renderer = std::make_shared<Renderer>(make_renderer(*shown.first.device, host->scene, options));
+  gpu::translate_vulkan_errors([&] {
+    shown.on_device = std::make_shared<SceneOnDevice>(*shown.first.device, host->scene, options, shown.setup_stats);
+  });
   shown.host = std::move(host);
-  shown.first.scene = RendererAccess::scene_of(*shown.renderer).device_scene();
-  if (look_.averages_exposure) {
-    shown.renderer->set_lights(shown.lights());
-    shown.display.exposure_ev = meter_exposure(*shown.renderer, first_view_, request.mode.has_shadows);
-  }
+  shown.first.scene = shown.on_device->device_scene();
+  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode.has_shadows);
   return std::make_shared<ShownScene>(std::move(shown));
+}
+
+float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const {
+  options.mode = {.has_shadows = has_shadows};
+  options.aovs.object = true;
+  options.aovs.unlit = mixes_unlit(*shown.scene, shown.environment());
+  options.repack = {};
+  Renderer renderer = make_renderer(*shown.first.device, shown.host->scene, options);
+  renderer.set_lights(shown.lights());
+  View view = first_view_;
+  view.mode = options.mode;
+  view.samples_per_pixel = 1;
+  const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
+  view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
+  const RenderResult metered = renderer.render(view);
+  return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
 }
 
 ReadyPicture ScenePreparer::make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
@@ -269,9 +272,8 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, 
   const Environment environment = scene->environment();
   std::unique_ptr<TracedPicture> picture;
   gpu::translate_vulkan_errors([&] {
-    const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene->renderer));
     FeatureMask features =
-        on_device.features_with(light_features(lights), environment_features(environment), request.mode);
+        scene->on_device->features_with(light_features(lights), environment_features(environment), request.mode);
     if (shows_unlit(features, request.mode.debug_view) &&
         shows_unlit_apart(*scene->scene, environment, look_, scene->display)) {
       features |= layout::FEATURE_UNLIT_SHARE;

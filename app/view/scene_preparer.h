@@ -12,6 +12,7 @@
 #include "device_scene/scene_constants.h"
 #include "environment_options.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 #include "render_options.h"
 #include "scene/world_scene.h"
 #include "view/background.h"
@@ -79,7 +80,8 @@ struct ShownScene {
   DisplayTransform display;
   /// The device that it was put on first.
   SceneOn first;
-  std::shared_ptr<Renderer> renderer;
+  std::shared_ptr<SceneOnDevice> on_device;
+  SetupStats setup_stats;
   /// What was copied there.
   std::shared_ptr<const HostScene> host;
   /// What set_apart() has made.
@@ -165,6 +167,8 @@ class ScenePreparer {
   // Parts of the work.
   void enter(Step step);
   std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  /// An average exposure for the first view.
+  float meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const;
   ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// `on` is where it is traced.
   ReadyPicture make(std::shared_ptr<ShownScene> scene, SceneOn on, const PictureRequest& request);

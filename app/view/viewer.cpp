@@ -303,7 +303,7 @@ void Viewer::show_picture(ReadyPicture ready) {
     for (const std::string& warning : scene_->scene->warnings) warn(warning);
   }
   if (is_new || is_first) {
-    for (const Problem& warning : scene_->renderer->setup_stats().warnings) warn(message_of(warning));
+    for (const Problem& warning : scene_->setup_stats.warnings) warn(message_of(warning));
   }
   if (is_new) message_ = text;
 }
@@ -487,13 +487,16 @@ void Viewer::build_overlay() {
     content.bookmarks = bookmarks_;
     content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
+    if (answer.is_unsettled) frames_to_draw_ = std::max(frames_to_draw_, 1);
     if (answer.asked) ask_for_file(*answer.asked);
     if (answer.has_typed) take_file(path_entry_->use, path_entry_->text.data());
     if (answer.camera) control_.place(*answer.camera);
     if (answer.speed) control_.set_speed(*answer.speed);
   }
+  // Both have their place at the right edge.
   if (has_help_) show_help();
-  if (explained_ && !show_explanation(*explained_, control_.camera(), scene_->display)) explained_.reset();
+  if (!has_help_ && explained_ && !show_explanation(*explained_, control_.camera(), scene_->display))
+    explained_.reset();
   imgui_->end_frame();
 }
 
