@@ -195,7 +195,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
         wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
         # Where it is depends on how many lines the message takes that a screenshot was written.
-        for y in (113, 96, 130, 79):
+        for y in (137, 120, 154, 103):
             viewer.xdotool("mousemove", "--window", viewer.window, 28, y, "sleep", 0.2, "click", 1)
             if has_shadows_soon():
                 break
