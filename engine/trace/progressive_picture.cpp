@@ -213,12 +213,14 @@ bool ProgressivePicture::prepare_refined() {
   if (refined_to_come_.valid()) {
     if (!is_ready(refined_to_come_)) return false;
     refined_ = refined_to_come_.get();
-    refined_fraction_ = refined_->fraction_done();
     is_prepared_ = true;
   }
   if (is_prepared_ && refined_version_ == wanted_version_) return true;
   // It needs much memory, so the last one goes before the next is made.
-  if (std::exchange(refined_version_, wanted_version_) != wanted_version_) refined_.reset();
+  if (std::exchange(refined_version_, wanted_version_) != wanted_version_) {
+    refined_.reset();
+    refined_fraction_ = 0.0;
+  }
   const auto prepare = [film = list_film_.film.get(), view = wanted_,
                         units = pacer_.units()](std::unique_ptr<RefiningPicture> picture) {
     if (!picture) picture = std::make_unique<RefiningPicture>(*film, view);
@@ -239,6 +241,7 @@ void ProgressivePicture::show_refined() {
   films_[film].put_pixels(refined_->take_pixels(), full_size_);
   picture_when_done_ = {film, full_size_, 1, refined_->error()};
   picture_version_ = refined_version_;
+  refined_fraction_ = 0.0;
   finish();
 }
 
@@ -263,6 +266,7 @@ void ProgressivePicture::take_finished(const Finished& finished) {
   if (finished.units == 0.0) return;
   // Where loops were cut the samples are wrong, and the picture goes on from others nonetheless: its caller is told.
   if (finished.has_list) is_list_under_way_ = false;
+  if (finished.has_list && refined_) refined_fraction_ = refined_->fraction_done();
   // Drivers compile in a pipeline's first dispatch.
   if (std::exchange(is_warm_, true)) pacer_.learn(finished.units, finished.time_ms);
   refuse_cut_loops(finished.has_cut_loops);

@@ -155,7 +155,7 @@ class ProgressivePicture {
   bool is_prepared_ = false;
   /// Whether its samples are being traced.
   bool is_list_under_way_ = false;
-  /// RefiningPicture::fraction_done of the last that was prepared.
+  /// The part of refined_'s next picture that is traced.
   double refined_fraction_ = 0.0;
   bool has_recorded_list_ = false;
   /// The buffer that trace() takes the counts into.

@@ -83,7 +83,7 @@ std::vector<uvec4> RefiningPicture::make_pixels() const {
 }
 
 double RefiningPicture::fraction_done() const {
-  const auto taken = static_cast<double>(refinement_.sample_count() - samples_when_done_);
+  const auto taken = static_cast<double>(refinement_.sample_count() + list_.size() - samples_when_done_);
   const double total = refinement_.foretell_total() - static_cast<double>(samples_when_done_);
   return total > 0.0 ? std::min(taken / total, 1.0) : 1.0;
 }

@@ -36,7 +36,7 @@ class RefiningPicture {
   const std::optional<PictureError>& error() const { return done_; }
   /// Its pixels, as a film of one sample holds them, once after prepare() has found no samples.
   std::vector<uvec4> take_pixels() { return std::exchange(pixels_, {}); }
-  /// Of the samples of the next picture, about.
+  /// The part of the next picture's samples, about, that is traced once those of prepare() are.
   double fraction_done() const;
 
  private:
