@@ -235,6 +235,12 @@ std::vector<dvec2> Window::take_clicks() {
   return std::exchange(clicks_, {});
 }
 
+Window::Buttons Window::take_buttons() {
+  Buttons down = std::exchange(went_down_, {});
+  for (size_t i = 0; i < down.size(); ++i) down[i] = down[i] || buttons_[i];
+  return down;
+}
+
 bool Window::take_activity() {
   return std::exchange(is_active_, false);
 }
@@ -260,6 +266,11 @@ void Window::on_key(int key, int action) {
 void Window::on_button(int button, int action, int modifiers) {
   is_active_ = true;
   const bool is_down = action == GLFW_PRESS;
+  const auto number = static_cast<size_t>(button);
+  if (number < buttons_.size()) {
+    buttons_[number] = is_down;
+    went_down_[number] = went_down_[number] || is_down;
+  }
   if (is_down && wants_pointer_ && !is_captured_) return;
   // A captured pointer is nowhere in the window.
   if (is_captured_) {
@@ -317,6 +328,7 @@ void Window::change_place() {
 
 void Window::release() {
   motion_.release_all(now());
+  buttons_ = {};
   drag_ = Drag::kNone;
   capture_pointer(false);
 }

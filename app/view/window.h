@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -82,6 +83,12 @@ class Window {
   /// Whether the pointer has moved the camera since the last take_motion().
   bool has_turned() const { return motion_.has_any(); }
 
+  /// Where the pointer is, in screen coordinates; nowhere while it turns the camera without a button.
+  std::optional<dvec2> pointer() const { return is_captured_ ? std::nullopt : std::optional(pointer_); }
+  /// Which of its first buttons are down, or went down since the last call.
+  using Buttons = std::array<bool, 3>;
+  Buttons take_buttons();
+
   /// Whether the overlay wants keys and pointer for itself just now.
   void set_overlay_wants(bool keys, bool pointer);
 
@@ -128,6 +135,8 @@ class Window {
   bool is_click_ = false;
   bool is_captured_ = false;
   dvec2 pointer_{0.0};
+  Buttons buttons_{};
+  Buttons went_down_{};
   dvec2 drag_start_{0.0};
   /// Place and size before full screen, in screen coordinates.
   int windowed_[4] = {0, 0, 0, 0};
