@@ -426,9 +426,10 @@ def answers_while_it_works(bin_folder, scenes, folder):
     expect(int(worst.group(3)) >= typist.count + 1, f"{typist.count} keys were typed: {worst.group(0)}")
     stages = [(0, 0), *typed.values()]
     for stage, (typed_before, answered_before), (typed_then, answered_then) in zip(typed, stages, stages[1:]):
-        # A window that stands still meanwhile answers one, and all others after the stage.
-        few = typed_then - typed_before < 10
-        expect(few or answered_then - answered_before > 2, f"no key was answered before the {stage}: {typed}")
+        # A window that stands still meanwhile answers most after the stage. Short ones say nothing: the test looks late.
+        count = typed_then - typed_before
+        answered = answered_then - answered_before
+        expect(count < 100 or 2 * answered >= count, f"few keys were answered before the {stage}: {typed}")
     print(f"{worst.group(0)}; typed and answered: {typed}")
 
 
