@@ -112,7 +112,7 @@ class Viewer {
   void dispose();
   /// Brings the surroundings that the user has changed to the devices, while nothing is traced there.
   void update_surroundings();
-  /// Whether that is to be done, and nothing that may take long goes on there.
+  /// Whether that is to be done, and the devices do nothing that may take long.
   bool may_put_surroundings() const;
   /// Takes over a picture that is ready, and asks for those that changed switches and files need.
   void update_picture();

@@ -147,7 +147,7 @@ class ProgressivePicture {
   std::future<ListFilm> list_film_to_come_;
   /// Whether what takes the host long is done on other threads: only for callers with frames of their own.
   bool works_beside_ = false;
-  /// Of the view of refined_version_; null while it prepares its next samples, which takes the host long.
+  /// The picture that is refined, of the view of refined_version_; null while it prepares its next samples.
   std::unique_ptr<RefiningPicture> refined_;
   uint64_t refined_version_ = 0;
   std::future<std::unique_ptr<RefiningPicture>> refined_to_come_;
