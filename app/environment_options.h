@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,13 @@ struct EnvironmentOptions {
   double rotation_deg = 0.0;
   /// A factor of the sky's radiance.
   double intensity = 1.0;
+  /// An angle by which the sky and all lights without a place are turned about +Y, degrees.
+  double light_rotation_deg = 0.0;
 };
+
+/// Turns a sky, and lights that shine along one direction of the world, about +Y from +Z towards +X. An angle of 0
+/// changes no bit.
+void turn_light(double degrees, Environment& environment, std::span<Light> lights);
 
 /// Adds the rows of the options. `options` must outlive the parsing.
 void add_environment_options(OptionTable& table, EnvironmentOptions& options);
@@ -38,7 +45,7 @@ class EnvironmentChoice {
 
   /// Puts the panorama around a scene. Comes before a scene without a sky gets one.
   void replace_sky(Scene& scene) const;
-  /// Turns the scene's sky, whichever it has got, and makes it brighter.
+  /// Turns the scene's sky, whichever it has got, and makes it brighter; then turns its light.
   void adjust_sky(Scene& scene) const;
 
  private:
@@ -46,6 +53,7 @@ class EnvironmentChoice {
   std::vector<std::string> warnings_;
   float rotation_ = 0.0F;
   float intensity_ = 1.0F;
+  double light_rotation_deg_ = 0.0;
 };
 
 }  // namespace promin::app

@@ -53,6 +53,7 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "--error-in", .default_word = "linear"},
     {.name = "--exposure", .default_word = "auto"},
     {.name = "--filter", .default_word = "box"},
+    {.name = "--light-rotation", .default_word = "0"},
     {.name = "--path", .names_file = true},
     {.name = "--output", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
     {.name = "--offsets", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},

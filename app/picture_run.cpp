@@ -55,7 +55,8 @@ PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
   if (!assumptions.empty()) console.note(assumptions);
   // A job's pieces may be shown later.
-  const bool keeps_unlit = (is_displayed || options.job.folder) && shows_unlit_apart(scene, view.look, stats.display);
+  const bool keeps_unlit =
+      (is_displayed || options.job.folder) && shows_unlit_apart(scene, scene.environment, view.look, stats.display);
   run.options.hides_unlit = keeps_unlit && !options.aovs.unlit;
   run.options.aovs.unlit |= keeps_unlit;
   check_lights(scene, options.view.lights_off);

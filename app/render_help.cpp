@@ -23,8 +23,8 @@ void arrange_help(CLI::App& program, CLI::App& render) {
         {"from", "azimuth", "elevation", "roll", "zoom", "fit", "camera", "eye", "look-at", "direction", "up", "fov",
          "near", "path", "frames", "fps", "skip-existing"}},
        {"Look",
-        {"background", "light", "environment", "environment-rotation", "environment-intensity", "exposure",
-         "tone-mapping", "dither", "no-shadows", "lights-off", "variant", "shading"}},
+        {"background", "light", "environment", "environment-rotation", "environment-intensity", "light-rotation",
+         "exposure", "tone-mapping", "dither", "no-shadows", "lights-off", "variant", "shading"}},
        {"Jobs", {"job", "pieces", "tiles", "piece"}},
        {"Expert", {}}});
   add_examples(render, {{"promin render model.glb -o picture.png --size hd --spp 16", "16 samples a pixel, 1280x720"},

@@ -82,20 +82,23 @@ AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentCh
   surroundings.adjust_sky(scene);
   if (!look.background) return assumed;
   assumed.has_background = false;
-  Environment& environment = scene.environment;
-  environment.shows_sky = look.background->is_environment && environment.has_sky();
+  show_background(*look.background, scene.environment);
+  return assumed;
+}
+
+void show_background(const BackgroundChoice& background, Environment& environment) {
+  environment.shows_sky = background.is_environment && environment.has_sky();
   environment.backdrop.reset();
-  if (look.background->is_environment) {
+  if (background.is_environment) {
     // Without a sky what surrounds the scene is its ambient light.
     environment.background = environment.ambient;
-  } else if (look.background->is_linear) {
-    environment.background = look.background->color;
+  } else if (background.is_linear) {
+    environment.background = background.color;
   } else {
-    const vec3 light = linear_of_srgb(look.background->color);
+    const vec3 light = linear_of_srgb(background.color);
     environment.background = light;
     environment.backdrop = Backdrop{light, light};
   }
-  return assumed;
 }
 
 DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view) {
@@ -107,9 +110,10 @@ DisplayTransform choose_display(const Scene& scene, const LookOptions& look, Deb
   return display;
 }
 
-bool shows_unlit_apart(const Scene& scene, const LookOptions& look, const DisplayTransform& display) {
+bool shows_unlit_apart(const Scene& scene, const Environment& environment, const LookOptions& look,
+                       const DisplayTransform& display) {
   const bool shows_light_as_it_is = display.exposure_ev == 0.0F && display.tone_mapping == ToneMapping::kNone;
-  return mixes_unlit(scene) && (look.averages_exposure || !shows_light_as_it_is);
+  return mixes_unlit(scene, environment) && (look.averages_exposure || !shows_light_as_it_is);
 }
 
 std::string describe_framing(Framing framing) {

@@ -33,11 +33,15 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
 /// does.
 AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings = {});
 
+/// Gives surroundings the background that is asked for.
+void show_background(const BackgroundChoice& background, Environment& environment);
+
 /// How pictures of a scene are shown, lit up or not. Debug views are shown as they are.
 DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view);
 
-/// Whether pictures that are shown so need Aovs::unlit.
-bool shows_unlit_apart(const Scene& scene, const LookOptions& look, const DisplayTransform& display);
+/// Whether pictures that are shown so, before these surroundings, need Aovs::unlit.
+bool shows_unlit_apart(const Scene& scene, const Environment& environment, const LookOptions& look,
+                       const DisplayTransform& display);
 
 /// What is assumed where neither the file nor the options say it, a few words each. The light is what light_up has
 /// added to the scene; `display` is what the picture is shown with, if it is.

@@ -34,6 +34,8 @@ std::string options_of(const EnvironmentOptions& environment) {
   if (environment.panorama) options += " --environment " + quote(environment.panorama->string());
   if (environment.rotation_deg != 0.0) options += fmt::format(" --environment-rotation {}", environment.rotation_deg);
   if (environment.intensity != 1.0) options += fmt::format(" --environment-intensity {}", environment.intensity);
+  if (environment.light_rotation_deg != 0.0)
+    options += fmt::format(" --light-rotation {}", environment.light_rotation_deg);
   return options;
 }
 
@@ -80,9 +82,9 @@ bool can_describe(const DescribedScene& scene, const View& view) {
 
 std::string describe_command(const DescribedScene& scene, const View& view) {
   const Camera& camera = view.camera;
-  std::string command =
-      fmt::format("promin render {} -o view.exr --size {} {}{} --max-depth {}", quote(scene.file.string()), view.size.x,
-                  view.size.y, samples_of(view), view.max_depth);
+  std::string command = fmt::format("promin render {} -o {} --size {} {}{} --max-depth {}", quote(scene.file.string()),
+                                    scene.output ? quote(scene.output->string()) : "view.exr", view.size.x, view.size.y,
+                                    samples_of(view), view.max_depth);
   if (view.filter != PixelFilter::kBox || view.filter_width != default_width(view.filter)) {
     command += fmt::format(" --filter {} --filter-width {}", pixel_filter_names()[static_cast<size_t>(view.filter)],
                            view.filter_width);

@@ -17,6 +17,8 @@ namespace promin::app {
 /// size.
 struct DescribedScene {
   std::filesystem::path file;
+  /// The picture; one of the command's own where there is none.
+  std::optional<std::filesystem::path> output = std::nullopt;
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
   LookOptions look = {};

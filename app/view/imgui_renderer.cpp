@@ -7,6 +7,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "view/overlay.h"
 
@@ -39,8 +41,12 @@ void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 
 }  // namespace
 
-ImguiRenderer::ImguiRenderer(const gpu::Device& device, const Window& window, const Swapchain& swapchain)
-    : device_(&device), swapchain_(&swapchain), scale_(window.overlay_scale()) {
+ImguiRenderer::ImguiRenderer(const gpu::Device& device, Window& window, const Swapchain& swapchain)
+    : device_(&device),
+      window_(&window),
+      last_frame_s_(Window::now()),
+      swapchain_(&swapchain),
+      scale_(window.overlay_scale()) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
@@ -86,7 +92,25 @@ ImguiRenderer::~ImguiRenderer() {
 
 void ImguiRenderer::begin_frame() {
   ImGui_ImplVulkan_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
+  // ImGui_ImplGlfw_NewFrame() asks the display for what the window knows, and waits for each answer: on a busy machine
+  // for tens of milliseconds.
+  constexpr double kLeastTime = 1e-5;
+  ImGuiIO& io = ImGui::GetIO();
+  const auto ratio = static_cast<float>(window_->pixel_ratio());
+  const vec2 size = vec2(window_->framebuffer_size()) / ratio;
+  io.DisplaySize = ImVec2(size.x, size.y);
+  io.DisplayFramebufferScale = ImVec2(ratio, ratio);
+  const double now = Window::now();
+  io.DeltaTime = static_cast<float>(std::max(now - std::exchange(last_frame_s_, now), kLeastTime));
+#if IMGUI_VERSION_NUM < 18700
+  // Later versions have it from the callbacks that they have set.
+  constexpr float kNowhere = std::numeric_limits<float>::max();
+  const std::optional<dvec2> pointer = window_->pointer();
+  io.MousePos =
+      pointer ? ImVec2(static_cast<float>(pointer->x), static_cast<float>(pointer->y)) : ImVec2(-kNowhere, -kNowhere);
+  const Window::Buttons down = window_->take_buttons();
+  std::copy(down.begin(), down.end(), io.MouseDown);
+#endif
   ImGui::NewFrame();
 }
 

@@ -11,7 +11,7 @@ namespace promin::app {
 class ImguiRenderer {
  public:
   /// Throws vk::SystemError.
-  ImguiRenderer(const gpu::Device& device, const Window& window, const Swapchain& swapchain);
+  ImguiRenderer(const gpu::Device& device, Window& window, const Swapchain& swapchain);
   ~ImguiRenderer();
   ImguiRenderer(const ImguiRenderer&) = delete;
   ImguiRenderer& operator=(const ImguiRenderer&) = delete;
@@ -33,6 +33,8 @@ class ImguiRenderer {
   void start_backend();
 
   const gpu::Device* device_;
+  Window* window_;
+  double last_frame_s_;
   const Swapchain* swapchain_;
   OverlayScale scale_;
   vk::raii::DescriptorPool pool_{nullptr};

@@ -66,7 +66,8 @@ constexpr std::array kKeys = {
 
 constexpr std::array kPointer = {
     PointerBinding{"left drag", "turn the model"},
-    PointerBinding{"right drag", "move the picture; so do the middle button and Shift with the left one"},
+    PointerBinding{"right drag", "move the picture; so does the middle button"},
+    PointerBinding{"Shift-drag", "turn the light"},
     PointerBinding{"wheel", "nearer or further away"},
     PointerBinding{"double click", "look at that point, and turn around it"},
     PointerBinding{"left click", "explain the pixel: its rays, sources, contributions"},

@@ -24,8 +24,10 @@ struct Motion {
   dvec2 turn{0.0};
   /// while it turned the scene around what the camera looks at,
   dvec2 orbit{0.0};
-  /// while it moved the scene.
+  /// while it moved the scene,
   dvec2 pan{0.0};
+  /// to the right, while it turned the light.
+  double light = 0.0;
   /// Steps of the wheel towards the scene.
   double zoom = 0.0;
 
@@ -41,6 +43,7 @@ class MotionSum {
   void turn(const dvec2& pixels) { sum_.turn += pixels; }
   void orbit(const dvec2& pixels) { sum_.orbit += pixels; }
   void pan(const dvec2& pixels) { sum_.pan += pixels; }
+  void turn_light(double pixels) { sum_.light += pixels; }
   void zoom(double steps) { sum_.zoom += steps; }
   /// Takes note that all keys go up, because the window has lost them.
   void release_all(double time);

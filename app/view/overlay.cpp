@@ -62,7 +62,7 @@ std::string describe_picture(const ProgressivePicture& picture) {
   const std::string error = fmt::format("1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
   if (!picture.is_settled()) return fmt::format("off by {} at most, sharpening", error);
   if (shown->error->unmet_pixels == 0) return fmt::format("done: off by {} at most", error);
-  return fmt::format("done: off by {} at most, but for {} pixels", error, shown->error->unmet_pixels);
+  return fmt::format("done: off by {}, {} pixels by more", error, shown->error->unmet_pixels);
 }
 
 void show_state(const OverlayContent& content) {
@@ -134,6 +134,20 @@ void choose_exposure(const OverlayContent& content, std::optional<float>& exposu
   if (ImGui::SliderFloat("exposure", &ev, -kMostEv, kMostEv, "%+.1f EV")) exposure_ev = ev;
 }
 
+void choose_background(const OverlayContent& content, std::optional<vec3>& background) {
+  vec3 color = background.value_or(content.background);
+  constexpr ImGuiColorEditFlags kSwatch = ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel;
+  if (ImGui::ColorEdit3("##color of the background", &color.x, kSwatch)) background = color;
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  ImGui::SameLine(0.0F, gap);
+  ImGui::SetNextItemWidth(scaled(kFieldWidth) - ImGui::GetFrameHeight() - gap);
+  const float brightest = std::max({color.x, color.y, color.z});
+  float wanted = brightest;
+  if (!ImGui::SliderFloat("background", &wanted, 0.0F, 1.0F, "%.2f")) return;
+  wanted = std::clamp(wanted, 0.0F, 1.0F);
+  background = brightest > 0.0F ? wanted / brightest * color : vec3(wanted);
+}
+
 void show_switches(const OverlayContent& content, Switches& switches) {
   ImGui::Checkbox("shadows", &switches.has_shadows);
   ImGui::SameLine();
@@ -146,6 +160,7 @@ void show_switches(const OverlayContent& content, Switches& switches) {
   }
   choose_debug_view(switches.debug_view);
   choose_exposure(content, switches.exposure_ev);
+  choose_background(content, switches.surroundings.background);
   if (ImGui::TreeNode("lights")) {
     choose_lights(*content.scene, switches.scene.lights_off);
     ImGui::TreePop();
@@ -176,6 +191,18 @@ std::optional<Camera> choose_camera(const OverlayContent& content) {
   show(content.bookmarks, "bookmark");
   ImGui::TreePop();
   return picked;
+}
+
+void show_files(const OverlayContent& content, OverlayAnswer& answer) {
+  if (ImGui::Button("Open ...")) answer.asked = FileUse::kOpen;
+  ImGui::SameLine();
+  ImGui::BeginDisabled(content.scene == nullptr);
+  if (ImGui::Button("Save ...")) answer.asked = FileUse::kSave;
+  ImGui::EndDisabled();
+  if (content.entry == nullptr) return;
+  const char* label = content.entry->use == FileUse::kOpen ? "open" : "save as";
+  answer.has_typed = ImGui::InputText(label, content.entry->text.data(), content.entry->text.size(),
+                                      ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
 }  // namespace
@@ -223,6 +250,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   ImGui::PushTextWrapPos();
   ImGui::PushItemWidth(scaled(kFieldWidth));
   show_state(content);
+  show_files(content, answer);
   if (content.scene != nullptr) {
     ImGui::Separator();
     show_switches(content, switches);
@@ -231,6 +259,9 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   }
   ImGui::PopItemWidth();
   ImGui::PopTextWrapPos();
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float height = ImGui::GetCursorPosY() - style.ItemSpacing.y + style.WindowPadding.y;
+  answer.is_unsettled = !ImGui::IsWindowCollapsed() && std::abs(height - ImGui::GetWindowHeight()) > 1.0F;
   ImGui::End();
   return answer;
 }

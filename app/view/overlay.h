@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "trace/progressive_picture.h"
+#include "view/file_dialog.h"
 #include "view/finished_frame.h"
 #include "view/overlay_scale.h"
 #include "view/scene_preparer.h"
@@ -35,6 +37,7 @@ class FrameStatistics {
 /// What the user has chosen, in the overlay or otherwise.
 struct Switches {
   SceneChoice scene;
+  Surroundings surroundings;
   uint32_t max_depth = View{}.max_depth;
   bool has_mirrors = true;
   bool has_shadows = true;
@@ -48,6 +51,12 @@ struct Switches {
   uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
 };
 
+/// A path that the user types where the desktop has no dialog.
+struct PathEntry {
+  FileUse use = FileUse::kOpen;
+  std::array<char, 4096> text{};
+};
+
 /// What else the overlay shows.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
@@ -59,12 +68,16 @@ struct OverlayContent {
   double speed = 0.0;
   /// That of the scene.
   float exposure_ev = 0.0F;
+  /// The colour of its background, sRGB.
+  vec3 background{0.0F};
   /// The work that goes on beside the picture; empty where there is none.
   std::string awaited;
   /// What happened last; a failure is highlighted.
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
+  /// Null where none is typed.
+  PathEntry* entry = nullptr;
 };
 
 /// Makes ImGui's fonts and sizes anew; not within a frame.
@@ -76,6 +89,12 @@ struct OverlayAnswer {
   std::optional<Camera> camera;
   /// The speed to fly with.
   std::optional<double> speed;
+  /// What a file is asked for.
+  std::optional<FileUse> asked;
+  /// Whether the path is typed.
+  bool has_typed = false;
+  /// Whether the panel's text has another height than before, which the panel has in the next frame.
+  bool is_unsettled = false;
 };
 
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.

@@ -20,7 +20,7 @@ std::shared_ptr<PixelQuery::Place> PixelQuery::place_for(const std::shared_ptr<c
 Explanation PixelQuery::explain(Place& place, const ShownScene& scene, const View& view, const uvec2& pixel) {
   const std::lock_guard lock(place.one_at_a_time);
   if (!place.apart.scene) place.apart = scene.set_apart();
-  const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene.renderer));
+  const SceneOnDevice& on_device = *scene.on_device;
   const FeatureMask features = on_device.features({.has_shadows = view.mode.has_shadows});
   Explanation explanation;
   gpu::translate_vulkan_errors([&] {

@@ -11,6 +11,7 @@
 #include "promin/error.h"
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
+#include "scene/features.h"
 #include "view_setup.h"
 
 namespace promin::app {
@@ -22,25 +23,9 @@ constexpr double kLookInterval = 0.1;
 /// The longest side of the picture that an average exposure goes by, in pixels.
 constexpr float kMeteredSide = 320.0F;
 
-float meter_exposure(Renderer& renderer, View view, bool has_shadows) {
-  view.mode = {.has_shadows = has_shadows};
-  view.samples_per_pixel = 1;
-  const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
-  view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
-  const RenderResult metered = renderer.render(view);
-  return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
-}
-
 /// Keeps the lights that a scene has.
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
   std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
-  return lights;
-}
-
-/// All of a scene's lights, of which those are on that the choice leaves.
-std::vector<Light> lights_on(const Scene& scene, const SceneChoice& choice) {
-  std::vector<Light> lights = scene.lights;
-  switch_lights(lights, choice.lights_off);
   return lights;
 }
 
@@ -63,21 +48,68 @@ bool sets_apart(const gpu::Device& device) {
   return device.profile().presents_late;
 }
 
+void SceneCopies::add(const SceneOn& copy) {
+  const std::lock_guard lock(mutex_);
+  copies_.push_back({copy.device, copy.scene});
+}
+
+std::vector<SceneOn> SceneCopies::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<SceneOn> there;
+  for (const Copy& copy : copies_) {
+    SceneOn on{copy.device.lock(), copy.scene.lock()};
+    if (on.device && on.scene) there.push_back(std::move(on));
+  }
+  return there;
+}
+
+std::vector<Light> ShownScene::lights() const {
+  std::vector<Light> lights = scene->lights;
+  switch_lights(lights, choice.lights_off);
+  Environment unused;
+  turn_light(surroundings.light_rotation_deg, unused, lights);
+  return lights;
+}
+
+Environment ShownScene::environment() const {
+  Environment environment = scene->environment;
+  turn_light(surroundings.light_rotation_deg, environment, {});
+  if (surroundings.background) show_background({.color = *surroundings.background}, environment);
+  return environment;
+}
+
+bool ShownScene::takes(const Surroundings& other) const {
+  const bool has_same_kind = other.background.has_value() == surroundings.background.has_value();
+  return has_same_kind || scene->environment.shows_backdrop();
+}
+
+void ShownScene::put() const {
+  const std::vector<Light> all_lights = lights();
+  const Environment around = environment();
+  gpu::translate_vulkan_errors([&] {
+    on_device->set_lights(all_lights);
+    on_device->set_environment(around);
+    for (const SceneOn& copy : copies->list()) {
+      copy.scene->set_lights(all_lights);
+      copy.scene->set_environment(around);
+    }
+  });
+}
+
 SceneOn ShownScene::set_apart() const {
   // A few copies of it are no matter for the memory.
   constexpr uint64_t kMostBytes = 256U << 20;
   if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
   SceneOn apart{open_same_device(*first.device), nullptr};
   const world::Scene& in_world = host->scene;
-  apart.scene = upload_scene(
-      *apart.device, host->packed,
-      {in_world.materials, in_world.textures, lights_on(*scene, choice), in_world.environment, host->glass_solids});
+  apart.scene = upload_scene(*apart.device, host->packed,
+                             {in_world.materials, in_world.textures, lights(), environment(), host->glass_solids});
+  copies->add(apart);
   return apart;
 }
 
 void ReadyPicture::take_lights() {
-  const std::vector<Light> lights = lights_on(*scene->scene, scene->choice);
-  scene->renderer->set_lights(lights);
+  scene->put();
   picture->picture().take_scene_change();
 }
 
@@ -103,14 +135,14 @@ void ScenePreparer::begin(std::shared_ptr<const Scene> scene, const PictureReque
   pack(std::move(scene));
 }
 
-bool ScenePreparer::update(const std::shared_ptr<const ShownScene>& shown, const PictureRequest& request,
-                           double time_s) {
+bool ScenePreparer::update(const std::shared_ptr<ShownScene>& shown, const PictureRequest& request, double time_s) {
   if (is_busy()) return false;
   const PictureRequest last = std::exchange(asked_, request);
   const bool has_another_tree = last.choice.builder != request.choice.builder || last.choice.bvh != request.choice.bvh;
   if (has_another_tree) {
     pack(shown->scene);
-  } else if (last.choice != request.choice || last.mode != request.mode || last.is_draft != request.is_draft) {
+  } else if (last.choice != request.choice || last.mode != request.mode || last.is_draft != request.is_draft ||
+             (last.surroundings != request.surroundings && !shown->takes(request.surroundings))) {
     compile(shown);
   } else {
     if (time_s < next_look_at_files_s_) return false;
@@ -141,13 +173,15 @@ void ScenePreparer::pack(std::shared_ptr<const Scene> scene) {
   work_.start([this, scene = std::move(scene), request = asked_] { return make_first(scene, request); });
 }
 
-void ScenePreparer::compile(std::shared_ptr<const ShownScene> scene) {
+void ScenePreparer::compile(std::shared_ptr<ShownScene> scene) {
   step_ = Step::kCompiling;
   work_.start([this, scene = std::move(scene), request = asked_] {
     ShownScene chosen = *scene;
+    chosen.copies = std::make_shared<SceneCopies>();
+    chosen.surroundings = request.surroundings;
     chosen.choice.lights_off = keep_known(request.choice.lights_off, *scene->scene);
     SceneOn apart = chosen.set_apart();
-    return make(std::make_shared<const ShownScene>(std::move(chosen)), std::move(apart), request);
+    return make(std::make_shared<ShownScene>(std::move(chosen)), std::move(apart), request);
   });
 }
 
@@ -172,19 +206,20 @@ void ScenePreparer::enter(Step step) {
   step_ = step;
 }
 
-std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const Scene> scene,
-                                                               const PictureRequest& request) {
+std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const Scene> scene,
+                                                         const PictureRequest& request) {
   built_ = 0.0;
   enter(Step::kBuilding);
-  ShownScene shown{scene, request.choice, choose_display(*scene, look_, DebugView::kNone), {}, nullptr, nullptr};
+  ShownScene shown;
+  shown.scene = scene;
+  shown.choice = request.choice;
+  shown.surroundings = request.surroundings;
+  shown.display = choose_display(*scene, look_, DebugView::kNone);
   shown.first.device = open_same_device(*device_);
   shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
   TunedRendererOptions options;
   options.builder = request.choice.builder;
   options.bvh = request.choice.bvh;
-  options.mode = request.mode;
-  options.aovs.object = look_.averages_exposure;
-  options.aovs.unlit = look_.averages_exposure && mixes_unlit(*scene);
   options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
@@ -194,42 +229,63 @@ std::shared_ptr<const ShownScene> ScenePreparer::put_on_device(std::shared_ptr<c
   throw_if_invalid(*scene);
   auto host = std::make_shared<HostScene>();
   host->scene = world::flatten(*scene);
+  host->scene.environment = shown.environment();
   host->glass_solids = std::make_shared<const GlassSolids>(host->scene);
   options.repack = [&host](PackedScene packed) {
     host->packed = packed;
     return packed;
   };
-  shown.renderer = std::make_shared<Renderer>(make_renderer(*shown.first.device, host->scene, options));
+  gpu::translate_vulkan_errors([&] {
+    shown.on_device = std::make_shared<SceneOnDevice>(*shown.first.device, host->scene, options, shown.setup_stats);
+  });
   shown.host = std::move(host);
-  shown.first.scene = RendererAccess::scene_of(*shown.renderer).device_scene();
-  if (look_.averages_exposure) {
-    shown.renderer->set_lights(lights_on(*scene, shown.choice));
-    shown.display.exposure_ev = meter_exposure(*shown.renderer, first_view_, request.mode.has_shadows);
-  }
-  return std::make_shared<const ShownScene>(std::move(shown));
+  shown.first.scene = shown.on_device->device_scene();
+  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode.has_shadows);
+  return std::make_shared<ShownScene>(std::move(shown));
+}
+
+float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const {
+  options.mode = {.has_shadows = has_shadows};
+  options.aovs.object = true;
+  options.aovs.unlit = mixes_unlit(*shown.scene, shown.environment());
+  options.repack = {};
+  Renderer renderer = make_renderer(*shown.first.device, shown.host->scene, options);
+  renderer.set_lights(shown.lights());
+  View view = first_view_;
+  view.mode = options.mode;
+  view.samples_per_pixel = 1;
+  const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
+  view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
+  const RenderResult metered = renderer.render(view);
+  return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
 }
 
 ReadyPicture ScenePreparer::make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
-  std::shared_ptr<const ShownScene> shown = put_on_device(std::move(scene), request);
+  std::shared_ptr<ShownScene> shown = put_on_device(std::move(scene), request);
   SceneOn first = shown->first;
   return make(std::move(shown), std::move(first), request);
 }
 
-ReadyPicture ScenePreparer::make(std::shared_ptr<const ShownScene> scene, SceneOn on, const PictureRequest& request) {
+ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, const PictureRequest& request) {
   enter(Step::kCompiling);
-  const std::vector<Light> lights = lights_on(*scene->scene, scene->choice);
+  const std::vector<Light> lights = scene->lights();
+  const Environment environment = scene->environment();
   std::unique_ptr<TracedPicture> picture;
   gpu::translate_vulkan_errors([&] {
-    const SceneOnDevice& on_device = RendererAccess::scene_of(std::as_const(*scene->renderer));
-    FeatureMask features = on_device.features_with(lights, request.mode);
-    if (shows_unlit(features, request.mode.debug_view) && shows_unlit_apart(*scene->scene, look_, scene->display)) {
+    FeatureMask features =
+        scene->on_device->features_with(light_features(lights), environment_features(environment), request.mode);
+    if (shows_unlit(features, request.mode.debug_view) &&
+        shows_unlit_apart(*scene->scene, environment, look_, scene->display)) {
       features |= layout::FEATURE_UNLIT_SHARE;
     }
     if (request.is_draft) features = without_slow_parts(features);
+    FilmOptions film_options;
+    // A draft gives way too soon for more to repay compiling.
+    if (request.is_draft) film_options.expected_samples = 0;
     const bool is_light = request.mode.debug_view == DebugView::kNone;
-    picture = std::make_unique<TracedPicture>(std::move(on), features, budget_ms_,
-                                              is_light ? scene->display : DisplayTransform(),
-                                              [scene] { return scene->set_apart(); });
+    picture = std::make_unique<TracedPicture>(
+        std::move(on), features, budget_ms_, is_light ? scene->display : DisplayTransform(),
+        [scene] { return scene->set_apart(); }, film_options);
     picture->resize(request.size);
     picture->warm_up();
   });

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "device_scene/scene_constants.h"
 #include "environment_options.h"
 #include "promin/renderer.h"
+#include "render/renderer_impl.h"
 #include "render_options.h"
 #include "scene/world_scene.h"
 #include "view/background.h"
@@ -29,6 +31,17 @@ struct SceneChoice {
   bool operator==(const SceneChoice&) const = default;
 };
 
+/// What the user has changed in the window of what surrounds a scene. It needs no other kernel, unless the background
+/// is of another kind.
+struct Surroundings {
+  /// Of EnvironmentOptions; the scene itself is not turned.
+  double light_rotation_deg = 0.0;
+  /// A colour as shown, sRGB.
+  std::optional<vec3> background = std::nullopt;
+
+  bool operator==(const Surroundings&) const = default;
+};
+
 /// A scene as it is copied to devices.
 struct HostScene {
   world::Scene scene;
@@ -41,30 +54,58 @@ std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device);
 /// Whether scenes are set apart on such a device.
 bool sets_apart(const gpu::Device& device);
 
+/// The copies of a scene on devices of their own, as long as somebody has them.
+class SceneCopies {
+ public:
+  void add(const SceneOn& copy);
+  std::vector<SceneOn> list() const;
+
+ private:
+  struct Copy {
+    std::weak_ptr<const gpu::Device> device;
+    std::weak_ptr<DeviceScene> scene;
+  };
+  mutable std::mutex mutex_;
+  std::vector<Copy> copies_;
+};
+
 /// A scene in device memory.
 struct ShownScene {
   /// The scene as its file has it, lit up, whatever lights are on.
   std::shared_ptr<const Scene> scene;
   /// The tree and the lights that are on the device.
   SceneChoice choice;
+  Surroundings surroundings = {};
   /// How its light is shown.
   DisplayTransform display;
   /// The device that it was put on first.
   SceneOn first;
-  std::shared_ptr<Renderer> renderer;
+  std::shared_ptr<SceneOnDevice> on_device;
+  SetupStats setup_stats;
   /// What was copied there.
   std::shared_ptr<const HostScene> host;
+  /// What set_apart() has made.
+  std::shared_ptr<SceneCopies> copies = std::make_shared<SceneCopies>();
 
   /// The scene with its lights on a device of its own, on a CPU device and where it is not large: the driver compiles
   /// in its queue, and what is compiled there keeps nobody waiting. Else where it was first. Throws DeviceError,
   /// RunError.
   SceneOn set_apart() const;
+
+  // As they are on the devices.
+  std::vector<Light> lights() const;
+  Environment environment() const;
+  /// Whether other surroundings need no other kernel.
+  bool takes(const Surroundings& other) const;
+  /// Brings lights and surroundings to all devices that hold the scene, while nothing is traced there. It may take a
+  /// while, and ProgressivePicture::take_scene_change() comes after it.
+  void put() const;
 };
 
 /// A picture that can be traced at once.
 struct ReadyPicture {
   /// The lights may be others than those on the device, so take_lights() comes before anything is traced.
-  std::shared_ptr<const ShownScene> scene;
+  std::shared_ptr<ShownScene> scene;
   RenderMode mode;
   bool is_draft = false;
   std::unique_ptr<TracedPicture> picture;
@@ -76,6 +117,7 @@ struct ReadyPicture {
 /// A scene and how it is to be shown.
 struct PictureRequest {
   SceneChoice choice;
+  Surroundings surroundings;
   RenderMode mode;
   /// The size of the window, for which room is made.
   uvec2 size{1};
@@ -100,7 +142,7 @@ class ScenePreparer {
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// Makes another picture than the one shown where the request is another than the last, or where files of the scene
   /// have changed. Returns whether it has begun to. Work that failed is not tried again.
-  bool update(const std::shared_ptr<const ShownScene>& shown, const PictureRequest& request, double time_s);
+  bool update(const std::shared_ptr<ShownScene>& shown, const PictureRequest& request, double time_s);
   /// Whether a picture in that mode, which is not shown, is still to come.
   bool will_show(const RenderMode& mode) const { return is_busy() || asked_.mode != mode; }
   /// Gives up the current work as soon as may be, without waiting.
@@ -120,14 +162,16 @@ class ScenePreparer {
   void read();
   void pack(std::shared_ptr<const Scene> scene);
   /// Makes a picture with other lights or another mode of a scene that is on the device.
-  void compile(std::shared_ptr<const ShownScene> scene);
+  void compile(std::shared_ptr<ShownScene> scene);
 
   // Parts of the work.
   void enter(Step step);
-  std::shared_ptr<const ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  /// An average exposure for the first view.
+  float meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const;
   ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// `on` is where it is traced.
-  ReadyPicture make(std::shared_ptr<const ShownScene> scene, SceneOn on, const PictureRequest& request);
+  ReadyPicture make(std::shared_ptr<ShownScene> scene, SceneOn on, const PictureRequest& request);
 
   std::shared_ptr<const gpu::Device> device_;
   double budget_ms_;

@@ -3,6 +3,7 @@
 #include "view/screenshot.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "outputs.h"
 #include "picture_files.h"
 #include "promin/error.h"
 #include "render_options.h"
@@ -35,21 +37,20 @@ std::vector<Channel> list_unlit_channels(std::span<const uvec4> sums, uint32_t s
 }
 
 std::string write_pictures(const std::vector<uvec4>& records, const View& view, const Metadata& metadata,
-                           const DisplayTransform& display) {
+                           const DisplayTransform& display, const std::optional<fs::path>& file) {
   Image image;
   image.size = view.size;
   image.pixels.resize(area_of(view));
   average_samples(records, view.samples_per_pixel, image.pixels);
   const std::vector<Channel> unlit =
       list_unlit_channels(std::span(records).subspan(image.pixels.size()), view.samples_per_pixel);
-  const std::string name = find_free_name(fs::current_path());
-  for (const char* ending : {".exr", ".png"}) {
-    write_image(name + ending, image, metadata, std::nullopt, unlit, display);
-  }
+  const std::string name = file ? "" : find_free_name(fs::current_path());
+  const std::vector<fs::path> files = file ? std::vector{*file} : std::vector<fs::path>{name + ".exr", name + ".png"};
+  for (const fs::path& written : files) write_image(written, image, metadata, std::nullopt, unlit, display);
   const std::string exactness =
       view.error_target ? describe_errors(view.error_target->error, view.error_target->error, *view.error_target)
                         : fmt::format("{} spp", view.samples_per_pixel);
-  return fmt::format("wrote {0}.exr and {0}.png, {1}x{2}, {3}", name, view.size.x, view.size.y, exactness);
+  return fmt::format("wrote {}, {}x{}, {}", fmt::join(names_of(files), " and "), view.size.x, view.size.y, exactness);
 }
 
 }  // namespace
@@ -69,11 +70,11 @@ void Screenshot::record_copy(std::shared_ptr<const gpu::Device> device, const vk
   commands.pipelineBarrier(Stage::eTransfer, Stage::eHost, {}, copied, {}, {});
 }
 
-void Screenshot::write(const Metadata& metadata, const DisplayTransform& display) {
+void Screenshot::write(const Metadata& metadata, const DisplayTransform& display, const std::optional<fs::path>& file) {
   std::vector<uvec4> records(copy_->size_bytes() / sizeof(uvec4));
   std::memcpy(records.data(), copy_->mapped().data(), copy_->size_bytes());
   copy_.reset();
-  written_ = std::async(std::launch::async, write_pictures, std::move(records), view_, metadata, display);
+  written_ = std::async(std::launch::async, write_pictures, std::move(records), view_, metadata, display, file);
 }
 
 void Screenshot::wait() const {

@@ -14,8 +14,8 @@
 
 namespace promin::app {
 
-/// Writes pictures of the window to files: promin-NNNN.exr and .png with the next number that is free in the working
-/// folder. It writes one at a time, and the window does not wait.
+/// Writes pictures of the window to files: a given one, or promin-NNNN.exr and .png with the next number that is free
+/// in the working folder. It writes one at a time, and the window does not wait.
 class Screenshot {
  public:
   bool is_busy() const { return copy_.has_value() || written_.valid(); }
@@ -24,7 +24,8 @@ class Screenshot {
   void record_copy(std::shared_ptr<const gpu::Device> device, const vk::raii::CommandBuffer& commands,
                    const gpu::Buffer& film, const View& view, bool has_unlit);
   /// Is called when the device has done that; writes on a thread of its own.
-  void write(const Metadata& metadata, const DisplayTransform& display);
+  void write(const Metadata& metadata, const DisplayTransform& display,
+             const std::optional<std::filesystem::path>& file);
   /// Is called instead of writing, where the copy is not wanted after all.
   void drop() { copy_.reset(); }
   /// Waits until the picture is written; the device must have finished.

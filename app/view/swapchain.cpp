@@ -127,8 +127,10 @@ void Swapchain::present(uint32_t image) {
 
 void Swapchain::begin_drawing(const vk::raii::CommandBuffer& commands, uint32_t image) const {
   const vk::Rect2D whole({0, 0}, {size_.x, size_.y});
-  const vk::ClearValue black(vk::ClearColorValue(std::array{0.0F, 0.0F, 0.0F, 1.0F}));
-  commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffers_[image], whole, black),
+  // About the backdrop that most scenes are shown before: the first picture is no flash.
+  constexpr float kGrey = 0.8F;
+  const vk::ClearValue grey(vk::ClearColorValue(std::array{kGrey, kGrey, kGrey, 1.0F}));
+  commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffers_[image], whole, grey),
                            vk::SubpassContents::eInline);
 }
 

@@ -45,10 +45,10 @@ gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& 
 }
 
 TracedPicture::TracedPicture(SceneOn scene, FeatureMask features, double budget_ms, const DisplayTransform& display,
-                             std::function<SceneOn()> set_apart)
+                             std::function<SceneOn()> set_apart, const FilmOptions& options)
     : scene_(std::move(scene)),
       display_(display),
-      picture_(*scene_.device, scene_.scene, features, budget_ms, std::move(set_apart)),
+      picture_(*scene_.device, scene_.scene, features, budget_ms, std::move(set_apart), options),
       exposure_(make_exposure_buffer(*scene_.device)),
       counters_(gpu::Buffer::make_readback(*scene_.device, Film::kCountersBytes)),
       work_(scene_.device) {}

@@ -32,9 +32,9 @@ struct EncodedPicture {
 /// but where it says so.
 class TracedPicture {
  public:
-  /// `set_apart` as ProgressivePicture takes it. Throws vk::SystemError and RunError.
+  /// `set_apart` and `options` as ProgressivePicture takes them. Throws vk::SystemError and RunError.
   TracedPicture(SceneOn scene, FeatureMask features, double budget_ms, const DisplayTransform& display,
-                std::function<SceneOn()> set_apart);
+                std::function<SceneOn()> set_apart, const FilmOptions& options);
   /// Waits for the device.
   ~TracedPicture();
   TracedPicture(const TracedPicture&) = delete;

@@ -93,7 +93,10 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   opened.file = options.tracing.scene;
   opened.load = options.tracing.load;
   auto scene = std::make_shared<Scene>(load_for(options.tracing, opened.stats, console, opened.sources));
-  opened.environment = EnvironmentChoice(options.view.environment);
+  // The window turns the light by itself.
+  EnvironmentOptions environment = options.view.environment;
+  environment.light_rotation_deg = 0.0;
+  opened.environment = EnvironmentChoice(environment);
   for (const std::string& warning : opened.environment.warnings()) console.warn(warning);
   ViewOptions view_options = options.view;
   if (options.replay) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "run_program.h"
 #include "view/show_explanation.h"
 #include "view_setup.h"
@@ -27,6 +29,21 @@ constexpr double kLongWait = 0.1;
 constexpr double kDrawInterval = 1.0 / 75.0;
 /// The least part of a frame's target time that is spent on tracing.
 constexpr double kLeastTraceShare = 0.5;
+
+/// A drag over the window's height turns the light by half a turn. Steps are such that a command names them shortly.
+void turn_light(Surroundings& surroundings, double pixels, double window_height) {
+  constexpr double kStepsOfDegree = 8.0;
+  const double turned = surroundings.light_rotation_deg + 180.0 / window_height * pixels;
+  surroundings.light_rotation_deg = std::remainder(std::round(kStepsOfDegree * turned) / kStepsOfDegree, 360.0);
+}
+
+/// The colour that a slider has for a background before it is touched, sRGB.
+vec3 background_of(const Environment& environment) {
+  const bool has_backdrop = environment.shows_backdrop();
+  const vec3 light =
+      has_backdrop ? 0.5F * (environment.backdrop->top + environment.backdrop->bottom) : environment.background;
+  return {encode_srgb(light.x), encode_srgb(light.y), encode_srgb(light.z)};
+}
 
 }  // namespace
 
@@ -53,6 +70,7 @@ Viewer::Viewer(Window& window, std::shared_ptr<const gpu::Device> device, const 
   }
   switches_.scene = start_.choice;
   switches_.scale = start_.scale;
+  switches_.surroundings.light_rotation_deg = start_.environment.light_rotation_deg;
   fit_window();
   imgui_ = std::make_unique<ImguiRenderer>(*device_, window, swapchain_);
 }
@@ -78,11 +96,12 @@ void Viewer::run() {
   if (start_.record) write_camera_path(*start_.record, recorder_.path());
   screenshot_.wait();
   update_screenshot();
+  dialog_.close();
 }
 
 bool Viewer::is_busy() const {
   const auto is_idle = [](const std::unique_ptr<TracedPicture>& picture) { return picture->is_idle(); };
-  return !disposals_.empty() || opening_.is_busy() || query_.is_busy() || framing_.is_busy() ||
+  return !disposals_.empty() || putting_.is_busy() || opening_.is_busy() || query_.is_busy() || framing_.is_busy() ||
          (preparer_ && preparer_->is_busy()) || (traced_ && !traced_->is_idle()) ||
          !std::all_of(retired_.begin(), retired_.end(), is_idle);
 }
@@ -97,6 +116,7 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     frames_.poll();
     update_opening();
     update_picture();
+    update_surroundings();
     update_answers();
     update_screenshot();
     update_replay();
@@ -111,7 +131,8 @@ void Viewer::show_frames(const DeferredSignals& signals) {
     if (frames_to_draw_ == 0) keep_camera();
   }
   move_camera(false);
-  console_.detail(fmt::format("no input waited longer than {:.0f} ms", window_.longest_turn_ms()));
+  console_.detail(fmt::format("no input waited longer than {:.0f} ms, for work of at most {:.0f} ms; {} keys pressed",
+                              window_.longest_turn_ms(), window_.longest_work_ms(), window_.key_count()));
   // A screenshot under way is written.
   while (on_copied_) trace();
 }
@@ -147,6 +168,7 @@ void Viewer::show_scene(OpenedScene opened) {
   } else {
     switches_.scene.lights_off.clear();
     switches_.scene.bvh.reset();
+    switches_.surroundings = {.light_rotation_deg = start_.environment.light_rotation_deg};
   }
   keep_camera();
   preparer_ = std::make_unique<ScenePreparer>(device_, target_ms_, opened_.file, opened_.load, opened_.sources,
@@ -159,11 +181,13 @@ PictureRequest Viewer::request() const {
   // What is to be shown as it is from the start is not begun with a draft. Nothing else is compiled before it is seen.
   const bool has_draft = asked_mode().debug_view == DebugView::kNone && !opened_.replay && !start_.record;
   const bool needs_draft = !traced_ || (is_draft_ && !traced_->picture().shown());
-  return {switches_.scene, asked_mode(), glm::max(swapchain_.size(), uvec2(1)), has_draft && needs_draft};
+  return {switches_.scene, switches_.surroundings, asked_mode(), glm::max(swapchain_.size(), uvec2(1)),
+          has_draft && needs_draft};
 }
 
 void Viewer::move_camera(bool is_of_flight) {
   const Motion motion = window_.take_motion();
+  if (motion.light != 0.0) turn_light(switches_.surroundings, motion.light, window_.framebuffer_size().y);
   if (is_of_flight) control_.place(replay_->next_camera(Window::now()));
   // While a screenshot waits the camera holds still.
   if (!is_replaying() && !wants_screenshot_ && opened_.scene) control_.apply(motion, window_.framebuffer_size().y);
@@ -193,8 +217,13 @@ void Viewer::update_replay() {
 
 void Viewer::update_screenshot() {
   try {
-    if (const std::optional<std::string> text = screenshot_.take()) report(*text);
+    if (std::optional<std::string> text = screenshot_.take()) {
+      const std::string command = std::exchange(saved_command_, {});
+      if (!command.empty()) window_.copy(command);
+      report(*text + (command.empty() ? "" : "; this gives the same, and is on the clipboard: " + command));
+    }
   } catch (const Error& error) {
+    saved_command_.clear();
     report_failure(error.what());
   }
 }
@@ -224,7 +253,32 @@ void Viewer::update_picture() {
       report_failure(error.what());
     }
   }
-  if (traced_ && preparer_->update(scene_, request(), Window::now())) draw_again();
+  // What is compiled may be tried on the devices where surroundings are put.
+  if (traced_ && !putting_.is_busy() && preparer_->update(scene_, request(), Window::now())) draw_again();
+}
+
+bool Viewer::may_put_surroundings() const {
+  const auto is_idle = [](const std::unique_ptr<TracedPicture>& picture) { return picture->is_idle(); };
+  return traced_ && !putting_.is_busy() && scene_->surroundings != switches_.surroundings &&
+         scene_->takes(switches_.surroundings) && !preparer_->is_busy() && !query_.is_busy() && !on_copied_ &&
+         !traced_->picture().is_compiling() && std::all_of(retired_.begin(), retired_.end(), is_idle);
+}
+
+void Viewer::update_surroundings() {
+  try {
+    if (putting_.take()) {
+      traced_->picture().take_scene_change();
+      draw_again();
+    }
+  } catch (const std::exception& error) {
+    report_failure(error.what());
+  }
+  if (!may_put_surroundings() || !traced_->is_idle()) return;
+  scene_->surroundings = switches_.surroundings;
+  putting_.start([scene = scene_] {
+    scene->put();
+    return true;
+  });
 }
 
 void Viewer::show_picture(ReadyPicture ready) {
@@ -249,7 +303,7 @@ void Viewer::show_picture(ReadyPicture ready) {
     for (const std::string& warning : scene_->scene->warnings) warn(warning);
   }
   if (is_new || is_first) {
-    for (const Problem& warning : scene_->renderer->setup_stats().warnings) warn(message_of(warning));
+    for (const Problem& warning : scene_->setup_stats.warnings) warn(message_of(warning));
   }
   if (is_new) message_ = text;
 }
@@ -264,6 +318,7 @@ void Viewer::update_answers() {
   try {
     if (std::optional<ExplainedPixel> answer = query_.take_explained()) {
       explained_ = std::move(*answer);
+      console_.detail(fmt::format("explained: {}; {} keys pressed before", explained_->title, window_.key_count()));
       console_.details(explain_text(explained_->explanation, *explained_->scene));
       draw_again();
     }
@@ -318,15 +373,26 @@ void Viewer::trace() {
   if (!frames_.is_idle()) return;
   if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
     display_.take(*encoded);
+    log_shown();
     frames_to_draw_ = std::max(frames_to_draw_, 1);
   }
-  // The ready picture takes its place, so no new frame may begin.
-  if (preparer_->is_ready() && !on_copied_) return;
+  // The ready picture takes its place, or its scene is about to change, so no new frame may begin.
+  if ((preparer_->is_ready() && !on_copied_) || putting_.is_busy() || may_put_surroundings()) return;
   if (traced_->size() != swapchain_.size()) {
     if (traced_->is_busy()) return;
     traced_->resize(swapchain_.size());
   }
   if (has_tracing()) begin_frame();
+}
+
+void Viewer::log_shown() {
+  static constexpr std::array kWords = {"nothing", "a draft", "a picture", "a refined picture"};
+  const bool is_refined = traced_->picture().shown()->error.has_value();
+  const Shown shown = is_draft_ ? Shown::kDraft : is_refined ? Shown::kRefined : Shown::kWhole;
+  if (shown <= best_shown_) return;
+  best_shown_ = shown;
+  console_.detail(
+      fmt::format("shown: {}; {} keys pressed before", kWords[static_cast<size_t>(shown)], window_.key_count()));
 }
 
 bool Viewer::has_tracing() const {
@@ -358,7 +424,11 @@ void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
   const View view = picture.shown()->view_of(picture.wanted());
   screenshot_.record_copy(traced_->scene().device, commands, picture.film(picture.shown()->film), view,
                           picture.has_unlit());
-  on_copied_ = [this, view, error = picture.shown()->error](const FinishedFrame& finished) {
+  const std::optional<std::filesystem::path> file = std::exchange(saved_file_, std::nullopt);
+  DescribedScene described = described_scene(view);
+  described.output = file;
+  saved_command_ = file && can_describe(described, view) ? describe_command(described, view) : "";
+  on_copied_ = [this, view, file, error = picture.shown()->error](const FinishedFrame& finished) {
     // It is not whole.
     if (finished.has_cut_loops) return screenshot_.drop();
     RunStats& stats = opened_.stats;
@@ -367,7 +437,7 @@ void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
     stats.errors.clear();
     if (error) stats.errors.push_back(*error);
     stats.display = traced_->display();
-    screenshot_.write(describe_picture(stats), stats.display);
+    screenshot_.write(describe_picture(stats), stats.display, file);
   };
   wants_screenshot_ = false;
 }
@@ -410,16 +480,23 @@ void Viewer::build_overlay() {
     content.device = fmt::format("{} ({})", device_->info().name, device_->info().type);
     content.speed = control_.speed();
     if (scene_) content.exposure_ev = scene_->display.exposure_ev;
+    if (scene_) content.background = background_of(scene_->scene->environment);
     content.awaited = shown_awaited_;
     content.message = message_;
     content.is_failure = is_failure_;
     content.bookmarks = bookmarks_;
+    content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
+    if (answer.is_unsettled) frames_to_draw_ = std::max(frames_to_draw_, 1);
+    if (answer.asked) ask_for_file(*answer.asked);
+    if (answer.has_typed) take_file(path_entry_->use, path_entry_->text.data());
     if (answer.camera) control_.place(*answer.camera);
     if (answer.speed) control_.set_speed(*answer.speed);
   }
+  // Both have their place at the right edge.
   if (has_help_) show_help();
-  if (explained_ && !show_explanation(*explained_, control_.camera(), scene_->display)) explained_.reset();
+  if (!has_help_ && explained_ && !show_explanation(*explained_, control_.camera(), scene_->display))
+    explained_.reset();
   imgui_->end_frame();
 }
 

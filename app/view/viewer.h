@@ -15,6 +15,7 @@
 #include "view/camera_control.h"
 #include "view/describe_command.h"
 #include "view/display_pass.h"
+#include "view/file_dialog.h"
 #include "view/flight.h"
 #include "view/frame_queue.h"
 #include "view/imgui_renderer.h"
@@ -75,6 +76,7 @@ class Viewer {
   void show_frames(const DeferredSignals& signals);
   void handle_input();
   void handle_press(Press press);
+  void handle_clicks();
   void print_command();
   /// The pixel of the full picture at a place of the window, in its pixels.
   uvec2 pixel_at(const dvec2& place) const;
@@ -82,6 +84,11 @@ class Viewer {
   void look_at(const View& view, const uvec2& pixel);
   /// Opens another scene.
   void open(const std::filesystem::path& file);
+  /// Asks the user for a file, by a dialog of the desktop or in the panel.
+  void ask_for_file(FileUse use);
+  void take_file(FileUse use, const std::filesystem::path& file);
+  /// Writes the picture to a file as soon as it is complete.
+  void save(std::filesystem::path file);
   /// Frames the scene as it is seen now, or from a side.
   void frame_from(std::optional<Framing> from);
   /// Goes to another of the scene's cameras, so many further.
@@ -103,6 +110,10 @@ class Viewer {
   void show_scene(OpenedScene opened);
   /// Destroys pictures that are no longer needed, which may take a while.
   void dispose();
+  /// Brings the surroundings that the user has changed to the devices, while nothing is traced there.
+  void update_surroundings();
+  /// Whether that is to be done, and the devices do nothing that may take long.
+  bool may_put_surroundings() const;
   /// Takes over a picture that is ready, and asks for those that changed switches and files need.
   void update_picture();
   void show_picture(ReadyPicture ready);
@@ -119,6 +130,8 @@ class Viewer {
   /// Takes finished frames, and begins the next.
   void trace();
   void take_finished(const FinishedFrame& finished);
+  /// Says when a better kind of picture is shown first, if verbose.
+  void log_shown();
   bool has_tracing() const;
   void begin_frame();
   void record_screenshot(const vk::raii::CommandBuffer& commands);
@@ -139,6 +152,9 @@ class Viewer {
   /// The view that is shown, with its samples, where it is complete; else the current one.
   View reproducible_view() const;
 
+  /// The kinds of pictures that come one after the other.
+  enum class Shown { kNothing, kDraft, kWhole, kRefined };
+
   /// ImGui settles its windows within this many frames.
   static constexpr int kSettlingFrames = 3;
 
@@ -157,7 +173,7 @@ class Viewer {
   /// Without a scene before the first is open.
   OpenedScene opened_;
   std::unique_ptr<ScenePreparer> preparer_;
-  std::shared_ptr<const ShownScene> scene_;
+  std::shared_ptr<ShownScene> scene_;
   /// The mode of the picture.
   RenderMode mode_;
   bool is_draft_ = false;
@@ -167,6 +183,8 @@ class Viewer {
   std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
+  /// True once the surroundings are on the devices.
+  Background<bool> putting_;
   /// Whether an orbit begins when its center is found.
   bool wants_orbit_ = false;
   /// Whether it is that of the picture, for which the middle of the scene stands in.
@@ -187,12 +205,19 @@ class Viewer {
   FrameQueue frames_;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;
+  /// Where the picture is to be saved; none for a screenshot.
+  std::optional<std::filesystem::path> saved_file_;
+  /// The command that gives the picture which is being saved; empty where there is none.
+  std::string saved_command_;
+  FileDialog dialog_;
+  std::optional<PathEntry> path_entry_;
   /// Whether the command is printed as soon as there is a picture.
   bool wants_command_ = false;
   /// Is called when the frame that copies a screenshot is finished.
   std::function<void(const FinishedFrame&)> on_copied_;
 
   FrameStatistics statistics_;
+  Shown best_shown_ = Shown::kNothing;
   /// The work beside the picture as the overlay shows it.
   std::string shown_awaited_;
   std::string message_;

@@ -7,7 +7,10 @@
 
 #include <cstdio>
 
+#include "outputs.h"
+#include "promin/error.h"
 #include "promin/framing.h"
+#include "tracing_run.h"
 #include "view/viewer.h"
 
 namespace promin::app {
@@ -22,6 +25,14 @@ void Viewer::handle_input() {
   window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   for (const Press press : window_.take_presses()) handle_press(press);
   for (const std::string& file : window_.take_dropped()) open(file);
+  if (const std::optional<std::string> file = dialog_.take()) take_file(dialog_.use(), *file);
+  // Where surroundings are put no pixel is traced.
+  if (!putting_.is_busy()) handle_clicks();
+  if (traced_ && std::exchange(wants_command_, false)) print_command();
+  if (window_.take_activity()) draw_again();
+}
+
+void Viewer::handle_clicks() {
   const std::vector<dvec2> clicks = window_.take_clicks();
   const std::vector<dvec2> double_clicks = window_.take_double_clicks();
   if (traced_) {
@@ -30,8 +41,6 @@ void Viewer::handle_input() {
     for (const dvec2& place : clicks) query_.ask_why(scene_, view, pixel_at(place));
     for (const dvec2& place : double_clicks) look_at(view, pixel_at(place));
   }
-  if (traced_ && std::exchange(wants_command_, false)) print_command();
-  if (window_.take_activity()) draw_again();
 }
 
 void Viewer::look_at(const View& view, const uvec2& pixel) {
@@ -46,6 +55,33 @@ void Viewer::open(const std::filesystem::path& file) {
   window_.set_title(title_of(file_));
   opening_.start([this, file] { return start_.open(file); });
   draw_again();
+}
+
+void Viewer::ask_for_file(FileUse use) {
+  const bool is_open = use == FileUse::kOpen;
+  const std::string name = is_open ? (file_.parent_path() / "").string() : file_.stem().string() + ".png";
+  if (dialog_.ask(use, name)) return;
+  path_entry_.emplace(PathEntry{.use = use});
+  name.copy(path_entry_->text.data(), path_entry_->text.size() - 1);
+  draw_again();
+}
+
+void Viewer::take_file(FileUse use, const std::filesystem::path& file) {
+  path_entry_.reset();
+  if (use == FileUse::kOpen) return open(file);
+  save(file);
+}
+
+void Viewer::save(std::filesystem::path file) {
+  if (!file.has_extension()) file += ".png";
+  try {
+    check_pictures({file});
+    check_overwrites(files_of(opened_.sources), {file}, std::nullopt);
+  } catch (const Error& error) {
+    return report_failure(error.what());
+  }
+  saved_file_ = file;
+  wants_screenshot_ = true;
 }
 
 void Viewer::frame_from(std::optional<Framing> from) {
@@ -83,6 +119,7 @@ void Viewer::handle_press(Press press) {
       switches_.is_paused = !switches_.is_paused;
       return;
     case Press::kOrbit:
+      if (putting_.is_busy()) return;
       wants_orbit_ = !wants_orbit_ && !control_.is_orbiting() && traced_;
       is_of_middle_ = true;
       if (wants_orbit_) return query_.ask_point(scene_, view_of_middle(), uvec2(0));
@@ -107,6 +144,7 @@ void Viewer::handle_press(Press press) {
       wants_command_ = true;
       return;
     case Press::kScreenshot:
+      saved_file_.reset();
       wants_screenshot_ = true;
       return;
     case Press::kQuit:
@@ -142,6 +180,8 @@ void Viewer::print_command() {
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   LookOptions look = start_.look;
+  const Surroundings& surroundings = scene_->surroundings;
+  if (surroundings.background) look.background = BackgroundChoice{.color = *surroundings.background};
   if (look.averages_exposure || switches_.exposure_ev) look.exposure_ev = display().exposure_ev;
   DescribedScene described;
   described.file = file_;
@@ -149,6 +189,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.lights_off = on.lights_off;
   described.look = look;
   described.environment = start_.environment;
+  described.environment.light_rotation_deg = surroundings.light_rotation_deg;
   described.variant = opened_.load.material_variant;
   described.root = opened_.load.root;
   described.center = scene_->scene->center;

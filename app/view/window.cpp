@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <utility>
 
 #include "promin/error.h"
@@ -47,6 +48,13 @@ GLFWmonitor* find_monitor(GLFWwindow* window) {
     }
   }
   return areas.empty() ? nullptr : monitors[find_display(areas, place)];
+}
+
+/// The seconds that this thread has had a processor.
+double work_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 #ifdef GLFW_PLATFORM
@@ -120,6 +128,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   Callbacks::set(window_);
   ask_display();
   last_wait_s_ = now();
+  last_wait_work_s_ = work_seconds();
 }
 
 Window::~Window() {
@@ -165,8 +174,10 @@ double Window::now() {
 
 void Window::wait(double seconds) {
   longest_turn_s_ = std::max(longest_turn_s_, now() - last_wait_s_);
+  longest_work_s_ = std::max(longest_work_s_, work_seconds() - last_wait_work_s_);
   glfwWaitEventsTimeout(seconds);
   last_wait_s_ = now();
+  last_wait_work_s_ = work_seconds();
 }
 
 bool Window::should_close() const {
@@ -194,8 +205,16 @@ void Window::hide() {
   glfwPollEvents();
 }
 
+bool Window::is_fullscreen() const {
+  return glfwGetWindowMonitor(window_) != nullptr;
+}
+
+void Window::copy(const std::string& text) const {
+  glfwSetClipboardString(window_, text.c_str());
+}
+
 void Window::toggle_fullscreen() {
-  if (glfwGetWindowMonitor(window_) != nullptr) {
+  if (is_fullscreen()) {
     glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
     return;
   }
@@ -216,6 +235,12 @@ std::vector<dvec2> Window::take_clicks() {
   return std::exchange(clicks_, {});
 }
 
+Window::Buttons Window::take_buttons() {
+  Buttons down = std::exchange(went_down_, {});
+  for (size_t i = 0; i < down.size(); ++i) down[i] = down[i] || buttons_[i];
+  return down;
+}
+
 bool Window::take_activity() {
   return std::exchange(is_active_, false);
 }
@@ -227,6 +252,7 @@ void Window::set_overlay_wants(bool keys, bool pointer) {
 
 void Window::on_key(int key, int action) {
   is_active_ = true;
+  if (action == GLFW_PRESS) ++key_count_;
   for (const KeyBinding& binding : key_bindings()) {
     if (binding.key != key) continue;
     // A key that was down when the overlay took them over still comes up.
@@ -240,6 +266,11 @@ void Window::on_key(int key, int action) {
 void Window::on_button(int button, int action, int modifiers) {
   is_active_ = true;
   const bool is_down = action == GLFW_PRESS;
+  const auto number = static_cast<size_t>(button);
+  if (number < buttons_.size()) {
+    buttons_[number] = is_down;
+    went_down_[number] = went_down_[number] || is_down;
+  }
   if (is_down && wants_pointer_ && !is_captured_) return;
   // A captured pointer is nowhere in the window.
   if (is_captured_) {
@@ -247,8 +278,8 @@ void Window::on_button(int button, int action, int modifiers) {
     return;
   }
   if (is_down) {
-    const bool is_orbit = button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT) == 0;
-    drag_ = is_orbit ? Drag::kOrbit : Drag::kPan;
+    const Drag left = (modifiers & GLFW_MOD_SHIFT) == 0 ? Drag::kOrbit : Drag::kLight;
+    drag_ = button == GLFW_MOUSE_BUTTON_LEFT ? left : Drag::kPan;
     is_click_ = true;
     drag_start_ = pointer_;
   } else if (std::exchange(drag_, Drag::kNone) != Drag::kNone && is_click_) {
@@ -285,6 +316,7 @@ void Window::on_pointer(const dvec2& place) {
     is_click_ = false;
   }
   if (drag_ == Drag::kOrbit) return motion_.orbit(pixel_ratio() * way);
+  if (drag_ == Drag::kLight) return motion_.turn_light(pixel_ratio() * way.x);
   motion_.pan(pixel_ratio() * way);
 }
 
@@ -296,6 +328,7 @@ void Window::change_place() {
 
 void Window::release() {
   motion_.release_all(now());
+  buttons_ = {};
   drag_ = Drag::kNone;
   capture_pointer(false);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,6 +44,11 @@ class Window {
   void wait(double seconds);
   /// The longest time from one wait() to the next, in milliseconds: no event has waited longer.
   double longest_turn_ms() const { return 1e3 * longest_turn_s_; }
+  /// The most time of a processor that was taken from one wait() to the next, in milliseconds: what the longest turn
+  /// would be on a machine that does nothing else.
+  double longest_work_ms() const { return 1e3 * longest_work_s_; }
+  /// How many times keys have gone down.
+  uint64_t key_count() const { return key_count_; }
 
   bool should_close() const;
   /// Whether the window was asked to close, or the key to quit is among the presses that are to be taken.
@@ -51,6 +57,9 @@ class Window {
   /// Makes it as large, in screen coordinates, where the user has left it as it was made.
   void resize(const uvec2& size);
   void toggle_fullscreen();
+  bool is_fullscreen() const;
+  /// Puts a text on the clipboard.
+  void copy(const std::string& text) const;
   /// Takes it off the display at once.
   void hide();
 
@@ -73,6 +82,12 @@ class Window {
   bool is_moving() const { return motion_.is_held(); }
   /// Whether the pointer has moved the camera since the last take_motion().
   bool has_turned() const { return motion_.has_any(); }
+
+  /// Where the pointer is, in screen coordinates; nowhere while it turns the camera without a button.
+  std::optional<dvec2> pointer() const { return is_captured_ ? std::nullopt : std::optional(pointer_); }
+  /// Which of its first buttons are down, or went down since the last call.
+  using Buttons = std::array<bool, 3>;
+  Buttons take_buttons();
 
   /// Whether the overlay wants keys and pointer for itself just now.
   void set_overlay_wants(bool keys, bool pointer);
@@ -108,15 +123,20 @@ class Window {
   OverlayScale overlay_scale_;
   double last_wait_s_ = 0.0;
   double longest_turn_s_ = 0.0;
+  double last_wait_work_s_ = 0.0;
+  double longest_work_s_ = 0.0;
+  uint64_t key_count_ = 0;
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
   /// What the pointer does while a button is down.
-  enum class Drag { kNone, kOrbit, kPan };
+  enum class Drag { kNone, kOrbit, kPan, kLight };
   Drag drag_ = Drag::kNone;
   /// Whether the pointer has not wandered since the button went down.
   bool is_click_ = false;
   bool is_captured_ = false;
   dvec2 pointer_{0.0};
+  Buttons buttons_{};
+  Buttons went_down_{};
   dvec2 drag_start_{0.0};
   /// Place and size before full screen, in screen coordinates.
   int windowed_[4] = {0, 0, 0, 0};

@@ -54,19 +54,17 @@ class SceneOnDevice {
   /// Of each object.
   std::span<const uint32_t> object_materials() const { return object_materials_; }
 
-  /// The features of a picture in a mode, with the scene's lights or with others.
-  FeatureMask features(const RenderMode& mode) const { return features_with(light_features_, mode); }
-  FeatureMask features_with(std::span<const Light> lights, const RenderMode& mode) const {
-    return features_with(light_features(lights), mode);
+  /// The features of a picture in a mode, with the scene's lights and surroundings or with those of others.
+  FeatureMask features(const RenderMode& mode) const {
+    return features_with(light_features_, environment_features_, mode);
   }
+  FeatureMask features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const;
 
   void set_lights(std::span<const Light> lights);
   void set_materials(std::span<const Material> materials);
   void set_environment(const Environment& environment);
 
  private:
-  FeatureMask features_with(FeatureMask lights, const RenderMode& mode) const;
-
   bool force_all_features_;
   bool is_tree_built_ = true;
   FeatureMask geometry_features_;

@@ -41,10 +41,10 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   copied_materials_ = std::move(packed.copies.materials);
 }
 
-FeatureMask SceneOnDevice::features_with(FeatureMask lights, const RenderMode& mode) const {
+FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const {
   FeatureMask features = force_all_features_ ? all_features()
                                              : picture_features(geometry_features_, material_features_, lights,
-                                                                environment_features_, primitive_count_);
+                                                                environment, primitive_count_);
   if (!mode.has_shadows) features = features.without(layout::FEATURE_SHADOWS);
   return features | features_of(mode.debug_view);
 }

@@ -172,7 +172,11 @@ DisplayTransform display_of(const Scene& scene, LightChoice choice) {
 }
 
 bool mixes_unlit(const Scene& scene) {
-  return (has_any<Unlit>(scene.materials) || scene.environment.shows_backdrop()) && !is_all_unlit(scene);
+  return mixes_unlit(scene, scene.environment);
+}
+
+bool mixes_unlit(const Scene& scene, const Environment& environment) {
+  return (has_any<Unlit>(scene.materials) || environment.shows_backdrop()) && !is_all_unlit(scene);
 }
 
 }  // namespace promin

@@ -48,13 +48,14 @@ View ShownPicture::view_of(View view) const {
 }
 
 ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene,
-                                       FeatureMask features, double budget_ms, std::function<SceneOn()> set_apart)
+                                       FeatureMask features, double budget_ms, std::function<SceneOn()> set_apart,
+                                       const FilmOptions& options)
     : device_(&device),
       longest_piece_ms_(device.profile().target_dispatch_ms),
       budget_ms_(budget_ms),
       pacer_(budget_ms, TileScheduler::kMinBlocks) {
   films_.reserve(kFilmCount);
-  for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features);
+  for (size_t i = 0; i < kFilmCount; ++i) films_.emplace_back(device, scene, features, options);
   works_beside_ = static_cast<bool>(set_apart);
   make_list_film_ = [&device, scene, features, set_apart = std::move(set_apart)] {
     ListFilm list;
@@ -83,6 +84,8 @@ void ProgressivePicture::resize(const uvec2& size) {
   shown_count_ = 0;
   picture_.reset();
   refined_.reset();
+  is_prepared_ = false;
+  is_list_under_way_ = false;
 }
 
 void ProgressivePicture::want(View view) {
@@ -114,12 +117,12 @@ bool ProgressivePicture::is_busy_beside() const {
 
 bool ProgressivePicture::awaits_samples() const {
   if (picture_ || next_view() || !is_refining()) return false;
-  return is_busy_beside() || (refined_ && refined_->is_under_way());
+  return is_busy_beside() || is_list_under_way_;
 }
 
 double ProgressivePicture::fraction_done() const {
   if (picture_) return picture_->fraction_done();
-  return is_refining() && refined_ && refined_version_ == wanted_version_ ? refined_->fraction_done() : 1.0;
+  return is_refining() && refined_version_ == wanted_version_ ? refined_fraction_ : 1.0;
 }
 
 bool ProgressivePicture::is_complete() const {
@@ -198,42 +201,47 @@ std::shared_ptr<const gpu::Device> ProgressivePicture::refining_device() {
 
 double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& commands, double most_units) {
   // Frames go on meanwhile.
-  if (!refining_device()) return 0.0;
-  if (refined_ && refined_->is_under_way()) return 0.0;
-  if (!prepare_refined()) return 0.0;
-  const double units = refined_->record(commands, pacer_.units(), most_units);
-  has_recorded_list_ = units > 0.0;
-  if (!has_recorded_list_) show_refined();
-  return units;
+  if (!refining_device() || is_list_under_way_ || !prepare_refined()) return 0.0;
+  is_prepared_ = false;
+  has_recorded_list_ = is_list_under_way_ = refined_->has_samples();
+  if (has_recorded_list_) return refined_->record(commands, most_units);
+  show_refined();
+  return 0.0;
 }
 
 bool ProgressivePicture::prepare_refined() {
-  const auto is_wanted = [&] { return refined_ && refined_version_ == wanted_version_; };
   if (refined_to_come_.valid()) {
     if (!is_ready(refined_to_come_)) return false;
     refined_ = refined_to_come_.get();
-    refined_version_ = version_to_come_;
+    is_prepared_ = true;
   }
-  if (is_wanted()) return true;
-  const auto make = [film = list_film_.film.get(), view = wanted_](std::unique_ptr<RefiningPicture> last) {
-    last.reset();
-    return std::make_unique<RefiningPicture>(*film, view);
+  if (is_prepared_ && refined_version_ == wanted_version_) return true;
+  // It needs much memory, so the last one goes before the next is made.
+  if (std::exchange(refined_version_, wanted_version_) != wanted_version_) {
+    refined_.reset();
+    refined_fraction_ = 0.0;
+  }
+  const auto prepare = [film = list_film_.film.get(), view = wanted_,
+                        units = pacer_.units()](std::unique_ptr<RefiningPicture> picture) {
+    if (!picture) picture = std::make_unique<RefiningPicture>(*film, view);
+    picture->prepare(units);
+    return picture;
   };
-  version_to_come_ = wanted_version_;
+  is_prepared_ = false;
   const std::launch policy = works_beside_ ? std::launch::async : std::launch::deferred;
-  refined_to_come_ = std::async(policy, make, std::move(refined_));
+  refined_to_come_ = std::async(policy, prepare, std::move(refined_));
   if (works_beside_) return false;
-  refined_ = refined_to_come_.get();
-  refined_version_ = version_to_come_;
-  return true;
+  refined_to_come_.wait();
+  return prepare_refined();
 }
 
 void ProgressivePicture::show_refined() {
   // Frames that used the film which is not shown ended before the samples of this picture were traced.
   const size_t film = 1 - shown_->film;
-  films_[film].put_pixels(refined_->pixels(), full_size_);
+  films_[film].put_pixels(refined_->take_pixels(), full_size_);
   picture_when_done_ = {film, full_size_, 1, refined_->error()};
   picture_version_ = refined_version_;
+  refined_fraction_ = 0.0;
   finish();
 }
 
@@ -257,7 +265,8 @@ void ProgressivePicture::set_budget(double budget_ms) {
 void ProgressivePicture::take_finished(const Finished& finished) {
   if (finished.units == 0.0) return;
   // Where loops were cut the samples are wrong, and the picture goes on from others nonetheless: its caller is told.
-  if (finished.has_list && refined_) refined_->take();
+  if (finished.has_list) is_list_under_way_ = false;
+  if (finished.has_list && refined_) refined_fraction_ = refined_->fraction_done();
   // Drivers compile in a pipeline's first dispatch.
   if (std::exchange(is_warm_, true)) pacer_.learn(finished.units, finished.time_ms);
   refuse_cut_loops(finished.has_cut_loops);
@@ -266,6 +275,7 @@ void ProgressivePicture::take_finished(const Finished& finished) {
 void ProgressivePicture::take_scene_change() {
   for (Film& film : films_) film.bind_scene();
   if (list_film_to_come_.valid()) list_film_ = list_film_to_come_.get();
+  if (refined_to_come_.valid()) refined_to_come_.wait();
   if (list_film_.film) list_film_.film->bind_scene();
   picture_.reset();
   ++wanted_version_;

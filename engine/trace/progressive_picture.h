@@ -42,10 +42,10 @@ inline constexpr size_t kFilmCount = 2;
 /// `promin render` gives it. One film is traced while the other, complete, is shown.
 class ProgressivePicture {
  public:
-  /// `set_apart`, where there is one, gives the same scene, perhaps on a device of its own: the samples that refine are
-  /// traced there. It is called on another thread.
+  /// `options` are those of the first pictures' films. `set_apart`, where there is one, gives the same scene, perhaps
+  /// on a device of its own: the samples that refine are traced there. It is called on another thread.
   ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
-                     double budget_ms, std::function<SceneOn()> set_apart = {});
+                     double budget_ms, std::function<SceneOn()> set_apart = {}, const FilmOptions& options = {});
 
   /// Makes room for a window; the device must be idle. Afterwards film(i) may be another buffer, and nothing is shown.
   void resize(const uvec2& size);
@@ -127,7 +127,7 @@ class ProgressivePicture {
   /// Whether that is yet to be done.
   bool is_refining() const;
   double record_refinement(const vk::raii::CommandBuffer& commands, double most_units);
-  /// Makes refined_ that of the wanted view. False where it is still being made.
+  /// Makes refined_ that of the wanted view, with its next samples. False where that is still under way.
   bool prepare_refined();
   void show_refined();
   uvec2 first_size() const;
@@ -147,12 +147,16 @@ class ProgressivePicture {
   std::future<ListFilm> list_film_to_come_;
   /// Whether what takes the host long is done on other threads: only for callers with frames of their own.
   bool works_beside_ = false;
-  /// Of the view of refined_version_. While a list is under way it stays, however old that is.
+  /// The picture that is refined, of the view of refined_version_; null while it prepares its next samples.
   std::unique_ptr<RefiningPicture> refined_;
   uint64_t refined_version_ = 0;
-  /// The next one, which needs much memory, and the version that it is for.
   std::future<std::unique_ptr<RefiningPicture>> refined_to_come_;
-  uint64_t version_to_come_ = 0;
+  /// Whether refined_ has prepared what is to be recorded or shown.
+  bool is_prepared_ = false;
+  /// Whether its samples are being traced.
+  bool is_list_under_way_ = false;
+  /// The part of refined_'s next picture that is traced.
+  double refined_fraction_ = 0.0;
   bool has_recorded_list_ = false;
   /// The buffer that trace() takes the counts into.
   std::optional<gpu::Buffer> counters_;

@@ -24,9 +24,9 @@ RefiningPicture::RefiningPicture(Film& film, const View& view)
       error_(first_error(*view.error_target)),
       refinement_(aimed_at(view, error_), {uvec2(0), view.size}, film.records().has_unlit()) {}
 
-double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double units, double most_units) {
-  assert(!is_under_way());
-  if (is_done()) return 0.0;
+void RefiningPicture::prepare(double units) {
+  assert(!is_done());
+  if (has_samples()) take();
   const uint64_t most = std::min<uint64_t>(kMostListedSamples, film_->max_capacity() / kSamplesOfUnit * kSamplesOfUnit);
   for (;;) {
     const bool is_as_shown = done_ && done_->target == error_;
@@ -35,14 +35,17 @@ double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double u
       refinement_.aim(error_);
     }
     list_ = refinement_.next(std::min<uint64_t>(static_cast<uint64_t>(units) * kSamplesOfUnit, most));
-    if (!list_.empty()) break;
+    if (has_samples()) return film_->put_list(list_);
     done_ = PictureError{.target = error_};
     refinement_.add_to(*done_);
     samples_when_done_ = refinement_.sample_count();
     // A picture that no sample was missing for is shown only where it is the last.
-    if (!is_as_shown || is_done()) return 0.0;
+    if (!is_as_shown || is_done()) break;
   }
-  film_->put_list(list_);
+  pixels_ = make_pixels();
+}
+
+double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double most_units) const {
   TileScheduler pieces = film_->cut(view_, list_window(list_.size()), film_->piece_options(view_.max_depth));
   film_->record_begin(commands, pieces);
   double recorded = 0.0;
@@ -55,7 +58,6 @@ double RefiningPicture::record(const vk::raii::CommandBuffer& commands, double u
 }
 
 void RefiningPicture::take() {
-  assert(is_under_way());
   const ReadFilm read = film_->read_list();
   std::vector<vec3> radiance(list_.size());
   average_samples(read.records, 1, radiance);
@@ -65,7 +67,7 @@ void RefiningPicture::take() {
   refinement_.take(radiance, unlit);
 }
 
-std::vector<uvec4> RefiningPicture::pixels() const {
+std::vector<uvec4> RefiningPicture::make_pixels() const {
   std::vector<uvec4> records;
   const bool has_unlit = film_->records().has_unlit();
   records.reserve(refinement_.pixel_count() * (has_unlit ? 2 : 1));
@@ -81,7 +83,7 @@ std::vector<uvec4> RefiningPicture::pixels() const {
 }
 
 double RefiningPicture::fraction_done() const {
-  const auto taken = static_cast<double>(refinement_.sample_count() - samples_when_done_);
+  const auto taken = static_cast<double>(refinement_.sample_count() + list_.size() - samples_when_done_);
   const double total = refinement_.foretell_total() - static_cast<double>(samples_when_done_);
   return total > 0.0 ? std::min(taken / total, 1.0) : 1.0;
 }

@@ -82,5 +82,7 @@ PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice
 /// Whether a scene has unlit materials or a backdrop beside others. Exposure and tone mapping leave their colours alone
 /// in pictures with Aovs::unlit (promin/aovs.h).
 PROMIN_EXPORT bool mixes_unlit(const Scene& scene);
+/// The same of the scene in other surroundings.
+PROMIN_EXPORT bool mixes_unlit(const Scene& scene, const Environment& environment);
 
 }  // namespace promin

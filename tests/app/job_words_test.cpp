@@ -79,6 +79,7 @@ TEST(JobWordsTest, DefaultsCountAsNotGiven) {
                                                                      {"--error-in", "linear"},
                                                                      {"-s", "8"},
                                                                      {"--environment-rotation", "0"},
+                                                                     {"--light-rotation", "0"},
                                                                      {"--environment-intensity", "1"}};
   CLI::App program("", "promin");
   RenderOptions options;

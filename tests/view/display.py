@@ -8,6 +8,7 @@ import pathlib
 import re
 import subprocess
 import tempfile
+import threading
 import time
 
 
@@ -31,6 +32,7 @@ class Display:
     def __init__(self, size="1024x768x24"):
         # Another server that ends just now may take this one's socket along. Without -noreset a server begins anew when
         # its last client goes, and refuses the next one meanwhile.
+        self.size = tuple(map(int, size.split("x")[:2]))
         for _ in range(3):
             self._start(size)
             if self._answers():
@@ -63,6 +65,42 @@ class Display:
         self.process.terminate()
         self.process.wait()
         self.runtime_folder.cleanup()
+
+
+class Typist:
+    """Presses keys that have no effect again and again, from the beginning of a block to its end."""
+
+    INTERVAL = 0.02
+
+    # GLFW takes a key that comes up and goes down at once for one that repeats.
+    KEYS = "jk"
+
+    def __init__(self, display):
+        self.x11 = ctypes.CDLL("libX11.so.6")
+        self.hands = ctypes.CDLL("libXtst.so.6")
+        self.x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.server = ctypes.c_void_p(self.x11.XOpenDisplay(display.environment["DISPLAY"].encode()))
+        self.codes = [self.x11.XKeysymToKeycode(self.server, ctypes.c_ulong(ord(key))) for key in self.KEYS]
+        self.count = 0
+        self.has_ended = threading.Event()
+        self.thread = threading.Thread(target=self._type)
+
+    def _type(self):
+        while not self.has_ended.wait(self.INTERVAL):
+            code = self.codes[self.count % len(self.codes)]
+            for is_down in (1, 0):
+                self.hands.XTestFakeKeyEvent(self.server, code, is_down, ctypes.c_ulong(0))
+            self.x11.XFlush(self.server)
+            self.count += 1
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.has_ended.set()
+        self.thread.join()
+        self.x11.XCloseDisplay(self.server)
 
 
 class Viewer:

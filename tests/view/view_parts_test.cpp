@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
 #include "device_scene/pack_scene.h"
 #include "view/describe_command.h"
+#include "view/file_dialog.h"
 #include "view/flight.h"
 #include "view/keys.h"
 #include "view/scene_preparer.h"
@@ -73,11 +75,82 @@ TEST(DescribeCommand, NamesTheSurroundingsAndTheVariant) {
   scene.environment.panorama = "a sky.hdr";
   scene.environment.rotation_deg = 12.5;
   scene.environment.intensity = 0.3;
+  scene.environment.light_rotation_deg = -60.125;
   scene.variant = "red one";
   scene.root = "the store";
   EXPECT_THAT(describe_command(scene, View()),
               testing::HasSubstr(" --environment 'a sky.hdr' --environment-rotation 12.5 --environment-intensity 0.3 "
-                                 "--variant 'red one' --root 'the store' --eye"));
+                                 "--light-rotation -60.125 --variant 'red one' --root 'the store' --eye"));
+}
+
+TEST(DescribeCommand, NamesThePictureThatIsSaved) {
+  EXPECT_THAT(describe_command({.file = "s", .output = "a box.png"}, View()),
+              testing::StartsWith("promin render 's' -o 'a box.png' --size"));
+}
+
+TEST(TurnLight, TurnsTheSkyAndWhatShinesAlongADirection) {
+  Environment environment;
+  environment.rotation = 0.5F;
+  Light directional;
+  directional.kind = LightKind::kDirectional;
+  directional.direction = vec3(0.0F, -0.6F, -0.8F);
+  Light spot = directional;
+  spot.kind = LightKind::kSpot;
+  std::vector<Light> lights = {directional, spot};
+  turn_light(0.0, environment, lights);
+  EXPECT_EQ(lights[0].direction, directional.direction);
+  turn_light(90.0, environment, lights);
+  EXPECT_FLOAT_EQ(environment.rotation, 0.5F + glm::radians(90.0F));
+  EXPECT_LT(glm::distance(lights[0].direction, vec3(-0.8F, -0.6F, 0.0F)), 1e-6F);
+  EXPECT_EQ(lights[1].direction, spot.direction) << "it has a place";
+}
+
+/// A folder of programs that stand in for the desktop's, as the only ones on PATH.
+class FileDialogTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_);
+    setenv("PATH", folder_.c_str(), 1);
+  }
+  void TearDown() override {
+    setenv("PATH", path_.c_str(), 1);
+    fs::remove_all(folder_);
+  }
+  void write_program(const std::string& name, const std::string& lines) const {
+    std::ofstream(folder_ / name) << "#!/bin/sh\n" << lines;
+    fs::permissions(folder_ / name, fs::perms::owner_all);
+  }
+  /// What the user has chosen, once the dialog is closed.
+  static std::optional<std::string> wait(FileDialog& dialog) {
+    std::optional<std::string> file;
+    while (dialog.is_open() && !file) file = dialog.take();
+    return file;
+  }
+
+  const std::string path_ = std::getenv("PATH");
+  const fs::path folder_ = fs::path(testing::TempDir()) / "promin_file_dialog";
+};
+
+TEST_F(FileDialogTest, GivesTheFileThatIsChosen) {
+  FileDialog dialog;
+  EXPECT_FALSE(dialog.ask(FileUse::kOpen, "a/")) << "there is no program";
+  EXPECT_FALSE(dialog.is_open());
+  write_program("kdialog", "echo \"$1 of $2\"\n");
+  ASSERT_TRUE(dialog.ask(FileUse::kSave, "a picture.png"));
+  EXPECT_EQ(dialog.use(), FileUse::kSave);
+  EXPECT_EQ(wait(dialog), "--getsavefilename of a picture.png");
+  write_program("zenity", "echo chosen; exit 1\n");
+  ASSERT_TRUE(dialog.ask(FileUse::kOpen, "a/"));
+  EXPECT_EQ(wait(dialog), std::nullopt) << "it was cancelled";
+}
+
+TEST_F(FileDialogTest, IsClosedWithItsOwner) {
+  write_program("zenity", "while :; do :; done\n");
+  FileDialog dialog;
+  ASSERT_TRUE(dialog.ask(FileUse::kOpen, "a/"));
+  EXPECT_EQ(dialog.take(), std::nullopt);
+  dialog.close();
+  EXPECT_FALSE(dialog.is_open());
 }
 
 TEST(DescribeCommand, NamesTheTreeWhoseStepsItShows) {

@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-from display import Display, Failure, Viewer, wait_for
+from display import Display, Failure, Typist, Viewer, wait_for
 
 SIZE = (160, 96)
 
@@ -86,12 +86,16 @@ class Session:
 
     def find_middle(self, command):
         """The point that the camera of a command looks at."""
+        return self.find_point(command, (1, 1), (0, 0))
+
+    def find_point(self, command, size, pixel):
+        """The point that a pixel of a command's picture shows, where that had this size."""
         words = shlex.split(command)[1:]
-        words[words.index("--size") + 1 : words.index("--size") + 3] = ["1", "1"]
+        words[words.index("--size") + 1 : words.index("--size") + 3] = map(str, size)
         place = words.index("-o")
-        words[place : place + 2] = ["--explain", "0", "0"]
+        words[place : place + 2] = ["--explain", *map(str, pixel)]
         words[words.index("--spp") + 1] = "1"
-        words[words.index("showcase.gltf")] = self.scene
+        words[words.index(self.scene.name)] = self.scene
         done = run(self.bin / "promin", *words)
         expect(done.returncode == 0, done.stderr)
         return json.loads(done.stdout)["samples"][0]["rays"][0]["hit"]["position"]
@@ -191,7 +195,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
         wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
         # Where it is depends on how many lines the message takes that a screenshot was written.
-        for y in (113, 96, 130, 79):
+        for y in (137, 120, 154, 103):
             viewer.xdotool("mousemove", "--window", viewer.window, 28, y, "sleep", 0.2, "click", 1)
             if has_shadows_soon():
                 break
@@ -397,6 +401,132 @@ def quits_while_it_compiles(bin_folder, scenes, folder):
                 viewer.wait_for_line(awaited, 1, "scene")
             session.quit()
             expect("no input waited longer than" in viewer.err, f"it did not end as it should: {viewer.err}")
+
+
+def answers_while_it_works(bin_folder, scenes, folder):
+    """A key every 20 ms, while it loads, compiles, refines and explains with nothing in the driver's cache."""
+    session = Session(bin_folder, scenes, folder, "-v", MESA_SHADER_CACHE_DIR=str(folder / "no cache"))
+    with session as viewer:
+        viewer.press("Tab")  # the panel would take the click
+        typed = {}
+        with Typist(viewer.display) as typist:
+            for pattern, stage in (
+                ("shown: a draft", "draft"),
+                ("shown: a picture", "picture"),
+                ("shown: a refined", "refined picture"),
+                ("explained: ", "explanation"),
+            ):
+                if stage == "explanation":
+                    viewer.xdotool("mousemove", "--window", viewer.window, 100, 60, "click", 1)
+                line = viewer.wait_for_line(pattern, 1, stage)
+                typed[stage] = (typist.count, int(re.search(r"(\d+) keys? pressed", line).group(1)))
+        session.quit()
+        worst = re.search(r"no input waited longer than (\d+) ms, for work of at most (\d+) ms; (\d+) keys", viewer.err)
+    # Tab and Esc are keys, too; the last is not waited for.
+    expect(int(worst.group(3)) >= typist.count + 1, f"{typist.count} keys were typed: {worst.group(0)}")
+    stages = [(0, 0), *typed.values()]
+    for stage, (typed_before, answered_before), (typed_then, answered_then) in zip(typed, stages, stages[1:]):
+        # A window that stands still meanwhile answers most after the stage. Short ones say nothing: the test looks late.
+        count = typed_then - typed_before
+        answered = answered_then - answered_before
+        expect(count < 100 or 2 * answered >= count, f"few keys were answered before the {stage}: {typed}")
+    print(f"{worst.group(0)}; typed and answered: {typed}")
+
+
+def looks_from_where_keys_say(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, files=("box.gltf",))
+    with session as viewer:
+        viewer.press("Tab", "p")
+        command = session.print_command()
+        eyes = {}
+        for key, look in (("1", (0, 0, -1)), ("3", (-1, 0, 0)), ("7", (0, -1, 0))):
+            viewer.press(key)
+            wait_for(lambda: math.dist(map(float, look_of(session.print_command())), look) < 1e-5, f"view of {key}", 60)
+            eyes[key] = [float(x) for x in eye_of(session.print_command())]
+        # F keeps the direction and frames the model again.
+        viewer.xdotool("mousemove", "--window", viewer.window, 80, 48, "click", 4, "click", 4, "click", 4)
+
+        def distance():
+            return math.dist(map(float, eye_of(session.print_command())), eyes["7"])
+
+        height = math.dist(eyes["7"], (0, 0, 0))
+        wait_for(lambda: distance() > 0.1 * height, "nearer camera", 60)
+        viewer.press("f")
+        wait_for(lambda: distance() < 1e-3 * height, "framed model", 60)
+        expect(math.dist(map(float, look_of(session.print_command())), (0, -1, 0)) < 1e-5, "F turned the camera")
+
+        # A double click looks at the point that was there.
+        viewer.press("r")
+        wait_for(lambda: eye_of(session.print_command()) == eye_of(command), "reset camera", 60)
+        place = (95, 50)
+        point = session.find_point(command, SIZE, place)
+        viewer.xdotool("mousemove", "--window", viewer.window, *place, "click", 1, "click", 1)
+        wait_for(lambda: look_of(session.print_command()) != look_of(command), "turn to a point", 60)
+        middle = session.find_point(session.print_command(), (1, 1), (0, 0))
+        expect(math.dist(point, middle) < 0.02 * math.dist(point, map(float, eye_of(command))), f"{middle}, not {point}")
+
+        # Full screen and back.
+        viewer.press("F11")
+        width, height = viewer.display.size
+        wait_for(lambda: f"--size {width} {height} " in session.print_command(), "full screen", 60)
+        viewer.press("F11")
+        wait_for(lambda: "--size {} {} ".format(*SIZE) in session.print_command(), "window", 60)
+        session.quit()
+
+
+def opens_and_saves_by_dialog(bin_folder, scenes, folder):
+    """By a program that answers as the desktop's dialog does."""
+    programs = folder / "programs"
+    programs.mkdir()
+    shutil.copy(scenes / "box.gltf", folder / "another.gltf")
+    zenity = programs / "zenity"
+    zenity.write_text(f'#!/bin/sh\ncase "$*" in\n*--save*) echo "{folder}/a box.png" ;;\n*) echo "{folder}/another.gltf" ;;\nesac\n')
+    zenity.chmod(0o755)
+    session = Session(bin_folder, scenes, folder, files=("sphere.gltf",), PATH=str(programs))
+    with session as viewer:
+        viewer.xdotool("windowsize", "--sync", viewer.window, 340, 300)
+        wait_for(lambda: "sphere.gltf" in session.print_command() and "340 300" in session.print_command(), "picture")
+
+        def click_until(x, has_effect, what):
+            """The buttons are below some lines of text."""
+            for y in [*range(50, 110, 8)] * 3:
+                viewer.xdotool("mousemove", "--window", viewer.window, x, y, "sleep", 0.2, "click", 1, "sleep", 0.5)
+                if has_effect():
+                    return
+            raise Failure(f"no click has {what}")
+
+        click_until(40, lambda: viewer.run_xdotool("search", "--name", "^another.gltf - promin$").stdout, "opened")
+        wait_for(lambda: "another.gltf" in session.print_command(), "other scene")
+        viewer.press("p")
+        click_until(100, lambda: "wrote " in viewer.err, "saved")
+        line = viewer.wait_for_line("wrote .*a box.png", 1, "saved picture")
+        again = session.render(line[line.index("promin render ") :], "again.png")
+        expect(again.read_bytes() == (folder / "a box.png").read_bytes(), f"the command gives another picture: {line}")
+        session.quit()
+
+
+def turns_the_light(bin_folder, scenes, folder):
+    session = Session(bin_folder, scenes, folder, "--light-rotation", "10", files=("ply_faces.ply", "ply_checker.png"))
+    with session as viewer:
+        viewer.press("Tab", "p")
+        session.take_screenshot(1)
+        command = session.print_command()
+        expect(" --light-rotation 10 " in command, f"not what is shown: {command}")
+        session.expect_same_picture(1, command)
+        viewer.xdotool("keydown", "shift")
+        viewer.drag((40, 50), (120, 50))
+        viewer.xdotool("keyup", "shift")
+        # 80 pixels of a window that is 96 high.
+        wait_for(lambda: " --light-rotation 160 " in session.print_command(), "turned light", 60)
+        session.take_screenshot(2)
+        turned = session.print_command()
+        expect(eye_of(turned) == eye_of(command), f"the camera moved: {turned}")
+        session.expect_same_picture(2, turned)
+        pictures = [(folder / f"promin-000{number}.png").read_bytes() for number in (1, 2)]
+        expect(pictures[0] != pictures[1], "the light was not turned")
+        # A pixel is explained in that light.
+        viewer.xdotool("mousemove", "--window", viewer.window, 80, 50, "click", 1)
+        session.quit()
 
 
 def reads_a_changed_scene(bin_folder, scenes, folder):
