@@ -92,6 +92,12 @@ TEST_F(CliTest, HelpAndVersionEverywhere) {
   }
 }
 
+TEST_F(CliTest, HelpAndVersionAreWordsToo) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "cast"}).out, run({"cast", "--help"}).out);
+  EXPECT_EQ(run({"version"}).out, run({"--version"}).out);
+}
+
 TEST_F(CliTest, HelpHasExamplesAndGroups) {
   const ProcessResult alone = run({});
   EXPECT_EQ(alone.exit_code, 0);

@@ -88,6 +88,14 @@ TEST_F(TypedWordsTest, AFileIsRendered) {
   }
 }
 
+TEST_F(TypedWordsTest, HelpAndVersionAreWordsToo) {
+  EXPECT_EQ(spell("promin help"), "promin --help");
+  EXPECT_EQ(spell("promin help render"), "promin render --help");
+  EXPECT_EQ(spell("promin help rendr"), "promin rendr") << "which is refused";
+  EXPECT_EQ(spell("promin version"), "promin --version");
+  EXPECT_EQ(spell("promin render help"), "promin render help");
+}
+
 TEST_F(TypedWordsTest, SizesAreReadInEveryForm) {
   const std::pair<const char*, uvec2> sizes[] = {{"64x48", {64, 48}},      {"64 48", {64, 48}}, {"64,48", {64, 48}},
                                                  {"64", {64, 0}},          {"x48", {0, 48}},    {"hd", {1280, 720}},
