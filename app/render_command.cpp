@@ -18,6 +18,7 @@
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
+#include "formats/source_file.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"
@@ -348,6 +349,8 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
   check_standard_output(given);
+  // What is no scene has no name for pictures either.
+  check_scene_name(tracing.scene);
   RenderOptions options = given;
   const StandardOutput standard_output(options.pictures);
   options.pictures = name_pictures(options);

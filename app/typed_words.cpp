@@ -140,11 +140,11 @@ void join_size(std::vector<std::string>& words) {
   }
 }
 
-/// Whether it must be a file, be it there or not.
+/// Whether it must be a file, be it there or not. A folder is taken for one, to be refused as that.
 bool names_file(const std::string& word) {
   std::error_code error;
   return !word.starts_with('-') &&
-         (word.find_first_of("./") != std::string::npos || std::filesystem::is_regular_file(word, error));
+         (word.find_first_of("./") != std::string::npos || std::filesystem::exists(word, error));
 }
 
 void add_render(const CLI::App& program, std::vector<std::string>& words) {

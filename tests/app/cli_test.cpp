@@ -293,6 +293,17 @@ TEST_F(CliTest, BadScenesAreRefused) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("garbage.gltf", "empty.obj", "scene.blend", "old.exr"));
 }
 
+TEST_F(CliTest, AFolderNamesItsScenes) {
+  const std::string named = "it holds square.gltf and triangle.obj; name a file";
+  for (const char* place : {".", "./"}) {
+    expect_failure(run({place}), 3, "is a folder, not a file, " + std::string(place) + "; " + named);
+  }
+  fs::create_directory(folder() / "models");
+  expect_failure(run({"models"}), 3, "is a folder, not a file, models; name a file that ends in");
+  expect_failure(run({"info", "."}), 3, named);
+  EXPECT_THAT(files(), testing::ElementsAre("models"));
+}
+
 TEST_F(CliTest, BadPanoramasAreRefused) {
   write("broken.hdr", "#?RADIANCE");
   write_image(folder() / "bright.exr", {{4, 2}, std::vector<vec3>(8, vec3(2e15F))});

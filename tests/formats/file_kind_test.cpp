@@ -126,6 +126,19 @@ TEST_F(FilesOfScenesTest, ArchivesAreScenesBySomeEndings) {
   EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasSubstr("the file is a compressed Blender file"));
 }
 
+TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {
+  const std::string where = "is a folder, not a file, " + folder_.string() + "; ";
+  EXPECT_THAT(refusal(folder_), HasSubstr(where + "name a file that ends in .gltf, .glb"));
+  write("notes.txt", "");
+  write("c.nff", "");
+  EXPECT_THAT(refusal(folder_), HasSubstr(where + "it holds c.nff; name a file"));
+  write("b.GLB", "");
+  write("a.obj", "");
+  EXPECT_THAT(refusal(folder_), HasSubstr(where + "it holds a.obj and b.GLB; name a file"));
+  std::filesystem::create_directory(folder_ / "d.gltf");
+  EXPECT_THAT(refusal(folder_ / "d.gltf"), HasSubstr("is a folder"));
+}
+
 TEST_F(FilesOfScenesTest, WhatSaysNothingIsSaidToBeNothing) {
   EXPECT_THAT(refusal("a.obj", "hello\n"), Not(HasSubstr("the file is")));
   EXPECT_THAT(refusal("a.txt", "hello\n"), HasSubstr("unknown scene format \".txt\", "));
