@@ -22,6 +22,7 @@
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "scene/glass.h"
 #include "scene/stray_geometry.h"
 #include "scene/turned_normals.h"
@@ -177,6 +178,9 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
   const std::string what = "unknown scene format " + quote(ending);
   const FileKind kind = find_file_kind(file);
+  if (kind.name.empty() && is_writable_format(file)) {
+    throw InputError({"a " + ending + " is a picture, not a scene", file.string(), "name " + name_endings()});
+  }
   if (kind.name.empty()) throw InputError({what, file.string(), "use " + name_endings()});
   throw InputError({what + ", the file is " + kind.name, file.string(), kind.cure});
 }

@@ -122,6 +122,7 @@ TEST_F(CliTest, AFileAloneIsRendered) {
   render({"square.gltf", "--size", "8", "8"}, "b.png");
   EXPECT_EQ(read("a.png"), read("b.png"));
   expect_failure(run({"nope.glb"}), 3, "file not found, nope.glb");
+  expect_failure(run({"a.png"}), 3, "a .png is a picture, not a scene, a.png; name a file that ends in .gltf");
 }
 
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
