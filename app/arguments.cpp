@@ -287,6 +287,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> given_options(cons
 
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help) {
   CLI::App* command = program.add_subcommand(name, help);
+  // The program's examples are inherited.
+  command->footer("");
   add_common_options(*command);
   return *command;
 }

@@ -16,6 +16,7 @@
 
 #include "core/count_of.h"
 #include "core/srgb.h"
+#include "help.h"
 #include "image/compare_channels.h"
 #include "outputs.h"
 #include "promin/compare.h"
@@ -212,6 +213,10 @@ Command add_compare_command(CLI::App& program) {
                         options->pixels_per_degree),
             [=](const OptionValues& words) { options->pixels_per_degree = words.real(0, 1.0, 1000.0); });
   table.add_flag("--json", "Print JSON", options->prints_json);
+  add_examples(command, {{"promin compare before.png after.png", "prints how far they are apart"},
+                         {"promin compare before.png after.png -o where.png", "shows where they differ"},
+                         {"promin compare before.png after.png --fail 2/255 --fail-percent 0.1",
+                          "fails where more than a thousandth of the pixels is off by more than 2 of 255"}});
   return {&command, [options] { compare(*options); }};
 }
 

@@ -14,6 +14,7 @@
 #include "core/divide_up.h"
 #include "deferred_signals.h"
 #include "font.h"
+#include "help.h"
 #include "image/open_pictures.h"
 #include "outputs.h"
 #include "progress.h"
@@ -202,6 +203,9 @@ Command add_contact_sheet_command(CLI::App& program) {
             [=](const OptionValues& w) { options->columns = w.whole(0, 1, kMaxColumns); });
   add_view_options(table, options->each.view);
   add_tracing_options(table, options->each.tracing);
+  add_examples(command, {{"promin contact-sheet *.glb -o sheet.png", "all models of the folder"},
+                         {"promin contact-sheet a.glb b.obj -o sheet.png --columns 2 --size 640x480",
+                          "two models side by side, larger"}});
   return {&command, [options] { make_sheet(*options); }};
 }
 

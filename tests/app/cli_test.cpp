@@ -114,6 +114,13 @@ TEST_F(CliTest, HelpHasExamplesAndGroups) {
     at = found;
   }
   EXPECT_THAT(help, Not(HasSubstr("--samples")));
+  for (const char* command : {"merge", "cast", "compare", "info", "thumbnail", "contact-sheet", "devices"}) {
+    const std::string own = run({command, "--help"}).out;
+    const size_t examples = own.find("Examples:");
+    if (examples == std::string::npos) continue;
+    EXPECT_THAT(own.substr(examples), Not(ContainsRegex("  promin (model|info|render)"))) << command;
+    EXPECT_THAT(own.substr(examples), HasSubstr("  promin " + std::string(command) + " ")) << command;
+  }
 }
 
 TEST_F(CliTest, AFileAloneIsRendered) {
