@@ -402,6 +402,16 @@ void apply_quality(RenderOptions& options) {
   }
 }
 
+void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual) {
+  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
+            [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
+            fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "
+                        "[normal]",
+                        1, kDefaultSamples, kHighSamples),
+            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
@@ -416,14 +426,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
-  table.add("-s,--spp", "N",
-            fmt::format("Samples a pixel, 1 to {} [{}, with --explain 1]", kMaxSamplesPerPixel, kDefaultSamples),
-            [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
-  table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
-            fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "
-                        "[normal]",
-                        1, kDefaultSamples, kHighSamples),
-            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
+  add_sample_options(table, options, fmt::format("{}, with --explain 1", kDefaultSamples));
   add_error_options(
       table, options.error,
       fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {} to 1, where 1 is white",
