@@ -19,6 +19,8 @@ namespace promin::app {
 namespace {
 
 constexpr const char* kWhere = "on the command line";
+/// The largest number above or below the line of a fraction.
+constexpr double kMostOfFraction = 1e9;
 
 /// `near` is what the user may have meant, where that is known.
 std::string cure_for(const std::string& command, std::string_view near = {}) {
@@ -213,6 +215,13 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
            nearest_name(words_[i], others));
   }
   return number;
+}
+
+std::optional<double> OptionValues::fraction() const {
+  const size_t bar = text().find('/');
+  if (bar == std::string::npos) return std::nullopt;
+  const OptionValues parts = with({text().substr(0, bar), text().substr(bar + 1)});
+  return parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
 }
 
 dvec3 OptionValues::vector(double max) const {

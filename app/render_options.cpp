@@ -38,8 +38,6 @@ constexpr uint32_t kMaxTextureMib = 8192;
 /// Seconds.
 constexpr double kMinTimeLimit = 1e-3;
 constexpr double kMaxTimeLimit = 1e6;
-/// The largest number in a fraction that is an error.
-constexpr double kMostOfFraction = 1e9;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kLinear = "linear:";
 constexpr std::string_view kTransparent = "transparent";
@@ -143,16 +141,10 @@ BackgroundChoice read_background(const OptionValues& words) {
 float read_error(const OptionValues& words) {
   // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
   const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
-  const std::string& text = words.text();
-  const size_t bar = text.find('/');
-  double error = 0.0;
-  if (bar == std::string::npos) {
-    error = words.real(0, least, 1.0);
-  } else {
-    const OptionValues parts = words.with({text.substr(0, bar), text.substr(bar + 1)});
-    error = parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
-    if (error < least || error > 1.0)
-      words.refuse(fmt::format("--target-error takes {} to 1, not \"{}\"", least_error(), text));
+  const std::optional<double> quotient = words.fraction();
+  const double error = quotient ? *quotient : words.real(0, least, 1.0);
+  if (error < least || error > 1.0) {
+    words.refuse(fmt::format("--target-error takes {} to 1, not \"{}\"", least_error(), words.text()));
   }
   return std::max(static_cast<float>(error), kMinTargetError);
 }
