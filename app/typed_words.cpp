@@ -121,6 +121,15 @@ std::optional<std::string> take_value(std::vector<std::string>& words, std::stri
   return value;
 }
 
+/// -h is help, but for before a number.
+void spell_sides(std::vector<std::string>& words) {
+  for (size_t i = 1; i + 1 < words.size(); ++i) {
+    if (!is_number(words[i + 1])) continue;
+    if (words[i] == "-w") words[i] = kWidth;
+    if (words[i] == "-h") words[i] = kHeight;
+  }
+}
+
 /// --size of --width and --height.
 void join_sides(std::vector<std::string>& words) {
   size_t place = 0;
@@ -180,6 +189,7 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
     }
   }
   if (!has_option(command, kSize)) return spelt;
+  spell_sides(spelt);
   join_sides(spelt);
   join_size(spelt);
   return spelt;

@@ -17,8 +17,8 @@ class App;
 // What people type who know other programs.
 namespace promin::app {
 
-/// A command line in the words of the program's option tables: --samples becomes --spp, --width and --height become
-/// --size, and the two numbers of --size W H become one word. Where a program renders, the command "render" is put in
+/// A command line in the words of the program's option tables: --samples becomes --spp, --width and --height (-w
+/// and -h before a number) become --size, and the two numbers of --size W H become one word. Where a program renders, the command "render" is put in
 /// before a first word that is no command but a file, or an option beside a file. A first word "help" or "version" becomes
 /// an option of the program or of the command that follows. All else stays as it is.
 std::vector<std::string> spell_out(const CLI::App& program, const std::vector<std::string>& words);

@@ -68,6 +68,9 @@ TEST_F(TypedWordsTest, ASizeIsOneWord) {
   EXPECT_EQ(spell("promin render a.glb --height 48 -s 4 --width=64"), "promin render a.glb --size 64x48 -s 4");
   EXPECT_EQ(spell("promin render a.glb --height 48"), "promin render a.glb --size x48");
   EXPECT_EQ(spell("promin render a.glb --width 64"), "promin render a.glb --size 64");
+  EXPECT_EQ(spell("promin a.glb -w 64 -h 48 -o a.png"), "promin render a.glb --size 64x48 -o a.png");
+  EXPECT_EQ(spell("promin a.glb -h"), "promin render a.glb -h") << "which is help";
+  EXPECT_EQ(spell("promin render -h a.glb"), "promin render -h a.glb");
 }
 
 TEST_F(TypedWordsTest, NormalsHaveOneNameOrTheOther) {
