@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "core/suggest.h"
 #include "promin/error.h"
@@ -170,6 +171,13 @@ std::vector<const char*> fill_up_alternatives(const std::vector<std::string>& wo
 bool is_number(const std::string& word) {
   double number = 0.0;
   return parse_number(word, number);
+}
+
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream rest(list + ",");
+  for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
+  return parts;
 }
 
 std::vector<const CLI::App*> commands_of(const CLI::App& program) {

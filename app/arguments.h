@@ -103,6 +103,9 @@ struct Command {
 /// Whether a word is a decimal number and nothing else.
 bool is_number(const std::string& word);
 
+/// The parts of a text between commas.
+std::vector<std::string> split_list(const std::string& list);
+
 /// All commands that a program has.
 std::vector<const CLI::App*> commands_of(const CLI::App& program);
 

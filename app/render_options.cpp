@@ -10,7 +10,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "arguments.h"
 #include "camera_path.h"
@@ -49,14 +48,6 @@ constexpr std::string_view kNormal = "normal";
 constexpr std::string_view kNormals = "normals";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
-/// The parts between commas.
-std::vector<std::string> split_list(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream rest(list + ",");
-  for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
-  return parts;
-}
-
 /// Reads names between commas.
 AovSet read_aovs(const OptionValues& words) {
   AovSet choice;
@@ -94,13 +85,16 @@ Enum read_name(const OptionValues& words, std::span<const std::string_view> name
 
 /// Reads "640x480", "640" (the width), "x480" (the height) or a name. What is left open is 0.
 uvec2 read_size(const OptionValues& words) {
-  const std::string& text = words.text();
+  constexpr std::string_view kTimes = "\u00d7";
+  std::string text = words.text();
   if (const std::optional<uvec2> named = find_named_size(text)) return *named;
-  const size_t by = text.find_first_of("xX,");
-  if (text.find_first_of("0123456789") == std::string::npos) {
-    words.refuse(
-        fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"", fmt::join(size_names(), " or "), text),
-        nearest_name(text, size_names()));
+  if (const size_t at = text.find(kTimes); at != std::string::npos) text.replace(at, kTimes.size(), "x");
+  const size_t by = text.find_first_of("xX,*");
+  const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
+  if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
+    words.refuse(fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"",
+                             fmt::join(size_names(), " or "), words.text()),
+                 nearest_name(text, size_names()));
   }
   const std::string height = by == std::string::npos ? "" : text.substr(by + 1);
   const OptionValues sides = words.with({text.substr(0, by), height});

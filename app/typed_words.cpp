@@ -3,8 +3,10 @@
 #include "typed_words.h"
 
 #include <CLI/App.hpp>
+#include <CLI/Option.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "arguments.h"
 
@@ -149,6 +151,36 @@ void join_size(std::vector<std::string>& words) {
   }
 }
 
+/// Whether these are all numbers, as many as an option takes.
+bool are_values_of(const CLI::Option* option, const std::vector<std::string>& parts) {
+  return option != nullptr && parts.size() > 1 && std::cmp_equal(parts.size(), option->get_type_size()) &&
+         std::ranges::all_of(parts, is_number);
+}
+
+/// The words of --eye X,Y,Z, and of all others that take several numbers.
+void split_numbers(const CLI::App& command, std::vector<std::string>& words) {
+  for (size_t i = 1; i < words.size(); ++i) {
+    const size_t equals = words[i].find('=');
+    const bool is_joined = equals != std::string::npos;
+    if (!words[i].starts_with("--") || (!is_joined && i + 1 == words.size())) continue;
+    const std::string name = words[i].substr(0, equals);
+    const std::vector<std::string> parts = split_list(is_joined ? words[i].substr(equals + 1) : words[i + 1]);
+    if (!are_values_of(command.get_option_no_throw(name), parts)) continue;
+    words[i] = name;
+    const auto values = words.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    words.insert(is_joined ? values : words.erase(values), parts.begin(), parts.end());
+  }
+}
+
+/// --up Z is --up z.
+void lower_axes(std::vector<std::string>& words) {
+  for (size_t i = 2; i < words.size(); ++i) {
+    if (words[i - 1] != "--up" || words[i].empty() || words[i].size() > 2) continue;
+    char& axis = words[i].back();
+    if (axis >= 'X' && axis <= 'Z') axis = static_cast<char>(axis - 'X' + 'x');
+  }
+}
+
 /// Whether it must be a file, be it there or not. A folder is taken for one, to be refused as that.
 bool names_file(const std::string& word) {
   std::error_code error;
@@ -188,6 +220,8 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
       if (word.substr(0, word.find('=')) == other.typed) word.replace(0, other.typed.size(), other.option);
     }
   }
+  split_numbers(command, spelt);
+  lower_axes(spelt);
   if (!has_option(command, kSize)) return spelt;
   spell_sides(spelt);
   join_sides(spelt);

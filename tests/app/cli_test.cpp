@@ -195,6 +195,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values for --size WxH|hd|fullhd|4k, on"},
       {{"render", "square.gltf", "--size", "large", "-o", "a.exr"},
        "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"large\""},
+      {{"render", "square.gltf", "--size", "640:480", "-o", "a.exr"},
+       "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"640:480\""},
       {{"render", "square.gltf", "--size", "fulhd", "-o", "a.exr"}, "did you mean fullhd?"},
       {{"render", "square.gltf", "--size", "64x48x32"}, "not \"48x32\" in \"64x48x32\""},
       {{"square.gltf", "--gpu", "0"}, "unknown option --gpu, on the command line; did you mean --device?"},

@@ -73,6 +73,26 @@ TEST_F(TypedWordsTest, ASizeIsOneWord) {
   EXPECT_EQ(spell("promin render -h a.glb"), "promin render -h a.glb");
 }
 
+TEST_F(TypedWordsTest, NumbersMayHaveCommas) {
+  EXPECT_EQ(spell("promin render a.glb --eye 1,-2,3e1 --spp 4"), "promin render a.glb --eye 1 -2 3e1 --spp 4");
+  EXPECT_EQ(spell("promin render a.glb --look-at=1,2,3"), "promin render a.glb --look-at 1 2 3");
+  EXPECT_EQ(spell("promin render a.glb --crop 0,0,8,8"), "promin render a.glb --crop 0 0 8 8");
+  for (const char* line : {"promin render a.glb --eye 1,2", "promin render a.glb --eye 1,,3",
+                           "promin render a.glb --lights-off 1,2,3", "promin render a.glb --background linear:1,2,3"}) {
+    EXPECT_EQ(spell(line), line);
+  }
+  parse("promin render a.glb --eye 1,2,3 --direction 0,0,1 --up 0,1,0");
+  EXPECT_EQ(pictures_.view.pose.eye, dvec3(1, 2, 3));
+  EXPECT_EQ(pictures_.view.pose.up, dvec3(0, 1, 0));
+}
+
+TEST_F(TypedWordsTest, AxesMayBeCapitals) {
+  parse("promin render a.glb --up Z");
+  EXPECT_EQ(pictures_.view.pose.up, dvec3(0, 0, 1));
+  parse("promin render a.glb --up -X");
+  EXPECT_EQ(pictures_.view.pose.up, dvec3(-1, 0, 0));
+}
+
 TEST_F(TypedWordsTest, NormalsHaveOneNameOrTheOther) {
   for (const char* name : {"normal", "normals"}) {
     parse(std::string("promin render a.glb --shading ") + name + " --aov depth," + name);
@@ -100,9 +120,10 @@ TEST_F(TypedWordsTest, HelpAndVersionAreWordsToo) {
 }
 
 TEST_F(TypedWordsTest, SizesAreReadInEveryForm) {
-  const std::pair<const char*, uvec2> sizes[] = {{"64x48", {64, 48}},      {"64 48", {64, 48}}, {"64,48", {64, 48}},
-                                                 {"64", {64, 0}},          {"x48", {0, 48}},    {"hd", {1280, 720}},
-                                                 {"fullhd", {1920, 1080}}, {"4k", {3840, 2160}}};
+  const std::pair<const char*, uvec2> sizes[] = {
+      {"64x48", {64, 48}},      {"64 48", {64, 48}}, {"64,48", {64, 48}},      {"64", {64, 0}},
+      {"x48", {0, 48}},         {"64*48", {64, 48}}, {"64\u00d748", {64, 48}}, {"hd", {1280, 720}},
+      {"fullhd", {1920, 1080}}, {"4k", {3840, 2160}}};
   for (const auto& [words, size] : sizes) {
     parse(std::string("promin render a.glb --size ") + words);
     EXPECT_EQ(pictures_.view.size, size) << words;
