@@ -124,6 +124,8 @@ TEST_F(FilesOfScenesTest, ArchivesAreScenesBySomeEndings) {
   EXPECT_THAT(refusal("a.usdz", "PK\x03\x04"), HasSubstr("the file is USD"));
   EXPECT_THAT(refusal("a.3MF", "PK\x03\x04"), HasSubstr("the file is 3MF"));
   EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasSubstr("the file is a compressed Blender file"));
+  EXPECT_THAT(refusal("a.blend", "\x1F\x8B"), HasSubstr("the file is a compressed Blender file"));
+  EXPECT_THAT(refusal("a.blend", "BLENDER-v300"), HasSubstr("the file is a Blender file"));
 }
 
 TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {
