@@ -14,6 +14,7 @@
 
 #include "core/suggest.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "typed_words.h"
 
 namespace promin::app {
@@ -67,13 +68,17 @@ std::string nearest_option(const std::string& name, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;
-    for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+    for (const std::string& known : option->get_lnames()) names.push_back(known);
   }
-  return nearest_of(name, names);
+  // Dashes are no letters that two names have in common.
+  const std::string near = nearest_of(name.substr(std::min(name.find_first_not_of('-'), name.size())), names);
+  return near.empty() ? "" : "--" + near;
 }
 
 /// The same of the program's commands.
 std::string nearest_command(const std::string& name, const CLI::App& program) {
+  const std::string meant = find_command_by_meaning(program, name);
+  if (!meant.empty()) return meant;
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(program)) names.push_back(command->get_name());
   return nearest_of(name, names);
@@ -95,7 +100,10 @@ void refuse_leftovers(const CLI::App& program) {
   // A program without commands is one itself.
   const bool lacks_command = &command == &program && !commands_of(program).empty();
   const std::string& word = leftovers.front();
-  if (!lacks_command) throw UsageError({"unexpected argument " + word, kWhere, cure_for(path)});
+  if (!lacks_command) {
+    const bool is_output = is_writable_format(word) && command.get_option_no_throw("--output") != nullptr;
+    throw UsageError({"unexpected argument " + word, kWhere, is_output ? "say -o " + word : cure_for(path)});
+  }
   throw UsageError({"unknown command " + word, kWhere, cure_for(path, nearest_command(word, program))});
 }
 

@@ -18,10 +18,10 @@ constexpr std::string_view kSize = "--size";
 constexpr std::string_view kWidth = "--width";
 constexpr std::string_view kHeight = "--height";
 
-/// What another program calls an option.
+/// What another program calls an option or a command.
 struct OtherName {
   std::string_view typed;
-  std::string_view option;
+  std::string_view own;
 };
 
 /// Those that can mean nothing else, and take the same values.
@@ -86,9 +86,16 @@ constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
                                       {"--tolerance", "--target-error"},
                                       {"--tonemap", "--tone-mapping"},
                                       {"--tonemapping", "--tone-mapping"},
+                                      {"--transparent-background", "--alpha"},
+                                      {"--transparent-bg", "--alpha"},
+                                      {"--turntable", "--path"},
                                       {"--view", "--from"},
                                       {"--viewpoint", "--from"},
                                       {"--wireframe", "--shading"}};
+
+/// The same of commands.
+constexpr OtherName kNearCommands[] = {
+    {"diff", "compare"}, {"gpus", "devices"}, {"inspect", "info"}, {"montage", "contact-sheet"}};
 
 constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k"};
 constexpr uvec2 kNamedSizes[] = {{1280, 720}, {1920, 1080}, {3840, 2160}};
@@ -215,9 +222,9 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
   turn_words_to_options(program, spelt);
   const CLI::App& command = find_command(program, spelt);
   for (const OtherName& other : kSameOptions) {
-    if (!has_option(command, other.option) || has_option(command, other.typed)) continue;
+    if (!has_option(command, other.own) || has_option(command, other.typed)) continue;
     for (std::string& word : spelt) {
-      if (word.substr(0, word.find('=')) == other.typed) word.replace(0, other.typed.size(), other.option);
+      if (word.substr(0, word.find('=')) == other.typed) word.replace(0, other.typed.size(), other.own);
     }
   }
   split_numbers(command, spelt);
@@ -231,8 +238,15 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
 
 std::string find_by_meaning(const CLI::App& command, std::string_view typed) {
   const auto* const found = std::ranges::find_if(
-      kNearOptions, [&](const OtherName& other) { return other.typed == typed && has_option(command, other.option); });
-  return found == std::end(kNearOptions) ? "" : std::string(found->option);
+      kNearOptions, [&](const OtherName& other) { return other.typed == typed && has_option(command, other.own); });
+  return found == std::end(kNearOptions) ? "" : std::string(found->own);
+}
+
+std::string find_command_by_meaning(const CLI::App& program, std::string_view typed) {
+  const auto* const found = std::ranges::find_if(kNearCommands, [&](const OtherName& other) {
+    return other.typed == typed && is_command(program, std::string(other.own));
+  });
+  return found == std::end(kNearCommands) ? "" : std::string(found->own);
 }
 
 std::optional<uvec2> find_named_size(std::string_view name) {

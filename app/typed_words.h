@@ -27,6 +27,9 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
 /// The option of a command that does what another program's option of this name does; empty where none is known.
 std::string find_by_meaning(const CLI::App& command, std::string_view typed);
 
+/// The same of a program's commands.
+std::string find_command_by_meaning(const CLI::App& program, std::string_view typed);
+
 /// The size of pictures that a name as "hd" stands for.
 std::optional<uvec2> find_named_size(std::string_view name);
 

@@ -157,6 +157,11 @@ TEST_F(TypedWordsTest, WhatIsMeantIsAnOptionOfTheCommand) {
   EXPECT_EQ(find_by_meaning(*cast_, "--gpu"), "--device");
   EXPECT_EQ(find_by_meaning(*cast_, "--bg"), "");
   EXPECT_EQ(find_by_meaning(*render_, "--nothing-like-it"), "");
+  EXPECT_EQ(find_by_meaning(*render_, "--transparent-background"), "--alpha");
+  EXPECT_EQ(find_by_meaning(*render_, "--turntable"), "--path");
+  EXPECT_EQ(find_command_by_meaning(program_, "diff"), "") << "this one compares nothing";
+  add_command(program_, "compare", "");
+  EXPECT_EQ(find_command_by_meaning(program_, "diff"), "compare");
 }
 
 }  // namespace
