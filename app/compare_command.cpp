@@ -51,8 +51,8 @@ PictureEncoding common_encoding(const CompareOptions& options) {
                     "give two .exr or two .png files"});
 }
 
-/// The colour that shows an error of 0...1, from black over red to white as the map "magma" of matplotlib has it at
-/// five places, in linear light.
+/// The colour that shows an error of 0...1, from black over violet and orange to white as the map "magma" of matplotlib
+/// has it at five places, in linear light.
 vec3 heat_color(float error) {
   constexpr std::array<dvec3, 5> kCodes = {{{0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}}};
   const double place = static_cast<double>(std::clamp(error, 0.0F, 1.0F)) * (kCodes.size() - 1);

@@ -319,8 +319,8 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
   const auto found = std::ranges::find_if(
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
-  throw UsageError({"a file that is no picture of " + scene + " by promin is there already", found->string(),
-                    "say by -o where to write"});
+  throw UsageError(
+      {found->string() + " exists and promin did not make it from " + scene, "", "say by -o where to write"});
 }
 
 /// Throws UsageError where a picture on the standard output would not be the only one there.

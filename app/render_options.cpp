@@ -292,18 +292,18 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   };
   table.add("--target-error", "E", std::string(target_help),
             [&](const OptionValues& w) { error.target = read_error(w); });
-  table.add("--min-spp", "N",
-            fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
-                        "--target-error from 1/{:g} on {}]",
-                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
-            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
+  table.add(
+      "--min-spp", "N",
+      fmt::format("Least samples per pixel, with --target-error, a power of two from {} [{}, for a --target-error "
+                  "from 1/{:g} on {}]",
+                  kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
+      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
-            fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
-                        kMaxRefinedSamples, ErrorTarget{}.max_samples),
+            fmt::format("Most samples per pixel, with --target-error, a power of two to {} [{}]", kMaxRefinedSamples,
+                        ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
   table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
-            "The same: what errors are of: linear light, or what is shown, exposed, tone mapped and encoded as sRGB "
-            "[linear]",
+            "With --target-error: measure the error in linear light or as displayed [linear]",
             [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
 }
 
@@ -580,14 +580,14 @@ void check_render_options(const RenderOptions& options) {
 
   // What only an EXR holds; PNG files take alpha alone.
   const auto& pictures = options.pictures;
+  const std::string stem = options.tracing.scene.stem().string();
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
   for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
                                        {has_depth_kind, "--depth"},
                                        {options.exr.is_half, "--half"},
                                        {options.names_compression, "--compression"},
                                        {options.exr.is_multipart, "--multipart"}}) {
-    refuse_if(is_given && !has_exr, fmt::format("{} has no picture to go to", name),
-              "give -o with the ending .exr as well");
+    refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
   }
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
   if (options.aovs.alpha) {
@@ -600,7 +600,7 @@ void check_render_options(const RenderOptions& options) {
 
   // What only a PNG shows.
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
-  refuse_if(view.look.dithers && !has_png, "--dither has no picture to go to", "give -o with the ending .png as well");
+  refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
 }
 
 }  // namespace promin::app

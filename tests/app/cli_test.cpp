@@ -185,7 +185,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.hdr", "--alpha"}, "--alpha has no place in a .hdr"},
       {{"render", "square.gltf", "-o", "-", "-o", "-"}, "-o - is given twice"},
       {{"render", "square.gltf", "-o", "-", "--job", "j"}, "-o - and --job contradict each other"},
-      {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"}, "--aov has no picture to go to"},
+      {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"},
+       "--aov needs an EXR, on the command line; add -o square.exr"},
       {{"render", "square.gltf", "-o", "a"}, "unknown output ending \"\", a;"},
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite an input"},
@@ -270,7 +271,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "--exposure", "averge", "-o", "a.exr"}, "did you mean average?"},
       {{"render", "square.gltf", "-o", "a.png", "--alpha", "--background", "1", "1", "1"},
        "--alpha and --background contradict each other, on the command line; leave one out: --alpha makes"},
-      {{"render", "square.gltf", "-o", "a.exr", "--dither"}, "--dither has no picture to go to"},
+      {{"render", "square.gltf", "-o", "a.exr", "--dither"},
+       "--dither needs a PNG, on the command line; add -o square.png"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "direct", "--shading", "normals"},
        "--aov of light and --shading"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/0"}, "not \"0\" in \"1/0\""},
@@ -927,11 +929,10 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
     run({"render", "triangle.obj", "-o", name, "--size", "8", "8"});
     const std::string other = read(name);
     expect_failure(run({"render", "square.gltf", "--size", "7", "7"}), 2,
-                   std::string("a file that is no picture of square.gltf by promin is there already, ") + name +
-                       "; say by -o where to write");
+                   name + std::string(" exists and promin did not make it from square.gltf; say by -o where to write"));
     EXPECT_EQ(read(name), other);
     write(name, "my notes");
-    expect_failure(run({"render", "square.gltf"}), 2, "is there already");
+    expect_failure(run({"render", "square.gltf"}), 2, "exists and promin did not make it");
     EXPECT_EQ(run({"render", "square.gltf", "-o", name, "--size", "8", "8"}).exit_code, 0) << "-o replaces";
   }
   EXPECT_EQ(read("square.png"), before);
@@ -1255,7 +1256,7 @@ TEST_F(CliTest, AovsAreChannelsOfTheExr) {
   EXPECT_EQ(picture.pixels, plain.pixels);
   EXPECT_THAT(read("a.exr"), testing::AllOf(HasSubstr("object"), Not(HasSubstr("primitive")), Not(HasSubstr("N.X"))));
 
-  expect_failure(run({"render", "square.gltf", "-o", "a.png", "--aov", "depth"}), 2, "give -o with the ending .exr");
+  expect_failure(run({"render", "square.gltf", "-o", "a.png", "--aov", "depth"}), 2, "--aov needs an EXR");
   expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--aov", "depth,colour"}), 2, "not \"colour\"");
   EXPECT_EQ(
       run({"render", "square.gltf", "-o", "b.exr", "-o", "b.png", "--aov", "normal", "--size", "8", "8"}).exit_code, 0);
