@@ -164,7 +164,7 @@ void warn_of_idle_limit(const CompareOptions& options, PictureEncoding encoding)
 template <typename Difference>
 void check_limit(const Difference& difference, const std::string& in, const CompareOptions& options) {
   if (percent_different(difference) <= options.fail_percent.value_or(0.0)) return;
-  const std::string allowed = options.fail_percent ? fmt::format(", {:.6g} % where {:g} % may",
+  const std::string allowed = options.fail_percent ? fmt::format(", {:.6g} % where {:g} % is allowed",
                                                                  percent_different(difference), *options.fail_percent)
                                                    : "";
   throw DifferenceError({fmt::format("{} {} by more than {:g}{}{}, the most at pixel {} {} by {:.6g}",

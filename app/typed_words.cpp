@@ -204,22 +204,26 @@ void add_render(const CLI::App& program, std::vector<std::string>& words) {
   if (!is_one(words[1]) && (names_file(words[1]) || begins_with_option)) words.insert(words.begin() + 1, kRender);
 }
 
-/// "promin help render" and "promin version" are options of the command or program that they are about.
-void turn_words_to_options(const CLI::App& program, std::vector<std::string>& words) {
-  if (words.size() < 2 || is_command(program, words[1]) || commands_of(program).empty()) return;
-  if (words[1] == "version") words[1] = "--version";
-  if (words[1] != "help") return;
+/// "promin help render" and "promin version" are options of the command or program that they are about. False where it
+/// is neither.
+bool turn_words_to_options(const CLI::App& program, std::vector<std::string>& words) {
+  if (words.size() < 2 || commands_of(program).empty()) return false;
+  if (words[1] == "version") {
+    words[1] = "--version";
+    return true;
+  }
+  if (words[1] != "help") return false;
   words.erase(words.begin() + 1);
   // A word that is no command is refused.
   if (words.size() == 1 || is_command(program, words[1])) words.emplace_back("--help");
+  return true;
 }
 
 }  // namespace
 
 std::vector<std::string> spell_out(const CLI::App& program, const std::vector<std::string>& words) {
   std::vector<std::string> spelt = words;
-  add_render(program, spelt);
-  turn_words_to_options(program, spelt);
+  if (!turn_words_to_options(program, spelt)) add_render(program, spelt);
   const CLI::App& command = find_command(program, spelt);
   for (const OtherName& other : kSameOptions) {
     if (!has_option(command, other.own) || has_option(command, other.typed)) continue;

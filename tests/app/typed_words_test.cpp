@@ -115,6 +115,7 @@ TEST_F(TypedWordsTest, HelpAndVersionAreWordsToo) {
   EXPECT_EQ(spell("promin help"), "promin --help");
   EXPECT_EQ(spell("promin help render"), "promin render --help");
   EXPECT_EQ(spell("promin help rendr"), "promin rendr") << "which is refused";
+  EXPECT_EQ(spell("promin help a.glb"), "promin a.glb");
   EXPECT_EQ(spell("promin version"), "promin --version");
   EXPECT_EQ(spell("promin render help"), "promin render help");
 }
