@@ -18,7 +18,7 @@
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
-#include "formats/source_file.h"
+#include "formats/file_kind.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"

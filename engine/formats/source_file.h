@@ -19,9 +19,6 @@ struct SourceFile {
   std::optional<FileStamp> stamp;
 };
 
-/// Throws InputError where load_scene refuses a file by its name or for being a folder.
-void check_scene_name(const std::filesystem::path& file);
-
 /// Does what load_scene does, and reports each file that was read or missed, the scene's own first, also where it
 /// throws.
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources);
