@@ -88,7 +88,10 @@ uvec2 read_size(const OptionValues& words) {
   constexpr std::string_view kTimes = "\u00d7";
   std::string text = words.text();
   if (const std::optional<uvec2> named = find_named_size(text)) return *named;
-  if (const size_t at = text.find(kTimes); at != std::string::npos) text.replace(at, kTimes.size(), "x");
+  if (const size_t at = text.find(kTimes); at != std::string::npos) {
+    text[at] = 'x';
+    text.erase(at + 1, kTimes.size() - 1);
+  }
   const size_t by = text.find_first_of("xX,*");
   const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
   if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
