@@ -168,8 +168,8 @@ void refuse_folder(const std::filesystem::path& file) {
   }
   std::string names;
   for (const std::string& name : scenes) names.append(names.empty() ? "it holds " : " and ").append(name);
-  throw InputError(
-      {"is a folder, not a file", file.string(), names.empty() ? "name " + name_endings() : names + "; name a file"});
+  throw InputError({"the scene is a folder, not a file", file.string(),
+                    names.empty() ? "name " + name_endings() : names + "; name a file"});
 }
 
 const SceneFormat& find_format(const std::filesystem::path& file) {
