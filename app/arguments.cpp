@@ -282,7 +282,7 @@ void OptionTable::add_required_repeated(const std::string& names, const std::str
   add_repeated(names, placeholder, help, std::move(set));
   CLI::Option* option = command_.get_option(display_name(names))->required();
   // One word or more.
-  if (option->get_positional()) option->expected(1, -1);
+  if (option->get_positional()) option->expected(1, -1)->allow_extra_args();
 }
 
 void OptionTable::add_hidden(const std::string& name, Setter set) {
