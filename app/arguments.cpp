@@ -10,15 +10,19 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "core/suggest.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "typed_words.h"
 
 namespace promin::app {
 namespace {
 
 constexpr const char* kWhere = "on the command line";
+/// The largest number above or below the line of a fraction.
+constexpr double kMostOfFraction = 1e9;
 
 /// `near` is what the user may have meant, where that is known.
 std::string cure_for(const std::string& command, std::string_view near = {}) {
@@ -64,13 +68,17 @@ std::string nearest_option(const std::string& name, const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;
-    for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+    for (const std::string& known : option->get_lnames()) names.push_back(known);
   }
-  return nearest_of(name, names);
+  // Dashes are no letters that two names have in common.
+  const std::string near = nearest_of(name.substr(std::min(name.find_first_not_of('-'), name.size())), names);
+  return near.empty() ? "" : "--" + near;
 }
 
 /// The same of the program's commands.
 std::string nearest_command(const std::string& name, const CLI::App& program) {
+  const std::string meant = find_command_by_meaning(program, name);
+  if (!meant.empty()) return meant;
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(program)) names.push_back(command->get_name());
   return nearest_of(name, names);
@@ -92,7 +100,10 @@ void refuse_leftovers(const CLI::App& program) {
   // A program without commands is one itself.
   const bool lacks_command = &command == &program && !commands_of(program).empty();
   const std::string& word = leftovers.front();
-  if (!lacks_command) throw UsageError({"unexpected argument " + word, kWhere, cure_for(path)});
+  if (!lacks_command) {
+    const bool is_output = is_writable_format(word) && command.get_option_no_throw("--output") != nullptr;
+    throw UsageError({"unexpected argument " + word, kWhere, is_output ? "say -o " + word : cure_for(path)});
+  }
   throw UsageError({"unknown command " + word, kWhere, cure_for(path, nearest_command(word, program))});
 }
 
@@ -170,6 +181,13 @@ bool is_number(const std::string& word) {
   return parse_number(word, number);
 }
 
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream rest(list + ",");
+  for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
+  return parts;
+}
+
 std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
 }
@@ -215,6 +233,13 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
   return number;
 }
 
+std::optional<double> OptionValues::fraction() const {
+  const size_t bar = text().find('/');
+  if (bar == std::string::npos) return std::nullopt;
+  const OptionValues parts = with({text().substr(0, bar), text().substr(bar + 1)});
+  return parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
+}
+
 dvec3 OptionValues::vector(double max) const {
   return {real(0, -max, max), real(1, -max, max), real(2, -max, max)};
 }
@@ -257,7 +282,7 @@ void OptionTable::add_required_repeated(const std::string& names, const std::str
   add_repeated(names, placeholder, help, std::move(set));
   CLI::Option* option = command_.get_option(display_name(names))->required();
   // One word or more.
-  if (option->get_positional()) option->expected(-1);
+  if (option->get_positional()) option->expected(1, -1)->allow_extra_args();
 }
 
 void OptionTable::add_hidden(const std::string& name, Setter set) {
@@ -287,6 +312,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> given_options(cons
 
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help) {
   CLI::App* command = program.add_subcommand(name, help);
+  // The program's examples are inherited.
+  command->footer("");
   add_common_options(*command);
   return *command;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,8 @@ class OptionValues {
   /// Reads a number in min...max, both included. `others` are words that the option takes as well, which the caller has
   /// looked for.
   double real(size_t i, double min, double max, std::span<const std::string_view> others = {}) const;
+  /// Reads the only word as a quotient, as "1/64"; nullopt where it has no line. The caller checks the range.
+  std::optional<double> fraction() const;
   /// Reads three numbers in -max...max.
   dvec3 vector(double max) const;
   /// Reads one of `choices`.
@@ -99,6 +102,9 @@ struct Command {
 
 /// Whether a word is a decimal number and nothing else.
 bool is_number(const std::string& word);
+
+/// The parts of a text between commas.
+std::vector<std::string> split_list(const std::string& list);
 
 /// All commands that a program has.
 std::vector<const CLI::App*> commands_of(const CLI::App& program);

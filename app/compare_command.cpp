@@ -14,8 +14,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "console.h"
 #include "core/count_of.h"
 #include "core/srgb.h"
+#include "help.h"
 #include "image/compare_channels.h"
 #include "outputs.h"
 #include "promin/compare.h"
@@ -49,8 +51,8 @@ PictureEncoding common_encoding(const CompareOptions& options) {
                     "give two .exr or two .png files"});
 }
 
-/// The colour that shows an error of 0...1, from black over red to white as the map "magma" of matplotlib has it at
-/// five places, in linear light.
+/// The colour that shows an error of 0...1, from black over violet and orange to white as the map "magma" of matplotlib
+/// has it at five places, in linear light.
 vec3 heat_color(float error) {
   constexpr std::array<dvec3, 5> kCodes = {{{0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}}};
   const double place = static_cast<double>(std::clamp(error, 0.0F, 1.0F)) * (kCodes.size() - 1);
@@ -148,14 +150,27 @@ void print_rows(const PictureDifference& difference, double fail) {
   }
 }
 
+/// Warns of a limit that no codes of 0 to 1 exceed, by what the user may have meant.
+void warn_of_idle_limit(const CompareOptions& options, PictureEncoding encoding) {
+  constexpr double kMostCode = 255.0;
+  if (encoding != PictureEncoding::kSrgb || !options.fail || *options.fail < 1.0) return;
+  const std::string meant =
+      *options.fail <= kMostCode ? fmt::format("; {0:g} of 255 is --fail {0:g}/255", *options.fail) : "";
+  Console(Verbosity::kNormal)
+      .warn(fmt::format("--fail {:g} never fails: numbers of these files are 0 to 1{}", *options.fail, meant));
+}
+
 /// Throws DifferenceError where more pixels differ than may. `in` says of which channel.
 template <typename Difference>
 void check_limit(const Difference& difference, const std::string& in, const CompareOptions& options) {
   if (percent_different(difference) <= options.fail_percent.value_or(0.0)) return;
-  throw DifferenceError({fmt::format("{} {} by more than {:g}{}, the most at pixel {} {} by {:.6g}",
+  const std::string allowed = options.fail_percent ? fmt::format(", {:.6g} % where {:g} % is allowed",
+                                                                 percent_different(difference), *options.fail_percent)
+                                                   : "";
+  throw DifferenceError({fmt::format("{} {} by more than {:g}{}{}, the most at pixel {} {} by {:.6g}",
                                      count_of(difference.different_count, "pixel"),
                                      verb_of(difference.different_count, "differs", "differ"), *options.fail, in,
-                                     difference.largest_at.x, difference.largest_at.y, difference.largest),
+                                     allowed, difference.largest_at.x, difference.largest_at.y, difference.largest),
                          fmt::format("{} against {}", options.second.string(), options.first.string()), ""});
 }
 
@@ -172,6 +187,7 @@ void compare(const CompareOptions& options) {
   const Image first = read_image(options.first);
   const Image second = read_image(options.second);
   const PictureEncoding encoding = common_encoding(options);
+  warn_of_idle_limit(options, encoding);
   const double fail = options.fail.value_or(0.0);
   const PictureDifference difference = compare_pictures(
       first, second, {.encoding = encoding, .fail = fail, .pixels_per_degree = options.pixels_per_degree});
@@ -203,15 +219,22 @@ Command add_compare_command(CLI::App& program) {
             "Write where they differ: .png what a viewer sees (FLIP) in colours from black to white, .exr the absolute "
             "differences with FLIP as a channel",
             [=](const OptionValues& words) { options->difference = words.text(); });
-  table.add("--fail", "X", "Exit with 5 where a pixel differs by more, in the files' numbers, PNG's as 0 to 1",
-            [=](const OptionValues& words) { options->fail = words.real(0, 0.0, kMostDifference); });
-  table.add("--fail-percent", "P", "With --fail: so many pixels in a hundred may differ by more [0]",
+  table.add("--fail", "X", "Exit with 5 if any pixel differs by more than X (PNG: 0 to 1, so 2/255 is 0.0078)",
+            [=](const OptionValues& words) {
+              const std::optional<double> quotient = words.fraction();
+              options->fail = quotient ? *quotient : words.real(0, 0.0, kMostDifference);
+            });
+  table.add("--fail-percent", "P", "With --fail: percent of pixels allowed to differ by more [0]",
             [=](const OptionValues& words) { options->fail_percent = words.real(0, 0.0, 100.0); });
   table.add("--pixels-per-degree", "N",
             fmt::format("Of the viewer's sight, for FLIP [{:.4g}: a screen of 3840 pixels, as wide as it is away]",
                         options->pixels_per_degree),
             [=](const OptionValues& words) { options->pixels_per_degree = words.real(0, 1.0, 1000.0); });
   table.add_flag("--json", "Print JSON", options->prints_json);
+  add_examples(command, {{"promin compare before.png after.png", "prints how far they are apart"},
+                         {"promin compare before.png after.png -o where.png", "shows where they differ"},
+                         {"promin compare before.png after.png --fail 2/255 --fail-percent 0.1",
+                          "fails where more than a thousandth of the pixels is off by more than 2 of 255"}});
   return {&command, [options] { compare(*options); }};
 }
 

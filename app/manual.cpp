@@ -94,7 +94,7 @@ std::string synopsis_of(const CLI::App& program, const CLI::App& app) {
   if (&app != &program) line += " " + app.get_name();
   line += "\n[\\fIOPTIONS\\fR]";
   for (const CLI::Option* option : positionals_of(app)) {
-    const std::string name = roff(option->get_name(true));
+    const std::string name = roff(option->get_name(true)) + (option->get_expected_max() > 1 ? "..." : "");
     line += option->get_required() ? " \\fI" + name + "\\fR" : " [\\fI" + name + "\\fR]";
   }
   return line + "\n";

@@ -18,6 +18,7 @@
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
 #include "explanation.h"
+#include "formats/file_kind.h"
 #include "outputs.h"
 #include "picture_files.h"
 #include "picture_job.h"
@@ -320,8 +321,8 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
   const auto found = std::ranges::find_if(
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
-  throw UsageError({"a file that is no picture of " + scene + " by promin is there already", found->string(),
-                    "say by -o where to write"});
+  throw UsageError(
+      {found->string() + " exists and promin did not make it from " + scene, "", "say by -o where to write"});
 }
 
 /// Throws UsageError where a picture on the standard output would not be the only one there.
@@ -350,6 +351,8 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
   check_standard_output(given);
+  // What is no scene has no name for pictures either.
+  check_scene_name(tracing.scene);
   RenderOptions options = given;
   const StandardOutput standard_output(options.pictures);
   options.pictures = name_pictures(options);

@@ -10,7 +10,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "arguments.h"
 #include "camera_path.h"
@@ -38,8 +37,6 @@ constexpr uint32_t kMaxTextureMib = 8192;
 /// Seconds.
 constexpr double kMinTimeLimit = 1e-3;
 constexpr double kMaxTimeLimit = 1e6;
-/// The largest number in a fraction that is an error.
-constexpr double kMostOfFraction = 1e9;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kLinear = "linear:";
 constexpr std::string_view kTransparent = "transparent";
@@ -50,14 +47,6 @@ constexpr std::string_view kCryptomatte = "cryptomatte";
 constexpr std::string_view kNormal = "normal";
 constexpr std::string_view kNormals = "normals";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
-
-/// The parts between commas.
-std::vector<std::string> split_list(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream rest(list + ",");
-  for (std::string part; std::getline(rest, part, ',');) parts.push_back(part);
-  return parts;
-}
 
 /// Reads names between commas.
 AovSet read_aovs(const OptionValues& words) {
@@ -96,13 +85,19 @@ Enum read_name(const OptionValues& words, std::span<const std::string_view> name
 
 /// Reads "640x480", "640" (the width), "x480" (the height) or a name. What is left open is 0.
 uvec2 read_size(const OptionValues& words) {
-  const std::string& text = words.text();
+  constexpr std::string_view kTimes = "\u00d7";
+  std::string text = words.text();
   if (const std::optional<uvec2> named = find_named_size(text)) return *named;
-  const size_t by = text.find_first_of("xX,");
-  if (text.find_first_of("0123456789") == std::string::npos) {
-    words.refuse(
-        fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"", fmt::join(size_names(), " or "), text),
-        nearest_name(text, size_names()));
+  if (const size_t at = text.find(kTimes); at != std::string::npos) {
+    text[at] = 'x';
+    text.erase(at + 1, kTimes.size() - 1);
+  }
+  const size_t by = text.find_first_of("xX,*");
+  const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
+  if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
+    words.refuse(fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"",
+                             fmt::join(size_names(), " or "), words.text()),
+                 nearest_name(text, size_names()));
   }
   const std::string height = by == std::string::npos ? "" : text.substr(by + 1);
   const OptionValues sides = words.with({text.substr(0, by), height});
@@ -143,16 +138,10 @@ BackgroundChoice read_background(const OptionValues& words) {
 float read_error(const OptionValues& words) {
   // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
   const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
-  const std::string& text = words.text();
-  const size_t bar = text.find('/');
-  double error = 0.0;
-  if (bar == std::string::npos) {
-    error = words.real(0, least, 1.0);
-  } else {
-    const OptionValues parts = words.with({text.substr(0, bar), text.substr(bar + 1)});
-    error = parts.real(0, 0.0, kMostOfFraction) / parts.real(1, 1.0, kMostOfFraction);
-    if (error < least || error > 1.0)
-      words.refuse(fmt::format("--target-error takes {} to 1, not \"{}\"", least_error(), text));
+  const std::optional<double> quotient = words.fraction();
+  const double error = quotient ? *quotient : words.real(0, least, 1.0);
+  if (error < least || error > 1.0) {
+    words.refuse(fmt::format("--target-error takes {} to 1, not \"{}\"", least_error(), words.text()));
   }
   return std::max(static_cast<float>(error), kMinTargetError);
 }
@@ -306,18 +295,18 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   };
   table.add("--target-error", "E", std::string(target_help),
             [&](const OptionValues& w) { error.target = read_error(w); });
-  table.add("--min-spp", "N",
-            fmt::format("Of pictures of an error: samples that each pixel takes, a power of two from {} [{}, for a "
-                        "--target-error from 1/{:g} on {}]",
-                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
-            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
+  table.add(
+      "--min-spp", "N",
+      fmt::format("Least samples per pixel, with --target-error, a power of two from {} [{}, for a --target-error "
+                  "from 1/{:g} on {}]",
+                  kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
+      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
-            fmt::format("The same: samples at which a pixel stops, near enough or not, a power of two to {} [{}]",
-                        kMaxRefinedSamples, ErrorTarget{}.max_samples),
+            fmt::format("Most samples per pixel, with --target-error, a power of two to {} [{}]", kMaxRefinedSamples,
+                        ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
   table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
-            "The same: what errors are of: linear light, or what is shown, exposed, tone mapped and encoded as sRGB "
-            "[linear]",
+            "With --target-error: measure the error in linear light or as displayed [linear]",
             [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
 }
 
@@ -402,6 +391,16 @@ void apply_quality(RenderOptions& options) {
   }
 }
 
+void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual) {
+  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
+            [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
+            fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "
+                        "[normal]",
+                        1, kDefaultSamples, kHighSamples),
+            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
@@ -416,14 +415,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
-  table.add("-s,--spp", "N",
-            fmt::format("Samples a pixel, 1 to {} [{}, with --explain 1]", kMaxSamplesPerPixel, kDefaultSamples),
-            [&](const OptionValues& w) { view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
-  table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
-            fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "
-                        "[normal]",
-                        1, kDefaultSamples, kHighSamples),
-            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
+  add_sample_options(table, options, fmt::format("{}, with --explain 1", kDefaultSamples));
   add_error_options(
       table, options.error,
       fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {} to 1, where 1 is white",
@@ -591,14 +583,14 @@ void check_render_options(const RenderOptions& options) {
 
   // What only an EXR holds; PNG files take alpha alone.
   const auto& pictures = options.pictures;
+  const std::string stem = options.tracing.scene.stem().string();
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
   for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
                                        {has_depth_kind, "--depth"},
                                        {options.exr.is_half, "--half"},
                                        {options.names_compression, "--compression"},
                                        {options.exr.is_multipart, "--multipart"}}) {
-    refuse_if(is_given && !has_exr, fmt::format("{} has no picture to go to", name),
-              "give -o with the ending .exr as well");
+    refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
   }
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
   if (options.aovs.alpha) {
@@ -611,7 +603,7 @@ void check_render_options(const RenderOptions& options) {
 
   // What only a PNG shows.
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
-  refuse_if(view.look.dithers && !has_png, "--dither has no picture to go to", "give -o with the ending .png as well");
+  refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
 }
 
 }  // namespace promin::app

@@ -161,6 +161,9 @@ struct RenderOptions {
 /// parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 
+/// Adds the rows of --spp, with what is usual, and --quality. `options` must outlive the parsing.
+void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual);
+
 /// Adds the rows of --target-error, with this help, and of the samples that go with it. `error` must outlive the
 /// parsing.
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help);

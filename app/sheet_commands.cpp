@@ -14,6 +14,7 @@
 #include "core/divide_up.h"
 #include "deferred_signals.h"
 #include "font.h"
+#include "help.h"
 #include "image/open_pictures.h"
 #include "outputs.h"
 #include "progress.h"
@@ -202,8 +203,14 @@ Command add_contact_sheet_command(CLI::App& program) {
                      [=](const OptionValues& w) { options->each.pictures = {w.text()}; });
   table.add("--columns", "N", "Pictures side by side [as many as make the sheet about square]",
             [=](const OptionValues& w) { options->columns = w.whole(0, 1, kMaxColumns); });
+  add_sample_options(table, options->each, fmt::to_string(kDefaultSamples));
   add_view_options(table, options->each.view);
+  command.get_option("--size")->description(
+      fmt::format("Size of each picture in pixels; 640 is a width [{}x{}]", kSheetPicture.x, kSheetPicture.y));
   add_tracing_options(table, options->each.tracing);
+  add_examples(command, {{"promin contact-sheet *.glb -o sheet.png", "all models of the folder"},
+                         {"promin contact-sheet a.glb b.obj -o sheet.png --columns 2 --size 640x480",
+                          "two models side by side, larger"}});
   return {&command, [options] { make_sheet(*options); }};
 }
 

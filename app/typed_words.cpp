@@ -3,8 +3,10 @@
 #include "typed_words.h"
 
 #include <CLI/App.hpp>
+#include <CLI/Option.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "arguments.h"
 
@@ -16,10 +18,10 @@ constexpr std::string_view kSize = "--size";
 constexpr std::string_view kWidth = "--width";
 constexpr std::string_view kHeight = "--height";
 
-/// What another program calls an option.
+/// What another program calls an option or a command.
 struct OtherName {
   std::string_view typed;
-  std::string_view option;
+  std::string_view own;
 };
 
 /// Those that can mean nothing else, and take the same values.
@@ -84,9 +86,16 @@ constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
                                       {"--tolerance", "--target-error"},
                                       {"--tonemap", "--tone-mapping"},
                                       {"--tonemapping", "--tone-mapping"},
+                                      {"--transparent-background", "--alpha"},
+                                      {"--transparent-bg", "--alpha"},
+                                      {"--turntable", "--path"},
                                       {"--view", "--from"},
                                       {"--viewpoint", "--from"},
                                       {"--wireframe", "--shading"}};
+
+/// The same of commands.
+constexpr OtherName kNearCommands[] = {
+    {"diff", "compare"}, {"gpus", "devices"}, {"inspect", "info"}, {"montage", "contact-sheet"}};
 
 constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k"};
 constexpr uvec2 kNamedSizes[] = {{1280, 720}, {1920, 1080}, {3840, 2160}};
@@ -121,6 +130,15 @@ std::optional<std::string> take_value(std::vector<std::string>& words, std::stri
   return value;
 }
 
+/// -h is help, but for before a number.
+void spell_sides(std::vector<std::string>& words) {
+  for (size_t i = 1; i + 1 < words.size(); ++i) {
+    if (!is_number(words[i + 1])) continue;
+    if (words[i] == "-w") words[i] = kWidth;
+    if (words[i] == "-h") words[i] = kHeight;
+  }
+}
+
 /// --size of --width and --height.
 void join_sides(std::vector<std::string>& words) {
   size_t place = 0;
@@ -140,11 +158,41 @@ void join_size(std::vector<std::string>& words) {
   }
 }
 
-/// Whether it must be a file, be it there or not.
+/// Whether these are all numbers, as many as an option takes.
+bool are_values_of(const CLI::Option* option, const std::vector<std::string>& parts) {
+  return option != nullptr && parts.size() > 1 && std::cmp_equal(parts.size(), option->get_type_size()) &&
+         std::ranges::all_of(parts, is_number);
+}
+
+/// The words of --eye X,Y,Z, and of all others that take several numbers.
+void split_numbers(const CLI::App& command, std::vector<std::string>& words) {
+  for (size_t i = 1; i < words.size(); ++i) {
+    const size_t equals = words[i].find('=');
+    const bool is_joined = equals != std::string::npos;
+    if (!words[i].starts_with("--") || (!is_joined && i + 1 == words.size())) continue;
+    const std::string name = words[i].substr(0, equals);
+    const std::vector<std::string> parts = split_list(is_joined ? words[i].substr(equals + 1) : words[i + 1]);
+    if (!are_values_of(command.get_option_no_throw(name), parts)) continue;
+    words[i] = name;
+    const auto values = words.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    words.insert(is_joined ? values : words.erase(values), parts.begin(), parts.end());
+  }
+}
+
+/// --up Z is --up z.
+void lower_axes(std::vector<std::string>& words) {
+  for (size_t i = 2; i < words.size(); ++i) {
+    if (words[i - 1] != "--up" || words[i].empty() || words[i].size() > 2) continue;
+    char& axis = words[i].back();
+    if (axis >= 'X' && axis <= 'Z') axis = static_cast<char>(axis - 'X' + 'x');
+  }
+}
+
+/// Whether it must be a file, be it there or not. A folder is taken for one, to be refused as that.
 bool names_file(const std::string& word) {
   std::error_code error;
   return !word.starts_with('-') &&
-         (word.find_first_of("./") != std::string::npos || std::filesystem::is_regular_file(word, error));
+         (word.find_first_of("./") != std::string::npos || std::filesystem::exists(word, error));
 }
 
 void add_render(const CLI::App& program, std::vector<std::string>& words) {
@@ -156,19 +204,37 @@ void add_render(const CLI::App& program, std::vector<std::string>& words) {
   if (!is_one(words[1]) && (names_file(words[1]) || begins_with_option)) words.insert(words.begin() + 1, kRender);
 }
 
+/// "promin help render" and "promin version" are options of the command or program that they are about. False where it
+/// is neither.
+bool turn_words_to_options(const CLI::App& program, std::vector<std::string>& words) {
+  if (words.size() < 2 || commands_of(program).empty()) return false;
+  if (words[1] == "version") {
+    words[1] = "--version";
+    return true;
+  }
+  if (words[1] != "help") return false;
+  words.erase(words.begin() + 1);
+  // A word that is no command is refused.
+  if (words.size() == 1 || is_command(program, words[1])) words.emplace_back("--help");
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::string> spell_out(const CLI::App& program, const std::vector<std::string>& words) {
   std::vector<std::string> spelt = words;
-  add_render(program, spelt);
+  if (!turn_words_to_options(program, spelt)) add_render(program, spelt);
   const CLI::App& command = find_command(program, spelt);
   for (const OtherName& other : kSameOptions) {
-    if (!has_option(command, other.option) || has_option(command, other.typed)) continue;
+    if (!has_option(command, other.own) || has_option(command, other.typed)) continue;
     for (std::string& word : spelt) {
-      if (word.substr(0, word.find('=')) == other.typed) word.replace(0, other.typed.size(), other.option);
+      if (word.substr(0, word.find('=')) == other.typed) word.replace(0, other.typed.size(), other.own);
     }
   }
+  split_numbers(command, spelt);
+  lower_axes(spelt);
   if (!has_option(command, kSize)) return spelt;
+  spell_sides(spelt);
   join_sides(spelt);
   join_size(spelt);
   return spelt;
@@ -176,8 +242,15 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
 
 std::string find_by_meaning(const CLI::App& command, std::string_view typed) {
   const auto* const found = std::ranges::find_if(
-      kNearOptions, [&](const OtherName& other) { return other.typed == typed && has_option(command, other.option); });
-  return found == std::end(kNearOptions) ? "" : std::string(found->option);
+      kNearOptions, [&](const OtherName& other) { return other.typed == typed && has_option(command, other.own); });
+  return found == std::end(kNearOptions) ? "" : std::string(found->own);
+}
+
+std::string find_command_by_meaning(const CLI::App& program, std::string_view typed) {
+  const auto* const found = std::ranges::find_if(kNearCommands, [&](const OtherName& other) {
+    return other.typed == typed && is_command(program, std::string(other.own));
+  });
+  return found == std::end(kNearCommands) ? "" : std::string(found->own);
 }
 
 std::optional<uvec2> find_named_size(std::string_view name) {

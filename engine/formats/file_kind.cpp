@@ -29,8 +29,8 @@ struct Magic {
   size_t offset = 0;
 };
 
-/// What promin does not read, by bytes that each such file has.
-constexpr Magic kMagics[] = {
+/// What files are packed in, by bytes that each such file has.
+constexpr Magic kArchives[] = {
     {"PK\x03\x04"sv, "a zip archive", kUnpack},
     {"PK\x05\x06"sv, "a zip archive", kUnpack},
     {"\x1F\x8B"sv, "compressed by gzip", "unpack it by gunzip"},
@@ -40,6 +40,10 @@ constexpr Magic kMagics[] = {
     {"7z\xBC\xAF\x27\x1C"sv, "a 7z archive", kUnpack},
     {"Rar!\x1A\x07"sv, "a rar archive", kUnpack},
     {"ustar"sv, "a tar archive", kUnpack, 257},
+};
+
+/// What promin does not read, by such bytes.
+constexpr Magic kMagics[] = {
     {"Kaydara FBX Binary"sv, "FBX", kBlender},
     {"; FBX "sv, "FBX", kBlender},
     {"PXR-USDC"sv, "USD", kBlender},
@@ -142,10 +146,13 @@ FileKind find_readable_kind(std::string_view bytes, uint64_t size_bytes) {
 
 FileKind find_file_kind(std::string_view first_bytes, std::string_view ending, uint64_t size_bytes) {
   if (const StandIn* stand_in = find_stand_in(first_bytes)) return {.name = stand_in->what, .cure = stand_in->cure};
-  for (const Magic& magic : kMagics) {
+  for (const Magic& magic : kArchives) {
     if (!has_at(first_bytes, magic)) continue;
     const auto* const scene = std::ranges::find(kEndings, ending, &Magic::bytes);
     return kind_of(scene == std::end(kEndings) ? magic : *scene);
+  }
+  for (const Magic& magic : kMagics) {
+    if (has_at(first_bytes, magic)) return kind_of(magic);
   }
   const std::string_view text = skip_to_text(first_bytes);
   if (text.starts_with('<')) {

@@ -28,4 +28,7 @@ FileKind find_file_kind(std::string_view first_bytes, std::string_view ending, u
 /// Reads what it needs. Nothing is known of a file that cannot be read.
 FileKind find_file_kind(const std::filesystem::path& file);
 
+/// Throws InputError where load_scene refuses a file by its name or for being a folder.
+void check_scene_name(const std::filesystem::path& file);
+
 }  // namespace promin

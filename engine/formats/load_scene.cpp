@@ -3,7 +3,10 @@
 #include "promin/load_scene.h"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <string>
+#include <string_view>
 
 #include "core/count_of.h"
 #include "core/file.h"
@@ -19,6 +22,7 @@
 #include "formats/source_file.h"
 #include "formats/stl/load_stl.h"
 #include "promin/error.h"
+#include "promin/image.h"
 #include "scene/glass.h"
 #include "scene/stray_geometry.h"
 #include "scene/turned_normals.h"
@@ -27,7 +31,7 @@ namespace promin {
 namespace {
 
 struct SceneFormat {
-  const char* ending;
+  std::string_view ending;
   Scene (*load)(const LoadOptions&, LoadReport&);
   bool has_variants = false;
   /// Whether a file is a mesh and nothing else.
@@ -141,16 +145,43 @@ constexpr SceneFormat kFormats[] = {{".gltf", load_gltf, true},      {".glb", lo
                                     {".obj", load_obj, false, true}, {".ply", load_ply, false, true},
                                     {".stl", load_stl, false, true}, {".nff", load_nff}};
 
-const SceneFormat& find_format(const std::filesystem::path& file) {
-  const std::string ending = lower_case_ending(file);
+const SceneFormat* find_by_ending(const std::filesystem::path& file) {
+  const auto* const found = std::ranges::find(kFormats, lower_case_ending(file), &SceneFormat::ending);
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+std::string name_endings() {
   std::string known;
-  for (const SceneFormat& format : kFormats) {
-    if (ending == format.ending) return format;
-    known += known.empty() ? format.ending : std::string(", ") + format.ending;
+  for (const SceneFormat& format : kFormats) known.append(known.empty() ? "" : ", ").append(format.ending);
+  return "a file that ends in " + known;
+}
+
+/// Throws InputError where this is a folder; it names the first scenes in it.
+void refuse_folder(const std::filesystem::path& file) {
+  constexpr size_t kMostNamed = 2;
+  std::error_code error;
+  if (!is_directory(file, error)) return;
+  std::set<std::string> scenes;
+  for (std::filesystem::directory_iterator each(file, error), end; !error && each != end; each.increment(error)) {
+    if (find_by_ending(each->path()) != nullptr) scenes.insert(each->path().filename().string());
+    if (scenes.size() > kMostNamed) scenes.erase(std::prev(scenes.end()));
   }
+  std::string names;
+  for (const std::string& name : scenes) names.append(names.empty() ? "it holds " : " and ").append(name);
+  throw InputError({"the scene is a folder, not a file", file.string(),
+                    names.empty() ? "name " + name_endings() : names + "; name a file"});
+}
+
+const SceneFormat& find_format(const std::filesystem::path& file) {
+  refuse_folder(file);
+  if (const SceneFormat* const format = find_by_ending(file)) return *format;
+  const std::string ending = lower_case_ending(file);
   const std::string what = "unknown scene format " + quote(ending);
   const FileKind kind = find_file_kind(file);
-  if (kind.name.empty()) throw InputError({what, file.string(), "use a file that ends in " + known});
+  if (kind.name.empty() && is_writable_format(file)) {
+    throw InputError({"a " + ending + " is a picture, not a scene", file.string(), "name " + name_endings()});
+  }
+  if (kind.name.empty()) throw InputError({what, file.string(), "use " + name_endings()});
   throw InputError({what + ", the file is " + kind.name, file.string(), kind.cure});
 }
 
@@ -185,12 +216,11 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   const SceneFormat& format = find_format(file);
   check_root(options.root);
   if (!options.material_variant.empty() && !format.has_variants) {
-    throw UsageError({std::string("files that end in ") + format.ending + " have no variants of materials",
+    throw UsageError({"files that end in " + std::string(format.ending) + " have no variants of materials",
                       file.string(), "ask for none"});
   }
-  // A pipe might be waited for without end. A folder is refused where it is read.
-  const std::filesystem::file_status status = find_input(file);
-  if (!is_regular_file(status) && !is_directory(status)) {
+  // A pipe might be waited for without end.
+  if (!is_regular_file(find_input(file))) {
     throw InputError({"not a regular file", file.string(), "name the scene's file"});
   }
   try {
@@ -224,6 +254,10 @@ Scene load_near_center(const std::filesystem::path& file, const LoadOptions& opt
 }
 
 }  // namespace
+
+void check_scene_name(const std::filesystem::path& file) {
+  find_format(file);
+}
 
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
   std::vector<SourceFile> sources;

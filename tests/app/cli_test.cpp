@@ -92,6 +92,12 @@ TEST_F(CliTest, HelpAndVersionEverywhere) {
   }
 }
 
+TEST_F(CliTest, HelpAndVersionAreWordsToo) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "cast"}).out, run({"cast", "--help"}).out);
+  EXPECT_EQ(run({"version"}).out, run({"--version"}).out);
+}
+
 TEST_F(CliTest, HelpHasExamplesAndGroups) {
   const ProcessResult alone = run({});
   EXPECT_EQ(alone.exit_code, 0);
@@ -108,6 +114,13 @@ TEST_F(CliTest, HelpHasExamplesAndGroups) {
     at = found;
   }
   EXPECT_THAT(help, Not(HasSubstr("--samples")));
+  for (const char* command : {"merge", "cast", "compare", "info", "thumbnail", "contact-sheet", "devices"}) {
+    const std::string own = run({command, "--help"}).out;
+    const size_t examples = own.find("Examples:");
+    if (examples == std::string::npos) continue;
+    EXPECT_THAT(own.substr(examples), Not(ContainsRegex("  promin (model|info|render)"))) << command;
+    EXPECT_THAT(own.substr(examples), HasSubstr("  promin " + std::string(command) + " ")) << command;
+  }
 }
 
 TEST_F(CliTest, AFileAloneIsRendered) {
@@ -116,6 +129,7 @@ TEST_F(CliTest, AFileAloneIsRendered) {
   render({"square.gltf", "--size", "8", "8"}, "b.png");
   EXPECT_EQ(read("a.png"), read("b.png"));
   expect_failure(run({"nope.glb"}), 3, "file not found, nope.glb");
+  expect_failure(run({"a.png"}), 3, "a .png is a picture, not a scene, a.png; name a file that ends in .gltf");
 }
 
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
@@ -124,6 +138,10 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"paint"}, "unknown command paint, on the command line; see promin --help"},
       {{"render", "square.gltf", "--aov", "depth,normel"}, "not \"normel\", on the command line; did you mean normal?"},
       {{"render", "square.gltf", "--filter", "bx"}, "not \"bx\", on the command line; did you mean box?"},
+      {{"diff", "a.png", "b.png"}, "unknown command diff, on the command line; did you mean compare?"},
+      {{"render", "square.gltf", "--denoise"}, "unknown option --denoise, on the command line; see promin render"},
+      {{"render", "square.gltf", "--seed", "1"}, "unknown option --seed, on the command line; see promin render"},
+      {{"square.gltf", "x.png"}, "unexpected argument x.png, on the command line; say -o x.png"},
       {{"--spp", "3"}, "unknown option --spp"},
       {{"render"}, "SCENE is required, on the command line; see promin render --help"},
       {{"info"}, "SCENE is required, on the command line; see promin info --help"},
@@ -167,7 +185,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.hdr", "--alpha"}, "--alpha has no place in a .hdr"},
       {{"render", "square.gltf", "-o", "-", "-o", "-"}, "-o - is given twice"},
       {{"render", "square.gltf", "-o", "-", "--job", "j"}, "-o - and --job contradict each other"},
-      {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"}, "--aov has no picture to go to"},
+      {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"},
+       "--aov needs an EXR, on the command line; add -o square.exr"},
       {{"render", "square.gltf", "-o", "a"}, "unknown output ending \"\", a;"},
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite an input"},
@@ -181,6 +200,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values for --size WxH|hd|fullhd|4k, on"},
       {{"render", "square.gltf", "--size", "large", "-o", "a.exr"},
        "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"large\""},
+      {{"render", "square.gltf", "--size", "640:480", "-o", "a.exr"},
+       "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"640:480\""},
       {{"render", "square.gltf", "--size", "fulhd", "-o", "a.exr"}, "did you mean fullhd?"},
       {{"render", "square.gltf", "--size", "64x48x32"}, "not \"48x32\" in \"64x48x32\""},
       {{"square.gltf", "--gpu", "0"}, "unknown option --gpu, on the command line; did you mean --device?"},
@@ -250,7 +271,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "--exposure", "averge", "-o", "a.exr"}, "did you mean average?"},
       {{"render", "square.gltf", "-o", "a.png", "--alpha", "--background", "1", "1", "1"},
        "--alpha and --background contradict each other, on the command line; leave one out: --alpha makes"},
-      {{"render", "square.gltf", "-o", "a.exr", "--dither"}, "--dither has no picture to go to"},
+      {{"render", "square.gltf", "-o", "a.exr", "--dither"},
+       "--dither needs a PNG, on the command line; add -o square.png"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "direct", "--shading", "normals"},
        "--aov of light and --shading"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/0"}, "not \"0\" in \"1/0\""},
@@ -285,6 +307,17 @@ TEST_F(CliTest, BadScenesAreRefused) {
   }
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::UnorderedElementsAre("garbage.gltf", "empty.obj", "scene.blend", "old.exr"));
+}
+
+TEST_F(CliTest, AFolderNamesItsScenes) {
+  const std::string named = "it holds square.gltf and triangle.obj; name a file";
+  for (const char* place : {".", "./"}) {
+    expect_failure(run({place}), 3, "is a folder, not a file, " + std::string(place) + "; " + named);
+  }
+  fs::create_directory(folder() / "models");
+  expect_failure(run({"models"}), 3, "is a folder, not a file, models; name a file that ends in");
+  expect_failure(run({"info", "."}), 3, named);
+  EXPECT_THAT(files(), testing::ElementsAre("models"));
 }
 
 TEST_F(CliTest, BadPanoramasAreRefused) {
@@ -895,11 +928,10 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
     run({"render", "triangle.obj", "-o", name, "--size", "8", "8"});
     const std::string other = read(name);
     expect_failure(run({"render", "square.gltf", "--size", "7", "7"}), 2,
-                   std::string("a file that is no picture of square.gltf by promin is there already, ") + name +
-                       "; say by -o where to write");
+                   name + std::string(" exists and promin did not make it from square.gltf; say by -o where to write"));
     EXPECT_EQ(read(name), other);
     write(name, "my notes");
-    expect_failure(run({"render", "square.gltf"}), 2, "is there already");
+    expect_failure(run({"render", "square.gltf"}), 2, "exists and promin did not make it");
     EXPECT_EQ(run({"render", "square.gltf", "-o", name, "--size", "8", "8"}).exit_code, 0) << "-o replaces";
   }
   EXPECT_EQ(read("square.png"), before);
@@ -1223,7 +1255,7 @@ TEST_F(CliTest, AovsAreChannelsOfTheExr) {
   EXPECT_EQ(picture.pixels, plain.pixels);
   EXPECT_THAT(read("a.exr"), testing::AllOf(HasSubstr("object"), Not(HasSubstr("primitive")), Not(HasSubstr("N.X"))));
 
-  expect_failure(run({"render", "square.gltf", "-o", "a.png", "--aov", "depth"}), 2, "give -o with the ending .exr");
+  expect_failure(run({"render", "square.gltf", "-o", "a.png", "--aov", "depth"}), 2, "--aov needs an EXR");
   expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--aov", "depth,colour"}), 2, "not \"colour\"");
   EXPECT_EQ(
       run({"render", "square.gltf", "-o", "b.exr", "-o", "b.png", "--aov", "normal", "--size", "8", "8"}).exit_code, 0);

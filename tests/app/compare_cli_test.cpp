@@ -62,7 +62,22 @@ TEST_F(CompareCliTest, MoreThanTheLimitIsFive) {
   EXPECT_THAT(over.err, HasSubstr("promin: error: 1 pixel differs by more than 0.25, the most at pixel 9 7 by 0.375, "
                                   "b.exr against a.exr"));
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.53"}).exit_code, 0) << "1 of 192";
-  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.52"}).exit_code, 5);
+  const ProcessResult share = compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.52"});
+  EXPECT_EQ(share.exit_code, 5);
+  EXPECT_THAT(share.err, HasSubstr("1 pixel differs by more than 0.25, 0.520833 % where 0.52 % is allowed, the "
+                                   "most at"));
+}
+
+TEST_F(CompareCliTest, LimitsOfCodesAreFractions) {
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "3/8"}).exit_code, 0);
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "2.99/8"}).exit_code, 5);
+  const ProcessResult whole = compare({"a.png", "b.png", "--fail", "2"});
+  EXPECT_EQ(whole.exit_code, 0);
+  EXPECT_THAT(whole.err, HasSubstr("promin: warning: --fail 2 never fails: numbers of these files are 0 to 1; 2 of 255 "
+                                   "is --fail 2/255"));
+  EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "2"}).err, "") << "light has no most";
+  EXPECT_EQ(compare({"a.png", "a.png", "--fail", "2/255"}).err, "");
+  expect_failure(compare({"a.png", "b.png", "--fail", "2/0"}), 2, "not \"0\" in \"2/0\"");
 }
 
 TEST_F(CompareCliTest, WritesWhereTheyDiffer) {

@@ -43,13 +43,14 @@ TEST_F(ContactSheetTest, ColorsWithoutLightKeepClearOfToneMapping) {
 }
 
 TEST_F(ContactSheetTest, ASheetHasThePicturesAndTheirNames) {
-  const ProcessResult result = run({"contact-sheet", "square.gltf", "triangle.obj", "square.gltf", "--columns", "2",
-                                    "--size", "32x24", "--exposure", "-1", "-o", "sheet.png", "--quiet"});
+  const ProcessResult result =
+      run({"contact-sheet", "square.gltf", "triangle.obj", "square.gltf", "--columns", "2", "--size", "32x24",
+           "--exposure", "-1", "--quality", "draft", "-o", "sheet.png", "--quiet"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Image sheet = read_image(folder() / "sheet.png");
   // Two columns and rows with a gap of 12 around, names of 20 pixels below.
   ASSERT_EQ(sheet.size, uvec2(12 + 2 * (32 + 12), 12 + 2 * (24 + 20 + 12)));
-  const OptionValues options = {"--from", "three-quarter", "--size", "32x24", "--exposure", "-1"};
+  const OptionValues options = {"--from", "three-quarter", "--size", "32x24", "--exposure", "-1", "--quality", "draft"};
   const auto rendered = [&](const std::string& scene) {
     OptionValues arguments = options;
     arguments.insert(arguments.begin(), scene);
@@ -69,6 +70,8 @@ TEST_F(ContactSheetTest, ASceneThatCannotBeReadLeavesAnEmptyPlace) {
   const ProcessResult result = run({"contact-sheet", "bad.obj", "triangle.obj", "-o", "sheet.png", "--size", "16x12"});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("bad.obj"));
+  EXPECT_THAT(run({"contact-sheet", ".", "-o", "empty.png", "--size", "16x12"}).err,
+              HasSubstr("is a folder, not a file, .; it holds bad.obj and square.gltf; name a file"));
   EXPECT_THAT(result.err, HasSubstr("1 of 2 scenes is not on the sheet"));
   const Image sheet = read_image(folder() / "sheet.png");
   const std::vector<vec3> empty = cut(sheet, {12, 12}, {16, 12});
@@ -76,8 +79,18 @@ TEST_F(ContactSheetTest, ASceneThatCannotBeReadLeavesAnEmptyPlace) {
   EXPECT_NE(cut(sheet, {40, 12}, {16, 12}), empty);
 }
 
+TEST_F(ContactSheetTest, HelpSaysWhatASheetDoes) {
+  const std::string help = run({"contact-sheet", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("Usage: promin contact-sheet [OPTIONS] SCENES...\n"));
+  EXPECT_THAT(help, HasSubstr("[320x240]"));
+  EXPECT_THAT(help, testing::Not(HasSubstr("height 720")));
+  EXPECT_THAT(help, testing::Not(HasSubstr("--explain")));
+}
+
 TEST_F(ContactSheetTest, WrongUseIsRefused) {
   expect_failure(run({"contact-sheet", "triangle.obj"}), 2, "--output");
+  expect_failure(run({"contact-sheet", "triangle.obj", "-o", "s.png", "--spp", "4", "--quality", "high"}), 2,
+                 "--quality and --spp contradict each other");
   expect_failure(run({"contact-sheet", "triangle.obj", "-o", "sheet.exe"}), 2, "sheet.exe");
   expect_failure(run({"contact-sheet", "triangle.obj", "-o", "triangle.obj"}), 2, "triangle.obj");
   expect_failure(run({"contact-sheet", "triangle.obj", "triangle.obj", "-o", "s.png", "--size", "20000x10"}), 2,

@@ -68,6 +68,29 @@ TEST_F(TypedWordsTest, ASizeIsOneWord) {
   EXPECT_EQ(spell("promin render a.glb --height 48 -s 4 --width=64"), "promin render a.glb --size 64x48 -s 4");
   EXPECT_EQ(spell("promin render a.glb --height 48"), "promin render a.glb --size x48");
   EXPECT_EQ(spell("promin render a.glb --width 64"), "promin render a.glb --size 64");
+  EXPECT_EQ(spell("promin a.glb -w 64 -h 48 -o a.png"), "promin render a.glb --size 64x48 -o a.png");
+  EXPECT_EQ(spell("promin a.glb -h"), "promin render a.glb -h") << "which is help";
+  EXPECT_EQ(spell("promin render -h a.glb"), "promin render -h a.glb");
+}
+
+TEST_F(TypedWordsTest, NumbersMayHaveCommas) {
+  EXPECT_EQ(spell("promin render a.glb --eye 1,-2,3e1 --spp 4"), "promin render a.glb --eye 1 -2 3e1 --spp 4");
+  EXPECT_EQ(spell("promin render a.glb --look-at=1,2,3"), "promin render a.glb --look-at 1 2 3");
+  EXPECT_EQ(spell("promin render a.glb --crop 0,0,8,8"), "promin render a.glb --crop 0 0 8 8");
+  for (const char* line : {"promin render a.glb --eye 1,2", "promin render a.glb --eye 1,,3",
+                           "promin render a.glb --lights-off 1,2,3", "promin render a.glb --background linear:1,2,3"}) {
+    EXPECT_EQ(spell(line), line);
+  }
+  parse("promin render a.glb --eye 1,2,3 --direction 0,0,1 --up 0,1,0");
+  EXPECT_EQ(pictures_.view.pose.eye, dvec3(1, 2, 3));
+  EXPECT_EQ(pictures_.view.pose.up, dvec3(0, 1, 0));
+}
+
+TEST_F(TypedWordsTest, AxesMayBeCapitals) {
+  parse("promin render a.glb --up Z");
+  EXPECT_EQ(pictures_.view.pose.up, dvec3(0, 0, 1));
+  parse("promin render a.glb --up -X");
+  EXPECT_EQ(pictures_.view.pose.up, dvec3(-1, 0, 0));
 }
 
 TEST_F(TypedWordsTest, NormalsHaveOneNameOrTheOther) {
@@ -88,10 +111,20 @@ TEST_F(TypedWordsTest, AFileIsRendered) {
   }
 }
 
+TEST_F(TypedWordsTest, HelpAndVersionAreWordsToo) {
+  EXPECT_EQ(spell("promin help"), "promin --help");
+  EXPECT_EQ(spell("promin help render"), "promin render --help");
+  EXPECT_EQ(spell("promin help rendr"), "promin rendr") << "which is refused";
+  EXPECT_EQ(spell("promin help a.glb"), "promin a.glb");
+  EXPECT_EQ(spell("promin version"), "promin --version");
+  EXPECT_EQ(spell("promin render help"), "promin render help");
+}
+
 TEST_F(TypedWordsTest, SizesAreReadInEveryForm) {
-  const std::pair<const char*, uvec2> sizes[] = {{"64x48", {64, 48}},      {"64 48", {64, 48}}, {"64,48", {64, 48}},
-                                                 {"64", {64, 0}},          {"x48", {0, 48}},    {"hd", {1280, 720}},
-                                                 {"fullhd", {1920, 1080}}, {"4k", {3840, 2160}}};
+  const std::pair<const char*, uvec2> sizes[] = {
+      {"64x48", {64, 48}},      {"64 48", {64, 48}}, {"64,48", {64, 48}},      {"64", {64, 0}},
+      {"x48", {0, 48}},         {"64*48", {64, 48}}, {"64\u00d748", {64, 48}}, {"hd", {1280, 720}},
+      {"fullhd", {1920, 1080}}, {"4k", {3840, 2160}}};
   for (const auto& [words, size] : sizes) {
     parse(std::string("promin render a.glb --size ") + words);
     EXPECT_EQ(pictures_.view.size, size) << words;
@@ -125,6 +158,11 @@ TEST_F(TypedWordsTest, WhatIsMeantIsAnOptionOfTheCommand) {
   EXPECT_EQ(find_by_meaning(*cast_, "--gpu"), "--device");
   EXPECT_EQ(find_by_meaning(*cast_, "--bg"), "");
   EXPECT_EQ(find_by_meaning(*render_, "--nothing-like-it"), "");
+  EXPECT_EQ(find_by_meaning(*render_, "--transparent-background"), "--alpha");
+  EXPECT_EQ(find_by_meaning(*render_, "--turntable"), "--path");
+  EXPECT_EQ(find_command_by_meaning(program_, "diff"), "") << "this one compares nothing";
+  add_command(program_, "compare", "");
+  EXPECT_EQ(find_command_by_meaning(program_, "diff"), "compare");
 }
 
 }  // namespace

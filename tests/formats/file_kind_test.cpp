@@ -124,12 +124,29 @@ TEST_F(FilesOfScenesTest, ArchivesAreScenesBySomeEndings) {
   EXPECT_THAT(refusal("a.usdz", "PK\x03\x04"), HasSubstr("the file is USD"));
   EXPECT_THAT(refusal("a.3MF", "PK\x03\x04"), HasSubstr("the file is 3MF"));
   EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasSubstr("the file is a compressed Blender file"));
+  EXPECT_THAT(refusal("a.blend", "\x1F\x8B"), HasSubstr("the file is a compressed Blender file"));
+  EXPECT_THAT(refusal("a.blend", "BLENDER-v300"), HasSubstr("the file is a Blender file"));
+}
+
+TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {
+  const std::string where = "is a folder, not a file, " + folder_.string() + "; ";
+  EXPECT_THAT(refusal(folder_), HasSubstr(where + "name a file that ends in .gltf, .glb"));
+  write("notes.txt", "");
+  write("c.nff", "");
+  EXPECT_THAT(refusal(folder_), HasSubstr(where + "it holds c.nff; name a file"));
+  write("b.GLB", "");
+  write("a.obj", "");
+  EXPECT_THAT(refusal(folder_), HasSubstr(where + "it holds a.obj and b.GLB; name a file"));
+  std::filesystem::create_directory(folder_ / "d.gltf");
+  EXPECT_THAT(refusal(folder_ / "d.gltf"), HasSubstr("is a folder"));
 }
 
 TEST_F(FilesOfScenesTest, WhatSaysNothingIsSaidToBeNothing) {
   EXPECT_THAT(refusal("a.obj", "hello\n"), Not(HasSubstr("the file is")));
   EXPECT_THAT(refusal("a.txt", "hello\n"), HasSubstr("unknown scene format \".txt\", "));
   EXPECT_THAT(refusal(folder_ / "missing.txt"), HasSubstr("unknown scene format \".txt\", "));
+  EXPECT_THAT(refusal("a.PNG", "hello\n"), HasSubstr("a .png is a picture, not a scene, "));
+  EXPECT_THAT(refusal(folder_ / "missing.exr"), HasSubstr("a .exr is a picture, not a scene, "));
   EXPECT_THAT(refusal("a.stl", std::string(20, '\0')), HasSubstr("the file is no STL"));
   EXPECT_EQ(find_file_kind("", "", 0).name, "");
 }

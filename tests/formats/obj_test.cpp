@@ -942,7 +942,7 @@ INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj), name_of_
 
 TEST_F(ObjTest, BrokenFilesSayWhy) {
   EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasSubstr("not found"));
-  EXPECT_THAT(SceneFolder::refusal(folder_), HasSubstr("unknown scene format"));
+  EXPECT_THAT(SceneFolder::refusal(folder_), HasSubstr("is a folder"));
   EXPECT_THAT(refusal(""), HasSubstr("empty"));
   EXPECT_THAT(refusal(std::string_view("v 0 0\0 0", 8)), HasSubstr("not text"));
   EXPECT_THAT(refusal("f 1 2 3\nf a b c\nf 0 1 1\n"), HasSubstr("(1 of 5 problems)"));
