@@ -136,6 +136,42 @@ def test_lights_are_changed_and_replaced(box: promin.Scene) -> None:
         box.set_material("", alpha=0.5)
 
 
+@pytest.mark.parametrize(
+    "fields",
+    [{"base_color": "blue"}, {"base_color": (1, 0)}, {"roughness": "rough"}, {"alpha_mode": "glass"}, {"name": 3}],
+)
+def test_a_wrong_value_of_a_material_is_refused_at_once(fields: dict[str, Any]) -> None:
+    scene = promin.Scene()
+    scene.add_sphere(material=scene.add_material(promin.MetallicRoughness(name="clay")))
+    before = scene.materials
+    with pytest.raises(promin.UsageError, match=next(iter(fields)).split("_")[0]):
+        scene.set_material("clay", **fields)
+    with pytest.raises(promin.UsageError):
+        scene.add_material(promin.MetallicRoughness(**{"name": "other", **fields}))
+    with pytest.raises(promin.UsageError):
+        scene.materials = [promin.MetallicRoughness(**fields)]
+    assert scene.materials == before
+    scene.validate()
+
+
+def test_wrong_values_of_lights_cameras_and_surroundings_are_refused_at_once(box: promin.Scene) -> None:
+    box.add_light(promin.Light(name="key"))
+    for wrong in ({"kind": "lamp"}, {"diffuse": "white"}, {"position": (1, 2)}, {"is_on": "yes"}):
+        with pytest.raises(promin.UsageError, match=next(iter(wrong))):
+            box.set_light("key", **wrong)
+        with pytest.raises(promin.UsageError):
+            box.add_light(promin.Light(**wrong))  # type: ignore[arg-type]
+        with pytest.raises(promin.UsageError):
+            box.lights = [promin.Light(**wrong)]  # type: ignore[arg-type]
+    with pytest.raises(promin.UsageError, match="yfov"):
+        box.add_camera(promin.Camera(yfov="wide"))  # type: ignore[arg-type]
+    with pytest.raises(promin.UsageError, match="ambient"):
+        box.environment = promin.Environment(ambient="dark")  # type: ignore[arg-type]
+    assert box.lights == [promin.Light(name="key")] and box.cameras == []
+    assert box.environment == promin.Environment()
+    box.validate()
+
+
 def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.Caster, scenes: Path) -> None:
     assert repr(box) == "<promin.Scene: 1 object, 12 primitives, 1 material, 0 lights, 0 cameras>"
     assert repr(promin.Scene.load(scenes / "box.gltf")).startswith("<promin.Scene box.gltf: ")
