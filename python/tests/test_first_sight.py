@@ -45,6 +45,20 @@ def test_a_background_is_that_of_promin_render(
         promin.render(box, size=8, background=(1, 1, 1), aovs=("alpha",))
 
 
+def test_an_exposure_is_that_of_promin_render(
+    scenes: Path, tmp_path: Path, run_promin: Callable[..., None]
+) -> None:
+    picture = promin.render(scenes / "box.gltf", size="32x24", exposure=1.5)
+    picture.save(tmp_path / "ours.png")
+    words = ["-o", tmp_path / "theirs.png", "--size", "32x24", "--exposure", 1.5]
+    run_promin("render", scenes / "box.gltf", *words)
+    assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
+    assert picture.display.exposure_ev == 1.5
+    for wrong in ("bright", 65, float("nan"), None):
+        with pytest.raises(promin.UsageError, match='^exposure is .*; give stops from -64 to 64, or "auto"'):
+            promin.render(scenes / "box.gltf", size=8, exposure=wrong)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(
     "size, sides",
     [("hd", (1280, 720)), ("640", (640, 0)), ("x480", (0, 480)), (640, (640, 0)), ((64, 48), (64, 48)), (None, (0, 0))],
@@ -191,6 +205,8 @@ def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.
         ({"framing": "left"}, "did you mean from_?"),
         ({"backgrund": "environment"}, "did you mean background?"),
         ({"shading": "uv"}, "did you mean debug_view?"),
+        ({"azimuth": 45}, "give camera=promin.Camera.look_at("),
+        ({"environment": "sky.hdr"}, "give the scene one: scene.environment = "),
     ],
 )
 def test_unknown_keywords_are_told_with_the_one_that_is_meant(
