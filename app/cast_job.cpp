@@ -41,10 +41,15 @@ struct RayRange {
   uint64_t count() const { return end - begin; }
 };
 
+/// Pieces of so many rays where nothing is asked for.
+uint64_t choose_pieces(uint64_t count, bool is_all) {
+  const uint64_t most_rays = is_all ? kPieceRaysOfAll : kPieceRays;
+  return std::max({uint64_t{1}, std::min(kUsualPieces, count / kLeastPieceRays), (count + most_rays - 1) / most_rays});
+}
+
 /// All rays in nearly equal ranges, of which there is one at least.
 std::vector<RayRange> cut_rays(uint64_t count, const CastOptions& options) {
-  const uint64_t usual = options.is_all ? kPieceRaysOfAll : kPieceRays;
-  const uint64_t pieces = options.job.pieces.value_or(std::max<uint64_t>((count + usual - 1) / usual, 1));
+  const uint64_t pieces = options.job.pieces.value_or(choose_pieces(count, options.is_all));
   if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
     throw UsageError({fmt::format("{} pieces are more than the {}", pieces,
                                   pieces > kMostRayPieces ? fmt::format("{} that a job has", kMostRayPieces)

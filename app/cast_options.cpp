@@ -40,8 +40,10 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
             "With --all: N + 1 uint64, where in HITS.npy each ray's hits begin and the last one's end",
             [&](const OptionValues& w) { options.offsets = w.text(); });
   add_job_options(table, options.job,
-                  fmt::format("Of a job: pieces of rays, 1 to {} [as many as have {} rays, with --all {}]",
-                              kMostRayPieces, kPieceRays, kPieceRaysOfAll),
+                  fmt::format("Of a job: parts of the rays, saved one by one; a kill loses at most one, 1 to {} [{}, "
+                              "fewer of less than {} rays, and more of more than {}, with --all {}]",
+                              kMostRayPieces, kUsualPieces, kUsualPieces * kLeastPieceRays, kUsualPieces * kPieceRays,
+                              kUsualPieces * kPieceRaysOfAll),
                   kMostRayPieces);
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);

@@ -17,9 +17,11 @@ class App;
 
 namespace promin::app {
 
-/// The rays of a job's piece where nothing else is asked for; with --all, where there may be any number of hits.
+/// The most rays of a job's piece where nothing else is asked for; with --all, where there may be any number of hits.
 inline constexpr uint64_t kPieceRays = uint64_t{1} << 22;
 inline constexpr uint64_t kPieceRaysOfAll = uint64_t{1} << 20;
+/// Fewer rays are not cut for kUsualPieces.
+inline constexpr uint64_t kLeastPieceRays = uint64_t{1} << 16;
 inline constexpr uint32_t kMostRayPieces = 1'000'000;
 /// Rays in memory at a time.
 inline constexpr uint64_t kChunkRays = uint64_t{1} << 20;

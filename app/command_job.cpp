@@ -90,6 +90,11 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
   return is_whole ? std::optional(made) : std::nullopt;
 }
 
+std::string describe_made(size_t made, size_t all) {
+  if (made == 0) return fmt::format("nothing was left to make of {}", count_of(all, "piece"));
+  return fmt::format("{} of {} made now", made, count_of(all, "piece"));
+}
+
 }  // namespace
 
 std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<std::string>& arguments,
@@ -167,7 +172,7 @@ void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& ste
     return;
   }
   const std::string outputs = merge_job_deferring(job, steps.files);
-  if (!console.is_quiet()) fmt::print("{} of {} made now: {}\n", *made, count_of(job.piece_count(), "piece"), outputs);
+  if (!console.is_quiet()) fmt::print("{}: {}\n", describe_made(*made, job.piece_count()), outputs);
 }
 
 }  // namespace promin::app

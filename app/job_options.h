@@ -13,6 +13,10 @@
 
 namespace promin::app {
 
+/// A job has so many pieces or more where nothing is asked for and its work is worth them: a kill loses one piece, and
+/// that is about an eighth of the work or less, even where a piece costs twice the mean.
+inline constexpr uint64_t kUsualPieces = 16;
+
 /// How the work of a command is kept in pieces in a folder.
 struct JobOptions {
   std::optional<std::filesystem::path> folder;

@@ -23,8 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Bands where nothing else is asked for have about so many pixels.
+/// Where nothing is asked for, bands of one picture have about so many pixels at most, and bands of any at least so
+/// many rows.
 constexpr uint64_t kBandPixels = uint64_t{1} << 19;
+constexpr uint64_t kLeastBandRows = 8;
 /// Of a picture.
 constexpr uint64_t kMostParts = 1'000'000;
 /// The names of a path's pieces begin so.
@@ -246,13 +248,19 @@ void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   }
 }
 
+/// Bands of each of so many pictures where nothing is asked for.
+uint32_t choose_bands(const PixelWindow& window, size_t pictures) {
+  const uint64_t rows = size_of(window).y;
+  const uint64_t usual = std::min((kUsualPieces + pictures - 1) / pictures, rows / kLeastBandRows);
+  const uint64_t of_large = pictures == 1 ? std::min<uint64_t>(area_of(window) / kBandPixels, rows) : 1;
+  return static_cast<uint32_t>(std::max<uint64_t>({1, usual, of_large}));
+}
+
 }  // namespace
 
-std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, bool is_one_picture) {
+std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, size_t pictures) {
   const uvec2 size = size_of(window);
-  const auto default_bands =
-      is_one_picture ? static_cast<uint32_t>(std::clamp<uint64_t>(area_of(window) / kBandPixels, 1, size.y)) : 1;
-  const uvec2 tiles = options.tiles.value_or(uvec2(1, options.pieces.value_or(default_bands)));
+  const uvec2 tiles = options.tiles.value_or(uvec2(1, options.pieces.value_or(choose_bands(window, pictures))));
   if (tiles.x > size.x || tiles.y > size.y) {
     throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the {}x{} pixels have", tiles.x,
                                   tiles.y, size.x, size.y),

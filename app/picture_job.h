@@ -22,9 +22,9 @@ namespace promin::app {
 /// The kind of a job whose pieces are parts of pictures.
 inline constexpr std::string_view kPictureJob = "render";
 
-/// The pieces of a picture's window, row by row, of which there are several pictures or one. Throws UsageError for more
-/// of them than the window has rows or columns.
-std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, bool is_one_picture);
+/// The pieces of a picture's window, row by row, where the job has so many pictures. Throws UsageError for more of them
+/// than the window has rows or columns.
+std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, size_t pictures);
 
 /// A part of a picture with all that the whole one's files are written with.
 struct PicturePart {

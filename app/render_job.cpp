@@ -34,7 +34,7 @@ class PictureJob : public PlannedJob {
       : run_(std::move(run)),
         console_(console),
         window_(window_of(*run_.stats.view)),
-        parts_(cut_picture(window_, run_.options.job, run_.frames.size() == 1)) {
+        parts_(cut_picture(window_, run_.options.job, run_.frames.size())) {
     std::vector<std::optional<uint32_t>> numbers;
     for (const PlannedFrame& frame : run_.frames) numbers.push_back(frame.number);
     manifest_ = make_manifest(run_, given_options(command), name_pieces(numbers, parts_));

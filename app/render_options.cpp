@@ -435,7 +435,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
   add_job_options(
       table, options.job,
-      "Of a job: bands of rows that each picture is cut into, 1 to 32768 [as suits its size; a path's frames 1]",
+      fmt::format("Of a job: parts of each picture, bands of rows, saved one by one; a kill loses at most one, 1 to {} "
+                  "[{} or more, of a path so many in all or 1 a frame]",
+                  kMaxSide, kUsualPieces),
       kMaxSide);
   table.add(
       "--tiles", "C R", "Of a job, in place of --pieces: columns and rows of tiles of each picture",

@@ -99,6 +99,9 @@ std::string shown(const std::string& value) {
   return value.empty() ? "nothing" : "\"" + value + "\"";
 }
 
+/// Of an option that a manifest lacks: it leaves out one that is given its default.
+constexpr std::string_view kLeftOut = "is not given or its default";
+
 /// What is different about two jobs, in a sentence about the wanted one.
 std::string find_difference(const Manifest& there, const Manifest& wanted) {
   if (there.kind != wanted.kind) return "it is of the kind " + shown(there.kind);
@@ -110,11 +113,11 @@ std::string find_difference(const Manifest& there, const Manifest& wanted) {
   };
   for (const auto& [name, value] : wanted.options) {
     const std::optional<std::string> other = value_of(there, name);
-    if (!other) return fmt::format("it has no {}, which is {} now", name, shown(value));
+    if (!other) return fmt::format("its {} {}, and is {} now", name, kLeftOut, shown(value));
     if (*other != value) return fmt::format("its {} is {}, and {} now", name, shown(*other), shown(value));
   }
   for (const auto& [name, value] : there.options) {
-    if (!value_of(wanted, name)) return fmt::format("its {} is {}, and is not given now", name, shown(value));
+    if (!value_of(wanted, name)) return fmt::format("its {} is {}, and {} now", name, shown(value), kLeftOut);
   }
   for (size_t i = 0; i < std::max(there.files.size(), wanted.files.size()); ++i) {
     if (i >= there.files.size()) return fmt::format("it does not know the file {}", shown(wanted.files[i].name));

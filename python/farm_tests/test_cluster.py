@@ -253,6 +253,16 @@ def test_many_small_pieces_take_little_memory(farm: Farm) -> None:
     assert 20_000 < most_kib < 500_000
 
 
+def test_fewer_pieces_than_workers_are_told(farm: Farm) -> None:
+    farm.write_scene(1)
+    said = farm.render("--workers", 2)
+    assert "1 of 1 piece to make, by 2 workers on this machine" in said
+    assert "1 piece for 2 workers: some have no work; " in said and said.startswith("1 piece: ")
+    farm.write_scene(2)
+    farm.job = farm.job.with_name("other")
+    assert "some have no work" not in farm.render("--workers", 2)
+
+
 def test_workers_tell_what_they_are_at(farm: Farm) -> None:
     farm.write_scene(4)
     said = farm.render("--workers", 1)

@@ -9,7 +9,8 @@ import inspect
 import os
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 from operator import index
 from pathlib import Path
 from typing import Any, TypeVar, Union
@@ -45,6 +46,8 @@ _ASPECT_RATIO = 16 / 9
 """Of the camera that frames a scene where no size is asked, as `promin render` has it (test_tables.py)."""
 _NO_ID = np.uint32(2**32 - 1)
 """What the AOV `object` is on a miss."""
+_MOST_STOPS = 64
+"""Of exposure, as `promin render` has it."""
 
 
 Background = Union[Sequence[float], str, None]
@@ -62,14 +65,27 @@ def names_keywords(function: Function) -> Function:
     def call(*values: Any, **keywords: Any) -> Any:
         for name in keywords:
             if name not in known and name != "view":
+                if name in _ELSEWHERE:
+                    raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {_ELSEWHERE[name]}")
                 meant = _OTHER_KEYWORDS.get(name) or _promin.find_option(name.replace("_", "-")).replace("-", "_")
                 cure = f"did you mean {meant}?" if meant in known else suggest(name, known)
-                raise TypeError(f"{function.__qualname__.removesuffix('.__init__')}() has no keyword {name!r}; {cure}")
+                raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {cure}")
         return function(*values, **keywords)
 
     return call  # type: ignore[return-value]
 
 
+def _name_of(function: Callable[..., Any]) -> str:
+    return function.__qualname__.removesuffix(".__init__")
+
+
+_POSE = "give camera=promin.Camera.look_at(eye, target), or camera=dataclasses.replace(renderer.camera(), ...)"
+_SKY = "give the scene one: scene.environment = promin.Environment(sky=promin.Panorama(promin.read_image(file)))"
+_ELSEWHERE = {
+    **dict.fromkeys(("azimuth", "direction", "elevation", "eye", "fov", "look_at", "near", "roll", "up", "zoom"), _POSE),
+    **dict.fromkeys(("environment", "environment_intensity", "environment_rotation"), _SKY),
+}
+"""Where there is what the programs have an option for and Python no keyword."""
 _OTHER_KEYWORDS = {
     "alpha": "aovs",
     "aov": "aovs",
@@ -114,6 +130,7 @@ class Renderer:
         background: Background = None,
         from_: str = "auto",
         fit: float = 0.85,
+        exposure: float | str = "auto",
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
         texture_memory: int = 512 << 20,
@@ -129,7 +146,8 @@ class Renderer:
         which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed and tone mapped;
         "environment" for what lights the scene; None: the scene's, or a grey gradient. from_: from where a scene is seen: "auto" (by its camera, without one from three quarters, or inside where one stands in it) or, whatever
         cameras it has, "three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside". fit: the share
-        of the picture that a framed scene covers, 0.05 to 1. texture_memory: the most bytes that textures take.
+        of the picture that a framed scene covers, 0.05 to 1. exposure: stops by which pictures are shown brighter, -64
+        to 64; "auto": what suits the scene's light, 0 for most. texture_memory: the most bytes that textures take.
         expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
         kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The rest as Caster.
         Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
@@ -139,6 +157,7 @@ class Renderer:
         self._background = _words_of(background)
         self._from = "" if from_ == "auto" else str(from_)
         self._fit = float(fit)
+        self._exposure = _stops_of(exposure)
         self._builder = str(builder)
         self._bvh = None if bvh is None else os.fsdecode(bvh)
         self._texture_memory = texture_memory
@@ -186,7 +205,8 @@ class Renderer:
     @property
     def display(self) -> Display:
         """How pictures of the scene are shown in 8 bits."""
-        return from_dict(Display, self._lit().display(self._light))
+        shown = from_dict(Display, self._lit().display(self._light))
+        return shown if self._exposure is None else replace(shown, exposure_ev=self._exposure)
 
     def camera(self, camera: CameraLike = None, aspect_ratio: float = _ASPECT_RATIO) -> Camera:
         """The camera that a view with this one has, to change with dataclasses.replace. Raises UsageError where the
@@ -444,6 +464,16 @@ def _words_of(background: Background) -> list[str]:
         raise UsageError(f"background is {background!r:.80}; give three numbers or a word as \"environment\"") from None
 
 
+def _stops_of(exposure: float | str) -> float | None:
+    """None where the scene decides."""
+    if exposure == "auto":
+        return None
+    stops = float(exposure) if isinstance(exposure, (int, float, np.number)) else inf
+    if -_MOST_STOPS <= stops <= _MOST_STOPS:
+        return stops
+    raise UsageError(f'exposure is {exposure!r:.80}; give stops from -{_MOST_STOPS} to {_MOST_STOPS}, or "auto"')
+
+
 def _one_of(record: Any, kind: type[Any]) -> Any:
     """The record; None of none."""
     return None if record is None else _all_of([record], kind)[0]
@@ -489,6 +519,7 @@ def render(
     background: Background = None,
     from_: str = "auto",
     fit: float = 0.85,
+    exposure: float | str = "auto",
     builder: str = "sah",
     progress: Progress = None,
     camera: CameraLike = None,
@@ -515,6 +546,7 @@ def render(
         background=background,
         from_=from_,
         fit=fit,
+        exposure=exposure,
         builder=builder,
         expected_samples=_count_samples(view),
         progress=progress,

@@ -275,13 +275,13 @@ class Scene:
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
         """Changes a material by its name or number: `new` takes its place, or some of its fields get other values, as in
         scene.set_material("Fabric", base_color=(1, 0, 0), base_color_texture=None). A texture multiplies its colour or
-        number; None takes it away. Raises UsageError where there is no such material or field, or where several
-        have the name."""
-        self.materials = replace_one(self.materials, material, _of(new, Material) if new else None, fields, "material")
+        number; None takes it away. Raises UsageError where there is no such material or field, where several have the
+        name, and for a value of the wrong kind; the scene stays as it was then. `validate` checks ranges."""
+        self.materials = replace_one(self.materials, material, None if new is None else _of(new, Material), fields, "material")
 
     def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
         """Changes a light as set_material does, as in scene.set_light(0, is_on=False)."""
-        self.lights = replace_one(self.lights, light, _of(new, Light) if new else None, fields, "light")
+        self.lights = replace_one(self.lights, light, None if new is None else _of(new, Light), fields, "light")
 
     # What there is.
 
@@ -691,7 +691,19 @@ _FIELDS: dict[str, Callable[[Any], Any]] = {
 """How fields of shapes are read; all others are numbers."""
 
 
+_READERS: dict[type[Any], Callable[[_promin.Scene, dict[str, Any]], None]] = {
+    Camera: _promin.Scene.add_camera,
+    Environment: _promin.Scene.set_environment,
+    Light: _promin.Scene.add_light,
+    Material: _promin.Scene.add_material,
+}
+"""How the native module reads records."""
+
+
 def _of(record: Any, kind: type[Any]) -> Any:
+    """The record. Raises UsageError where it is of another kind, or a field holds what the native module cannot read: a
+    scene with such a record could neither be used nor corrected."""
     if not isinstance(record, kind):
         raise UsageError(f"{record!r:.80} is no promin.{kind.__name__}")
+    _READERS[kind](_promin.Scene(), to_dict(record))
     return record

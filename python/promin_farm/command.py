@@ -24,7 +24,7 @@ from promin_farm.settings import Settings
 from promin_farm.page import Page
 from promin_farm.status import describe, to_json
 from promin_farm.survey import take_survey
-from promin_farm.watch import Progress
+from promin_farm.watch import Progress, of_pieces
 
 _EPILOG = """Exit codes: 0 done; 1 failed while running, or pieces were given up; 2 wrong use; 3 bad input; 4 no device.
 docs/farm.md tells how to run on one machine, several, and queues."""
@@ -153,9 +153,8 @@ def _run(job: jobs.Job, options: argparse.Namespace) -> int:
     settings.write(folder)
     if options.command != "resume" and options.prepare:
         if not options.quiet:
-            print(
-                f"{len(job.pieces)} pieces in {job.folder}; promin-farm work makes them, promin-farm resume the files"
-            )
+            pieces = of_pieces(len(job.pieces))
+            print(f"{pieces} in {job.folder}; promin-farm work makes them, promin-farm resume the files")
         return 0
     return carry_on(
         job,
@@ -186,7 +185,7 @@ def _work(options: argparse.Namespace) -> int:
         print(f"promin-farm: stopped; promin-farm work {job.folder} goes on", file=sys.stderr)
         return 1
     if not options.quiet:
-        print(f"{tally.done} piece{'s' * (tally.done != 1)} made; {_words_of_left(left, job)}")
+        print(f"{of_pieces(tally.done)} made; {_words_of_left(left, job)}")
     return _tell_failed(tally)
 
 

@@ -24,7 +24,7 @@ from promin_farm.processes import LocalCrew, deal_seats
 from promin_farm.queues import QUEUES, open_queue
 from promin_farm.settings import Settings, claim_what_is_there
 from promin_farm.survey import take_survey
-from promin_farm.watch import Progress, of_workers
+from promin_farm.watch import Progress, of_pieces, of_workers
 
 _MOST_ROUNDS = 3
 """Pieces that are altered while the job goes on are made again; who alters them oftener than that is told."""
@@ -61,11 +61,11 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
             if round_ + 1 == _MOST_ROUNDS or all(job.state(piece.number) == "done" for piece in job.pieces):
                 raise
     if not options.is_quiet:
-        pieces = f"{len(job.pieces)} pieces"
+        pieces = of_pieces(len(job.pieces))
         if settings.outputs:
             print(f"{pieces}: {', '.join(settings.outputs)}")
         else:
-            print(f"{pieces} are in {job.folder}; name the files to make of them by -o")
+            print(f"{pieces} {'is' if len(job.pieces) == 1 else 'are'} in {job.folder}; name the files to make of them by -o")
     return 0
 
 
@@ -112,8 +112,13 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
 
     watch = Progress(job, missing, is_quiet=options.is_quiet, on_tick=tick, on_piece=assembly.piece_done)
     with Signals() as signals, assembly.writing(missing, signals.end_soon), ExitStack() as stack:
-        crew, words = _open_crew(job, options, stack)
-        watch.say(f"{len(missing)} of {len(job.pieces)} pieces to make, by {words}")
+        crew, words, workers = _open_crew(job, options, stack)
+        watch.say(f"{len(missing)} of {of_pieces(len(job.pieces))} to make, by {words}")
+        if len(job.pieces) < workers:
+            watch.say(
+                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; a job in another folder may "
+                "be cut into more by --pieces"
+            )
         foreman = Foreman(
             job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon, leave=signals.end_now
         )
@@ -126,30 +131,33 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
     return _conclude(job, tally)
 
 
-def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew, str]:
+def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew, str, int]:
+    """The crew, which it is in words, and how many workers it is to have; 0 where a cluster decides."""
     if options.scheduler in QUEUES:
-        return open_queue(job, str(options.scheduler), options.workers or 1, options.queue_config, stack)
+        workers = options.workers or 1
+        return *open_queue(job, str(options.scheduler), workers, options.queue_config, stack), workers
     if options.scheduler:
-        return open_remote(job, options.scheduler, stack)
+        return *open_remote(job, options.scheduler, stack), 0
     # Each GPU has a worker; a processor has one that takes all of it.
     seats = deal_seats(options.devices or jobs.list_gpus(), options.workers)
     threads = f", LP_NUM_THREADS={seats[0].threads} each" if seats[0].threads else ""
-    return stack.enter_context(LocalCrew(job, seats)), f"{of_workers(len(seats))} on this machine{threads}"
+    words = f"{of_workers(len(seats))} on this machine{threads}"
+    return stack.enter_context(LocalCrew(job, seats)), words, len(seats)
 
 
 def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     again = f"promin-farm resume {job.folder}"
     if tally.reason:
-        print(f"promin-farm: error: {tally.reason}; {tally.done} pieces were made, {again} goes on", file=sys.stderr)
+        print(f"promin-farm: error: {tally.reason}; {of_pieces(tally.done)} made, {again} goes on", file=sys.stderr)
         return tally.exit_code
     if tally.was_stopped:
-        print(f"promin-farm: stopped after {tally.done} pieces; {again} goes on", file=sys.stderr)
+        print(f"promin-farm: stopped after {of_pieces(tally.done)}; {again} goes on", file=sys.stderr)
         return 1
     if tally.failed:
         named = [f"{job.pieces[number].name} ({tries.reason})" for number, tries in sorted(tally.failed.items())]
         more = ", …" if len(named) > _MOST_NAMED else ""
         print(
-            f"promin-farm: error: {len(named)} of {len(job.pieces)} pieces cannot be made: "
+            f"promin-farm: error: {len(named)} of {of_pieces(len(job.pieces))} cannot be made: "
             f"{', '.join(named[:_MOST_NAMED])}{more}, {job.folder}; mend that, then {again} tries them again",
             file=sys.stderr,
         )
@@ -157,7 +165,7 @@ def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     if tally.foreign:
         owner = next(iter(tally.foreign.values()))
         print(
-            f"promin-farm: error: {len(tally.foreign)} pieces must have the bits of the fingerprint {owner[:16]}, which "
+            f"promin-farm: error: {of_pieces(len(tally.foreign))} must have the bits of the fingerprint {owner[:16]}, which "
             f"no worker has, {Path(job.folder)}; {again} with a worker of that kind",
             file=sys.stderr,
         )

@@ -79,7 +79,7 @@ class Progress:
     def describe(self, worker_count: int) -> str:
         """The line that is shown."""
         left = self.time_left_s()
-        words = f"{self._done} of {self._total} pieces, {of_workers(worker_count)}"
+        words = f"{self._done} of {of_pieces(self._total)}, {of_workers(worker_count)}"
         return words + (f", {duration(left)} left" if left is not None else "")
 
     def time_left_s(self) -> float | None:
@@ -105,6 +105,11 @@ def duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)
     return f"{minutes} min" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def of_pieces(count: int) -> str:
+    """In words."""
+    return "1 piece" if count == 1 else f"{count} pieces"
 
 
 def of_workers(count: int) -> str:

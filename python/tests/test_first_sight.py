@@ -45,6 +45,20 @@ def test_a_background_is_that_of_promin_render(
         promin.render(box, size=8, background=(1, 1, 1), aovs=("alpha",))
 
 
+def test_an_exposure_is_that_of_promin_render(
+    scenes: Path, tmp_path: Path, run_promin: Callable[..., None]
+) -> None:
+    picture = promin.render(scenes / "box.gltf", size="32x24", exposure=1.5)
+    picture.save(tmp_path / "ours.png")
+    words = ["-o", tmp_path / "theirs.png", "--size", "32x24", "--exposure", 1.5]
+    run_promin("render", scenes / "box.gltf", *words)
+    assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
+    assert picture.display.exposure_ev == 1.5
+    for wrong in ("bright", 65, float("nan"), None):
+        with pytest.raises(promin.UsageError, match='^exposure is .*; give stops from -64 to 64, or "auto"'):
+            promin.render(scenes / "box.gltf", size=8, exposure=wrong)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(
     "size, sides",
     [("hd", (1280, 720)), ("640", (640, 0)), ("x480", (0, 480)), (640, (640, 0)), ((64, 48), (64, 48)), (None, (0, 0))],
@@ -136,6 +150,42 @@ def test_lights_are_changed_and_replaced(box: promin.Scene) -> None:
         box.set_material("", alpha=0.5)
 
 
+@pytest.mark.parametrize(
+    "fields",
+    [{"base_color": "blue"}, {"base_color": (1, 0)}, {"roughness": "rough"}, {"alpha_mode": "glass"}, {"name": 3}],
+)
+def test_a_wrong_value_of_a_material_is_refused_at_once(fields: dict[str, Any]) -> None:
+    scene = promin.Scene()
+    scene.add_sphere(material=scene.add_material(promin.MetallicRoughness(name="clay")))
+    before = scene.materials
+    with pytest.raises(promin.UsageError, match=next(iter(fields)).split("_")[0]):
+        scene.set_material("clay", **fields)
+    with pytest.raises(promin.UsageError):
+        scene.add_material(promin.MetallicRoughness(**{"name": "other", **fields}))
+    with pytest.raises(promin.UsageError):
+        scene.materials = [promin.MetallicRoughness(**fields)]
+    assert scene.materials == before
+    scene.validate()
+
+
+def test_wrong_values_of_lights_cameras_and_surroundings_are_refused_at_once(box: promin.Scene) -> None:
+    box.add_light(promin.Light(name="key"))
+    for wrong in ({"kind": "lamp"}, {"diffuse": "white"}, {"position": (1, 2)}, {"is_on": "yes"}):
+        with pytest.raises(promin.UsageError, match=next(iter(wrong))):
+            box.set_light("key", **wrong)
+        with pytest.raises(promin.UsageError):
+            box.add_light(promin.Light(**wrong))  # type: ignore[arg-type]
+        with pytest.raises(promin.UsageError):
+            box.lights = [promin.Light(**wrong)]  # type: ignore[arg-type]
+    with pytest.raises(promin.UsageError, match="yfov"):
+        box.add_camera(promin.Camera(yfov="wide"))  # type: ignore[arg-type]
+    with pytest.raises(promin.UsageError, match="ambient"):
+        box.environment = promin.Environment(ambient="dark")  # type: ignore[arg-type]
+    assert box.lights == [promin.Light(name="key")] and box.cameras == []
+    assert box.environment == promin.Environment()
+    box.validate()
+
+
 def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.Caster, scenes: Path) -> None:
     assert repr(box) == "<promin.Scene: 1 object, 12 primitives, 1 material, 0 lights, 0 cameras>"
     assert repr(promin.Scene.load(scenes / "box.gltf")).startswith("<promin.Scene box.gltf: ")
@@ -155,6 +205,8 @@ def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.
         ({"framing": "left"}, "did you mean from_?"),
         ({"backgrund": "environment"}, "did you mean background?"),
         ({"shading": "uv"}, "did you mean debug_view?"),
+        ({"azimuth": 45}, "give camera=promin.Camera.look_at("),
+        ({"environment": "sky.hdr"}, "give the scene one: scene.environment = "),
     ],
 )
 def test_unknown_keywords_are_told_with_the_one_that_is_meant(

@@ -423,7 +423,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     job = jobs.create("cast", words, tmp_path / "job")
     runner = job.runner()
     assert job.arguments == words
-    for other, what in (([*words, "--any"], "it has no --any"), ([*words[:2]], "it has 2 pieces, and 1 now")):
+    for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, and 1 now")):
         with pytest.raises(promin.UsageError, match=f"the folder has another job: {what}"):
             jobs.create("cast", other, tmp_path / "job")
     changed = make_rays(1000)

@@ -67,6 +67,14 @@ TEST_F(CastJobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   EXPECT_TRUE(read("merged.npy") == read("whole.npy") && read("merged_offsets.npy") == read("whole_offsets.npy"));
 }
 
+TEST_F(CastJobCliTest, WithoutAWordManyRaysAreSixteenPieces) {
+  write_rays("rays.npy", make_rays(size_t{1} << 20));
+  expect_done(cast({"-o", "whole.npy"}));
+  expect_done(cast({"--job", "job", "-o", "cut.npy"}));
+  EXPECT_EQ(pieces().size(), 16U);
+  EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
+}
+
 TEST_F(CastJobCliTest, OfALargeSceneAllTakeTheTreeOfTheFirst) {
   write_sheet("sheet.ply");
   const auto cast_sheet = [&](OptionValues more) {
@@ -110,7 +118,7 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
 
   expect_failure(cast({"--job", "job", "--pieces", "4", "--any", "-o", "cut.npy"}), 2,
-                 "the folder has another job: it has no --any, which is \"given\" now");
+                 "the folder has another job: its --any is not given or its default, and is \"given\" now");
   expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2, "it has 4 pieces, and 3 now");
   write_rays("rays.npy", make_rays(999));
   expect_failure(cast(words), 2, "its rays is \"1000\", and \"999\" now");

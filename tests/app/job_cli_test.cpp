@@ -78,6 +78,23 @@ TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {
   EXPECT_TRUE(read("merged.exr") == read("whole.exr"));
 }
 
+// A kill loses one piece.
+TEST_F(JobCliTest, WithoutAWordThereAreSixteenPiecesOrWhatTheRowsAreWorth) {
+  const auto count_pieces = [&](const OptionValues& how) {
+    std::filesystem::remove_all(folder() / "job");
+    OptionValues words = {"render", "square.gltf", "--spp", "1", "--job", "job", "--piece", "0/1", "--quiet"};
+    words.insert(words.end(), how.begin(), how.end());
+    expect_done(run(words));
+    return pieces().size();
+  };
+  EXPECT_EQ(count_pieces({"--size", "64x128"}), 16U);
+  EXPECT_EQ(count_pieces({"--size", "40x64"}), 8U);
+  EXPECT_EQ(count_pieces({"--size", "40x64", "--crop", "0", "8", "40", "40"}), 4U);
+  EXPECT_EQ(count_pieces({"--size", "40x7"}), 1U);
+  write("path.json", kPath);
+  EXPECT_EQ(count_pieces({"--size", "64x128", "--path", "path.json"}), 16U);
+}
+
 TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   write("path.json", kPath);
   expect_done(render({"--path", "path.json", "-o", "whole.##.exr"}));
@@ -96,7 +113,10 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
 
 // With pictures of default names, which a second run finds there.
 TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
-  for (int i = 0; i < 2; ++i) expect_done(render({"--job", "job"}));
+  expect_done(render({"--job", "job"}));
+  const ProcessResult again = run({"render", "square.gltf", "--size", "61", "47", "--job", "job"});
+  expect_done(again);
+  EXPECT_THAT(again.out, testing::StartsWith("nothing was left to make of 5 pieces: "));
   EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
   // Nothing is said to be written by who is refused.
   const ProcessResult refused = run({"render", "square.gltf", "--job", "job", "--aov", "normal"});
@@ -226,7 +246,11 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(render({"--job", "job", "-o", "cut.exr"}));
   const ProcessResult other_samples = render({"--job", "job", "-o", "cut.exr", "--spp", "2"});
   EXPECT_EQ(other_samples.exit_code, 2);
-  EXPECT_THAT(other_samples.err, HasSubstr("the folder has another job: it has no --spp, which is \"2\" now"));
+  EXPECT_THAT(other_samples.err,
+              HasSubstr("the folder has another job: its --spp is not given or its default, and is \"2\" now"));
+  expect_done(render({"--job", "fine", "-o", "cut.exr", "--spp", "2"}));
+  expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "8"}), 2,
+                 "its --spp is \"2\", and is not given or its default now");
   const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
   const auto in = [&](const char* space) {
     OptionValues words = refined;
@@ -236,7 +260,7 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(in("linear"));
   const ProcessResult other_space = in("display");
   EXPECT_EQ(other_space.exit_code, 2);
-  EXPECT_THAT(other_space.err, HasSubstr("it has no --error-in, which is \"display\" now"));
+  EXPECT_THAT(other_space.err, HasSubstr("its --error-in is not given or its default, and is \"display\" now"));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);

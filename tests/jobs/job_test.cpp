@@ -158,8 +158,9 @@ TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   Job::create(job_folder_, make_manifest());
   const std::pair<void (*)(Manifest&), const char*> cases[] = {
       {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", and \"8\" now"},
-      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given now"},
-      {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); }, "it has no --crop, which is \"0 0 1 1\" now"},
+      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given or its default now"},
+      {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
+       "its --crop is not given or its default, and is \"0 0 1 1\" now"},
       {[](Manifest& m) { m.options[0].second = "2"; }, "its version is \"1\", and \"2\" now"},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
       {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
