@@ -129,7 +129,7 @@ def assert_same_picture(
 
 
 def heat(flip_map: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Errors 0...1 (rows, columns) as linear colours from black over red to white."""
+    """Errors 0...1 (rows, columns) as linear colours from black over violet and orange to white."""
     places = np.clip(np.nan_to_num(flip_map, nan=1.0), 0.0, 1.0) * (len(_HEAT) - 1)
     codes = np.stack([np.interp(places, np.arange(len(_HEAT)), _HEAT[:, i]) for i in range(3)], axis=-1)
     linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
