@@ -99,7 +99,7 @@ std::string shown(const std::string& value) {
   return value.empty() ? "nothing" : "\"" + value + "\"";
 }
 
-/// Of an option that a manifest lacks: it leaves out one that is given its default.
+/// What is true of an option that a manifest lacks, as manifests leave out those that have their defaults.
 constexpr std::string_view kLeftOut = "is not given or its default";
 
 /// What is different about two jobs, in a sentence about the wanted one.

@@ -47,7 +47,7 @@ _ASPECT_RATIO = 16 / 9
 _NO_ID = np.uint32(2**32 - 1)
 """What the AOV `object` is on a miss."""
 _MOST_STOPS = 64
-"""Of exposure, as `promin render` has it."""
+"""The most stops of an exposure, as `promin render` has it."""
 
 
 Background = Union[Sequence[float], str, None]
