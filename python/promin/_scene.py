@@ -277,11 +277,13 @@ class Scene:
         scene.set_material("Fabric", base_color=(1, 0, 0), base_color_texture=None). A texture multiplies its colour or
         number; None takes it away. Raises UsageError where there is no such material or field, where several have the
         name, and for a value of the wrong kind; the scene stays as it was then. `validate` checks ranges."""
-        self.materials = replace_one(self.materials, material, None if new is None else _of(new, Material), fields, "material")
+        other = None if new is None else _of(new, Material)
+        self.materials = replace_one(self.materials, material, other, fields, "material")
 
     def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
         """Changes a light as set_material does, as in scene.set_light(0, is_on=False)."""
-        self.lights = replace_one(self.lights, light, None if new is None else _of(new, Light), fields, "light")
+        other = None if new is None else _of(new, Light)
+        self.lights = replace_one(self.lights, light, other, fields, "light")
 
     # What there is.
 

@@ -65,7 +65,8 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
         if settings.outputs:
             print(f"{pieces}: {', '.join(settings.outputs)}")
         else:
-            print(f"{pieces} {'is' if len(job.pieces) == 1 else 'are'} in {job.folder}; name the files to make of them by -o")
+            verb = "is" if len(job.pieces) == 1 else "are"
+            print(f"{pieces} {verb} in {job.folder}; name the files to make of them by -o")
     return 0
 
 
@@ -116,8 +117,8 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
         watch.say(f"{len(missing)} of {of_pieces(len(job.pieces))} to make, by {words}")
         if len(job.pieces) < workers:
             watch.say(
-                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; a job in another folder may "
-                "be cut into more by --pieces"
+                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; a job in another "
+                "folder may be cut into more by --pieces"
             )
         foreman = Foreman(
             job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon, leave=signals.end_now
@@ -165,8 +166,8 @@ def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     if tally.foreign:
         owner = next(iter(tally.foreign.values()))
         print(
-            f"promin-farm: error: {of_pieces(len(tally.foreign))} must have the bits of the fingerprint {owner[:16]}, which "
-            f"no worker has, {Path(job.folder)}; {again} with a worker of that kind",
+            f"promin-farm: error: {of_pieces(len(tally.foreign))} must have the bits of the fingerprint {owner[:16]}, "
+            f"which no worker has, {Path(job.folder)}; {again} with a worker of that kind",
             file=sys.stderr,
         )
         return 1
