@@ -259,9 +259,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   }
   ImGui::PopItemWidth();
   ImGui::PopTextWrapPos();
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float height = ImGui::GetCursorPosY() - style.ItemSpacing.y + style.WindowPadding.y;
-  answer.is_unsettled = !ImGui::IsWindowCollapsed() && std::abs(height - ImGui::GetWindowHeight()) > 1.0F;
+  answer.height = ImGui::GetCursorPosY();
   ImGui::End();
   return answer;
 }

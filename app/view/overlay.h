@@ -93,8 +93,8 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the path is typed.
   bool has_typed = false;
-  /// Whether the panel's text has another height than before, which the panel has in the next frame.
-  bool is_unsettled = false;
+  /// Of the panel's text, in the interface's units. The panel takes it in the next frame.
+  float height = 0.0F;
 };
 
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.

@@ -229,6 +229,7 @@ class Viewer {
   bool is_quitting_ = false;
   /// The number of frames to draw, because there is a new picture or the overlay answers to events.
   int frames_to_draw_ = kSettlingFrames;
+  float overlay_height_ = 0.0F;
   double next_draw_s_ = 0.0;
 };
 

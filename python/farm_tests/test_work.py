@@ -30,7 +30,7 @@ def test_tasks_of_an_array_share_the_pieces_and_take_what_others_leave(farm: Far
 
 
 def test_two_at_once_make_each_piece_once(farm: Farm) -> None:
-    farm.write_scene(40, ms=20)
+    farm.write_scene(40, ms=50)
     farm.create()
     both = [farm.start("work", farm.job, "--array-task", f"{i}/2") for i in range(2)]
     for process in both:
