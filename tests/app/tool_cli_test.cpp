@@ -29,31 +29,6 @@ TEST_F(ToolCliTest, HelpAndVersionEverywhere) {
   }
 }
 
-/// tools/contact_sheet.py.
-using SheetCliTest = CliTest;
-
-TEST_F(SheetCliTest, ShowsFilesAndSaysWhatIsWrongWithThem) {
-  write("broken.obj", "f 1 2 3\n");
-  const ProcessResult result =
-      Process(PROMIN_PYTHON,
-              {std::string(PROMIN_TOOLS_DIR) + "/contact_sheet.py", "-o", "sheet.png", "--promin", PROMIN_EXECUTABLE,
-               "--size", "16", "12", "--columns", "3", "square.gltf", "broken.obj", "triangle.obj"},
-              options_)
-          .wait();
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("| 1, 1 | square.gltf | "));
-  EXPECT_THAT(result.out, HasSubstr("| refused | broken.obj | error: "));
-  EXPECT_THAT(result.out, HasSubstr("| 1, 2 | triangle.obj | "));
-  const Image sheet = read_image(folder() / "sheet.png");
-  ASSERT_EQ(sheet.size, uvec2(48, 12));
-  const ProcessResult alone = run({"render", "square.gltf", "-o", "alone.png", "--size", "16", "12", "--spp", "4"});
-  ASSERT_EQ(alone.exit_code, 0);
-  const Image picture = read_image(folder() / "alone.png");
-  for (uint32_t y = 0; y < 12; ++y) {
-    for (uint32_t x = 0; x < 16; ++x) EXPECT_EQ(sheet.pixels[y * 48 + x], picture.pixels[y * 16 + x]);
-  }
-}
-
 TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
   options_.environment = {{"VK_ICD_FILENAMES", "/nonexistent.json"}, {"VK_DRIVER_FILES", "/nonexistent.json"}};
   struct Case {
