@@ -237,6 +237,12 @@ Camera stand_within(const dvec3& center, const dvec3& size, const dmat3& turn, f
   return camera;
 }
 
+/// An open side of a room is known where +Y is up; a room of another up axis is seen from inside.
+Framing assumed_framing(const Scene& scene, const MainPart& part, const dmat3& turn) {
+  const Framing from = framing_of(scene, part);
+  return from == Framing::kThreeQuarter || turn == dmat3(1.0) ? from : Framing::kInside;
+}
+
 }  // namespace
 
 std::span<const std::string_view> framing_names() {
@@ -255,9 +261,7 @@ Camera frame_scene(const Scene& scene, float aspect_ratio, const FrameOptions& o
   // The box is measured along the turned axes.
   const dvec3 size(glm::dot(glm::abs(turn[0]), extent), glm::dot(glm::abs(turn[1]), extent),
                    glm::dot(glm::abs(turn[2]), extent));
-  const Framing from = options.from                           ? *options.from
-                       : is_interior(scene, hull.main_part()) ? Framing::kInside
-                                                              : Framing::kThreeQuarter;
+  const Framing from = options.from ? *options.from : assumed_framing(scene, hull.main_part(), turn);
   if (from == Framing::kInside) return stand_within(hull.center(), size, turn, aspect_ratio);
   return fit_to(hull, look_from(viewpoint_of(from, size), turn), static_cast<double>(aspect_ratio),
                 static_cast<double>(options.fit));

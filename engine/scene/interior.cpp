@@ -17,6 +17,8 @@ namespace {
 
 /// The least share of backs in what is seen from outside.
 constexpr double kLeastBacks = 0.75;
+/// The largest share of backs in what is seen through an open side of a room: the thickness of its walls.
+constexpr double kMostBacksOfOpenSide = 0.1;
 /// The largest share of backs in what lies within the hull.
 constexpr double kMostBacksWithin = 0.5;
 /// What is within lies deeper than this share of the size.
@@ -52,32 +54,56 @@ class SixPictures {
 
   /// The share among the pixels that show something.
   double share_of_backs() const {
-    double backs = 0.0;
-    double all = 0.0;
+    std::vector<Silhouette::Pixel> all;
     for (const Silhouette& silhouette : silhouettes_) {
-      for (const auto& end : silhouette.ends) {
-        for (const Silhouette::Pixel& pixel : end) {
-          if (!std::isfinite(pixel.depth)) continue;
-          all += 1.0;
-          backs += pixel.is_back ? 1.0 : 0.0;
-        }
-      }
+      for (const auto& end : silhouette.ends) all.insert(all.end(), end.begin(), end.end());
     }
-    return all > 0.0 ? backs / all : 0.0;
+    return share_of_backs(all);
   }
 
-  /// Whether a point lies deep behind what is seen from each of the six sides.
-  bool is_enclosed(const dvec3& point) const {
+  /// An end of a horizontal axis, where +Y is up.
+  struct Side {
+    int axis;
+    size_t end;
+  };
+
+  /// The horizontal side through which one sees in, if any: next to no backs are seen from there.
+  std::optional<Side> find_open_side() const {
+    for (const Side side : {Side{2, 1}, Side{2, 0}, Side{0, 1}, Side{0, 0}}) {
+      if (share_of_backs(pictures_of(side.axis)[side.end]) <= kMostBacksOfOpenSide) return side;
+    }
+    return std::nullopt;
+  }
+
+  /// Whether a point lies deep behind what is seen from each of the six sides but an open one.
+  bool is_enclosed(const dvec3& point, const std::optional<Side>& open) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const auto& ends = silhouettes_[static_cast<size_t>(axis)].ends;
+      const auto& ends = pictures_of(axis);
       const size_t pixel = pixel_of(point, axis);
       const double margin = kLeastDepth * size_[axis];
-      if (!(ends[0][pixel].depth + margin < point[axis] && point[axis] < ends[1][pixel].depth - margin)) return false;
+      const bool is_open = open && open->axis == axis;
+      if (!(is_open && open->end == 0) && !(ends[0][pixel].depth + margin < point[axis])) return false;
+      if (!(is_open && open->end == 1) && !(point[axis] < ends[1][pixel].depth - margin)) return false;
     }
     return true;
   }
 
  private:
+  const std::array<std::vector<Silhouette::Pixel>, 2>& pictures_of(int axis) const {
+    return silhouettes_[static_cast<size_t>(axis)].ends;
+  }
+
+  static double share_of_backs(const std::vector<Silhouette::Pixel>& pixels) {
+    double backs = 0.0;
+    double all = 0.0;
+    for (const Silhouette::Pixel& pixel : pixels) {
+      if (!std::isfinite(pixel.depth)) continue;
+      all += 1.0;
+      backs += pixel.is_back ? 1.0 : 0.0;
+    }
+    return all > 0.0 ? backs / all : 0.0;
+  }
+
   /// Places in pixels of the picture along an axis.
   dvec2 place_of(const dvec3& point, int axis) const {
     const dvec3 share = (point - lo_) / size_;
@@ -153,29 +179,34 @@ double signed_volume(const Scene& scene, const MainPart& part) {
 
 }  // namespace
 
-bool is_interior(const Scene& scene, const MainPart& part) {
+Framing framing_of(const Scene& scene, const MainPart& part) {
+  constexpr Framing kOutside = Framing::kThreeQuarter;
   // What most scenes are needs no picture.
-  if (part.bounds.is_empty() || signed_volume(scene, part) >= 0.0) return false;
+  if (part.bounds.is_empty() || signed_volume(scene, part) >= 0.0) return kOutside;
   SixPictures outside(part.bounds);
   for_each_facet(scene, part, [&](const Facet& facet) { outside.draw(facet); });
-  if (outside.share_of_backs() < kLeastBacks) return false;
+  if (outside.share_of_backs() < kLeastBacks) return kOutside;
 
+  const auto open = outside.find_open_side();
   std::vector<Facet> within;
   Bounds bounds;
   for_each_facet(scene, part, [&](const Facet& facet) {
     const auto& corners = facet.corners;
-    if (!outside.is_enclosed((corners[0] + corners[1] + corners[2]) / 3.0)) return;
+    if (!outside.is_enclosed((corners[0] + corners[1] + corners[2]) / 3.0, open)) return;
     within.push_back(facet);
     for (const dvec3& corner : corners) bounds.extend(vec3(corner));
   });
-  if (within.empty()) return false;
+  if (within.empty()) return kOutside;
   SixPictures inside(bounds);
   for (const Facet& facet : within) inside.draw(facet);
-  return inside.share_of_backs() <= kMostBacksWithin;
+  if (inside.share_of_backs() > kMostBacksWithin) return kOutside;
+  if (!open) return Framing::kInside;
+  if (open->axis == 0) return open->end == 0 ? Framing::kLeft : Framing::kRight;
+  return open->end == 0 ? Framing::kBack : Framing::kFront;
 }
 
 Framing framing_of(const Scene& scene) {
-  return is_interior(scene, find_main_part(scene)) ? Framing::kInside : Framing::kThreeQuarter;
+  return framing_of(scene, find_main_part(scene));
 }
 
 }  // namespace promin

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "promin/framing.h"
 #include "promin/scene.h"
 
 namespace promin {
@@ -24,8 +25,8 @@ struct MainPart {
 /// bounds_of() does.
 MainPart find_main_part(const Scene& scene);
 
-/// Whether one stands in a scene with this main part (framing_of in promin/framing.h).
-bool is_interior(const Scene& scene, const MainPart& part);
+/// framing_of (promin/framing.h) of a scene with this main part.
+Framing framing_of(const Scene& scene, const MainPart& part);
 
 /// Whether a point lies in a box or on its surface.
 bool holds(const Bounds& bounds, const vec3& point);

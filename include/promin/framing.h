@@ -58,9 +58,10 @@ struct FrameOptions {
   vec3 up{0.0F, 1.0F, 0.0F};
 };
 
-/// From where to frame a scene: from within where one stands in it, else from three quarters. One stands in a scene
-/// whose outermost surfaces are seen from their backs from most of outside, while there is something in it that turns
-/// its fronts outwards (docs/model.md). Throws InputError as bounds_of() does.
+/// From where to frame a scene. A room that one stands in is seen through its open side (front, back, right or left
+/// where +Y is up) or, where it has none, from within; all else from three quarters. One stands in a scene whose
+/// outermost surfaces are seen from their backs from most of outside, while there is something in it that turns its
+/// fronts outwards (docs/model.md). Throws InputError as bounds_of() does.
 PROMIN_EXPORT Framing framing_of(const Scene& scene);
 
 /// A perspective camera that frames the scene. `aspect_ratio` is width over height of the picture. Throws UsageError

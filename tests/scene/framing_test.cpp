@@ -311,6 +311,27 @@ TEST(InteriorTest, ARoomMayBeMirroredAndCutFinely) {
   EXPECT_EQ(framing_of(scene), Framing::kInside);
 }
 
+/// A room without the wall at one end of an axis.
+Scene make_open_room(int axis, float end) {
+  Scene room = make_room(vec3(6, 3, 9));
+  auto& walls = std::get<Mesh>(room.geometries.front());
+  std::erase_if(walls.triangles, [&](const uvec3& t) {
+    return walls.positions[t.x][axis] == end && walls.positions[t.y][axis] == end && walls.positions[t.z][axis] == end;
+  });
+  return room;
+}
+
+TEST(InteriorTest, ARoomIsSeenThroughItsOpenSide) {
+  EXPECT_EQ(framing_of(make_open_room(2, 0.0F)), Framing::kBack);
+  EXPECT_EQ(framing_of(make_open_room(2, 9.0F)), Framing::kFront);
+  EXPECT_EQ(framing_of(make_open_room(0, 0.0F)), Framing::kLeft);
+  EXPECT_EQ(framing_of(make_open_room(0, 6.0F)), Framing::kRight);
+  EXPECT_EQ(framing_of(make_open_room(1, 3.0F)), Framing::kInside) << "it has no ceiling";
+  const Camera camera = frame_scene(make_open_room(2, 0.0F), 1.5F);
+  EXPECT_EQ(camera.look, vec3(0, 0, 1));
+  EXPECT_LT(camera.eye.z, 0.0F);
+}
+
 TEST(InteriorTest, AnObjectIsSeenFromOutside) {
   Scene box;
   add_mesh_box(box, vec3(-1), vec3(1));
