@@ -121,9 +121,9 @@ class PROMIN_EXPORT Renderer {
   /// Where there is time it refines to an error of 1/8 and below, down to the view's own, in steps of the root of 2:
   /// PictureError::target has the last. With less time it takes a fixed number of samples, RenderResult::
   /// samples_per_pixel. `render` gives the same bits by either number. What takes longer than 1.15 of the time, or
-  /// is foretold to when a tenth is traced, is abandoned: fewer samples come in its place, or the picture of one sample,
-  /// which is never abandoned. Takes 200 bytes of memory a pixel. `seconds` is finite; at most 0: one sample. Throws as `render`, and UsageError for a view without an error
-  /// target.
+  /// is foretold to when a tenth is traced, is abandoned: fewer samples come in its place, or the picture of one
+  /// sample, which is never abandoned. Takes 200 bytes of memory a pixel. `seconds` is finite; at most 0: one sample.
+  /// Throws as `render`, and UsageError for a view without an error target.
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress = {});
 
   /// Traces the view as a window does: in few pixels at first, as many as `budget_ms` allows, then in all of them, then
