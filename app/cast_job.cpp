@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/count_of.h"
+#include "core/divide_up.h"
 #include "fingerprint.h"
 #include "job_words.h"
 #include "missing_pieces.h"
@@ -44,7 +45,7 @@ struct RayRange {
 /// Pieces of so many rays where nothing is asked for.
 uint64_t choose_pieces(uint64_t count, bool is_all) {
   const uint64_t most_rays = is_all ? kPieceRaysOfAll : kPieceRays;
-  return std::max({uint64_t{1}, std::min(kUsualPieces, count / kLeastPieceRays), (count + most_rays - 1) / most_rays});
+  return std::max({uint64_t{1}, std::min(kUsualPieces, count / kLeastPieceRays), divide_up(count, most_rays)});
 }
 
 /// All rays in nearly equal ranges, of which there is one at least.

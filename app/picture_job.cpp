@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/divide_up.h"
 #include "frame_plan.h"
 #include "missing_pieces.h"
 #include "outputs.h"
@@ -251,7 +252,7 @@ void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
 /// Bands of each of so many pictures where nothing is asked for.
 uint32_t choose_bands(const PixelWindow& window, size_t pictures) {
   const uint64_t rows = size_of(window).y;
-  const uint64_t usual = std::min((kUsualPieces + pictures - 1) / pictures, rows / kLeastBandRows);
+  const uint64_t usual = std::min(divide_up<uint64_t>(kUsualPieces, pictures), rows / kLeastBandRows);
   const uint64_t of_large = pictures == 1 ? std::min<uint64_t>(area_of(window) / kBandPixels, rows) : 1;
   return static_cast<uint32_t>(std::max<uint64_t>({1, usual, of_large}));
 }

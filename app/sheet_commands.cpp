@@ -46,7 +46,7 @@ constexpr vec3 kNoPicture{0.6F};
 constexpr vec3 kInk{0.02F};
 
 /// Writes a picture whole or not at all; a PNG where the name has no ending of a picture, as file managers ask for.
-void write_png(const fs::path& file, const Image& image) {
+void write_picture(const fs::path& file, const Image& image) {
   const fs::path made = is_writable_format(file) ? file : fs::path(file.string() + ".promin.png");
   const DeferredSignals while_writing;
   write_image(made, image);
@@ -63,7 +63,7 @@ void make_thumbnail(const RenderOptions& options) {
   check_outputs({options.tracing.scene}, options.pictures, {});
   const Console console(Verbosity::kQuiet);
   const Image image = render_shown(options, *open_device_of(options.tracing, console), console);
-  write_png(options.pictures.front(), image);
+  write_picture(options.pictures.front(), image);
 }
 
 struct SheetOptions {
@@ -169,7 +169,7 @@ void make_sheet(const SheetOptions& options) {
     }
   }
   progress.clear();
-  write_png(options.each.pictures.front(), sheet);
+  write_picture(options.each.pictures.front(), sheet);
   if (missing == 0) return;
   throw InputError({fmt::format("{} of {} {} not on the sheet", missing, count_of(options.scenes.size(), "scene"),
                                 missing == 1 ? "is" : "are"),

@@ -17,7 +17,7 @@ namespace promin::app {
 /// size.
 struct DescribedScene {
   std::filesystem::path file;
-  /// The picture; one of the command's own where there is none.
+  /// The picture's file; without one the command gets a name of its own.
   std::optional<std::filesystem::path> output = std::nullopt;
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};

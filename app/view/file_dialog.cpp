@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kScenes = "*.gltf *.glb *.obj *.ply *.stl *.nff";
 
-/// Starts a program that writes to a pipe. 0 where there is none of that name.
+/// Starts a program that writes to a pipe. Returns 0 where no program has that name.
 pid_t start(const std::vector<std::string>& command, int output) {
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));

@@ -93,7 +93,7 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the path is typed.
   bool has_typed = false;
-  /// Of the panel's text, in the interface's units. The panel takes it in the next frame.
+  /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.
   float height = 0.0F;
 };
 

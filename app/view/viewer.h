@@ -207,7 +207,7 @@ class Viewer {
   bool wants_screenshot_ = false;
   /// Where the picture is to be saved; none for a screenshot.
   std::optional<std::filesystem::path> saved_file_;
-  /// The command that gives the picture which is being saved; empty where there is none.
+  /// The command that gives the picture which is being saved; empty where no command gives it.
   std::string saved_command_;
   FileDialog dialog_;
   std::optional<PathEntry> path_entry_;

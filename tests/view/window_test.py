@@ -112,6 +112,14 @@ class Session:
         expect(done.returncode == 0, done.stderr)
         expect(json.loads(done.stdout)["largest"] == 0, f"the EXR differs: {done.stdout}")
 
+    def expect_shown(self, number, words):
+        """The next screenshot, of this number, is what the printed command renders, which has these words."""
+        self.take_screenshot(number)
+        command = self.print_command()
+        expect(words in command, f"not what is shown: {command}")
+        self.expect_same_picture(number, command)
+        return command
+
     def quit(self):
         # It may end before a look at whether it runs.
         self.viewer.xdotool("key", "Escape")
@@ -178,10 +186,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
     )
     with session as viewer:
         viewer.press("Tab", "p")
-        session.take_screenshot(1)
-        command = session.print_command()
-        expect(" --max-depth 1 --no-shadows --lights-off 1,3 " in command, f"not what is shown: {command}")
-        session.expect_same_picture(1, command)
+        session.expect_shown(1, " --max-depth 1 --no-shadows --lights-off 1,3 ")
 
         def has_shadows_soon():
             try:
@@ -208,10 +213,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         session.expect_same_picture(2, command)
 
         viewer.press("F7")
-        session.take_screenshot(3)
-        command = session.print_command()
-        expect(" --shading steps " in command, f"not what is shown: {command}")
-        session.expect_same_picture(3, command)
+        command = session.expect_shown(3, " --shading steps ")
 
         # A click explains a pixel with the scene's numbers of lights, and moves nothing.
         viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
@@ -241,10 +243,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
 
         # A debug view is not exposed.
         viewer.press("F2")
-        session.take_screenshot(2)
-        command = session.print_command()
-        expect(" --shading normals " in command, f"not what is shown: {command}")
-        session.expect_same_picture(2, command)
+        session.expect_shown(2, " --shading normals ")
         session.quit()
 
     words = ["--light", "headlight", "--background", "environment", "--exposure", "1.25", "--tone-mapping", "aces"]
@@ -252,10 +251,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, *words, *errors, files=files)
     with session as viewer:
         viewer.press("Tab", "p")
-        session.take_screenshot(3)
-        command = session.print_command()
-        expect(" ".join(words) in command, f"not what is shown: {command}")
-        session.expect_same_picture(3, command)
+        command = session.expect_shown(3, " ".join(words))
         # What is read again is lit and shown as before.
         text = session.scene.read_text()
         session.scene.write_text(text + "# changed\n")
@@ -509,10 +505,7 @@ def turns_the_light(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, "--light-rotation", "10", files=("ply_faces.ply", "ply_checker.png"))
     with session as viewer:
         viewer.press("Tab", "p")
-        session.take_screenshot(1)
-        command = session.print_command()
-        expect(" --light-rotation 10 " in command, f"not what is shown: {command}")
-        session.expect_same_picture(1, command)
+        command = session.expect_shown(1, " --light-rotation 10 ")
         viewer.xdotool("keydown", "shift")
         viewer.drag((40, 50), (120, 50))
         viewer.xdotool("keyup", "shift")
