@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -125,7 +126,8 @@ TEST(DecodePicture, AbsurdSizesAreRefusedBeforeTheyTakeMemory) {
 /// A picture as OpenImageIO writes it, of floats from 0 to 1.
 Bytes make_by_plugin(const std::string& ending, const uvec2& size, int channels, const std::vector<float>& samples,
                      OIIO::TypeDesc type = OIIO::TypeDesc::UINT8) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / ("decode_picture_test." + ending);
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + "." + ending);
   const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(file.string());
   OIIO::ImageSpec spec(static_cast<int>(size.x), static_cast<int>(size.y), channels, type);
   // Colours come unassociated, and are to stay so.

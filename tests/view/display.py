@@ -154,9 +154,15 @@ class Viewer:
         self.xdotool("windowunmap" if is_minimised else "windowmap", "--sync", self.window)
 
     def processor_seconds(self):
-        """What the program has taken so far."""
+        """The processor time that the program has taken so far."""
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
         return sum(map(int, words[11:13])) / os.sysconf("SC_CLK_TCK")
+
+    def processor_share(self, seconds):
+        """Watches the program for that long. Returns the share of one core that it takes meanwhile."""
+        before, start = self.processor_seconds(), time.monotonic()
+        time.sleep(seconds)
+        return (self.processor_seconds() - before) / (time.monotonic() - start)
 
     def read(self, stream):
         # A handle of its own: the program writes where this one stands.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "device_scene/pack_scene.h"
+#include "support/temp_folder.h"
 #include "view/describe_command.h"
 #include "view/file_dialog.h"
 #include "view/flight.h"
@@ -106,16 +107,10 @@ TEST(TurnLight, TurnsTheSkyAndWhatShinesAlongADirection) {
 }
 
 /// A folder of programs that stand in for the desktop's, as the only ones on PATH.
-class FileDialogTest : public testing::Test {
+class FileDialogTest : public TempFolder {
  protected:
-  void SetUp() override {
-    fs::create_directories(folder_);
-    setenv("PATH", folder_.c_str(), 1);
-  }
-  void TearDown() override {
-    setenv("PATH", path_.c_str(), 1);
-    fs::remove_all(folder_);
-  }
+  void SetUp() override { setenv("PATH", folder_.c_str(), 1); }
+  void TearDown() override { setenv("PATH", path_.c_str(), 1); }
   void write_program(const std::string& name, const std::string& lines) const {
     std::ofstream(folder_ / name) << "#!/bin/sh\n" << lines;
     fs::permissions(folder_ / name, fs::perms::owner_all);
@@ -128,7 +123,6 @@ class FileDialogTest : public testing::Test {
   }
 
   const std::string path_ = std::getenv("PATH");
-  const fs::path folder_ = fs::path(testing::TempDir()) / "promin_file_dialog";
 };
 
 TEST_F(FileDialogTest, GivesTheFileThatIsChosen) {
@@ -184,16 +178,14 @@ TEST(DescribeCommand, AnglesComeBackToTheBit) {
   }
 }
 
-TEST(FindFreeName, TakesTheNextNumberOfBothEndings) {
-  const fs::path folder = fs::path(testing::TempDir()) / "promin_free_name";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  EXPECT_EQ(find_free_name(folder), "promin-0001");
-  std::ofstream(folder / "promin-0001.png") << "x";
-  std::ofstream(folder / "promin-0002.exr") << "x";
-  std::ofstream(folder / "promin-0004.exr") << "x";
-  EXPECT_EQ(find_free_name(folder), "promin-0003");
-  fs::remove_all(folder);
+class FindFreeNameTest : public TempFolder {};
+
+TEST_F(FindFreeNameTest, TakesTheNextNumberOfBothEndings) {
+  EXPECT_EQ(find_free_name(folder_), "promin-0001");
+  std::ofstream(folder_ / "promin-0001.png") << "x";
+  std::ofstream(folder_ / "promin-0002.exr") << "x";
+  std::ofstream(folder_ / "promin-0004.exr") << "x";
+  EXPECT_EQ(find_free_name(folder_), "promin-0003");
 }
 
 TEST(FlightRecorder, KeepsTheEndsOfARest) {
@@ -253,14 +245,13 @@ TEST(FindDisplay, TakesTheOneWithMostOfTheWindow) {
   EXPECT_EQ(find_display(displays, {-500, -500, 100, 100}), 0U);
 }
 
-TEST(SceneWatch, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
-  const fs::path folder = fs::path(testing::TempDir()) / "promin_scene_watch";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  const auto write = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
+class SceneWatchTest : public TempFolder {};
+
+TEST_F(SceneWatchTest, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
+  const auto write = [&](const char* name, const char* text) { std::ofstream(folder_ / name) << text; };
   write("a", "1");
   const auto read = [&] {
-    return std::vector<SourceFile>{{folder / "a", stamp_of(folder / "a")}, {folder / "b", stamp_of(folder / "b")}};
+    return std::vector<SourceFile>{{folder_ / "a", stamp_of(folder_ / "a")}, {folder_ / "b", stamp_of(folder_ / "b")}};
   };
   SceneWatch watch(read());
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(watch.has_changed());
@@ -270,7 +261,7 @@ TEST(SceneWatch, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
   EXPECT_FALSE(watch.has_changed());
   EXPECT_TRUE(watch.has_changed());
   EXPECT_FALSE(watch.has_changed()) << "once is enough";
-  fs::remove(folder / "a");
+  fs::remove(folder_ / "a");
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(watch.has_changed()) << "an editor replaces it";
   write("a", "new");
   watch.has_changed();
@@ -281,7 +272,6 @@ TEST(SceneWatch, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
   watch.follow(sources);
   watch.has_changed();
   EXPECT_TRUE(watch.has_changed());
-  fs::remove_all(folder);
 }
 
 // The window gives up a tree by what its progress throws: no builder may go on then.
