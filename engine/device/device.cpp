@@ -253,6 +253,7 @@ Device::Device(const DeviceOptions& options)
     const vk::PhysicalDeviceProperties properties = physical_.getProperties();
     limits_ = properties.limits;
     profile_ = make_profile(traits_of(physical_, properties));
+    profile_.pixel_packet_size = options.pixel_packet_size.value_or(profile_.pixel_packet_size);
     memory_ = physical_.getMemoryProperties();
     queue_family_ = *find_family(physical_, *surface_);
     if (const uint32_t bits = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits; bits > 0) {

@@ -4,8 +4,8 @@
 
     make_venv.py VENV --build FOLDER [--library BUILD] [--compiler CXX]
 
-With --library the module is built over the libraries of that build, else these are built too. It takes
-python3-venv, python3-dev and PyPI."""
+With --library the module is built over the libraries of that build, and nothing is done where none of its sources is
+newer than the last installation; else these are built too. It takes python3-venv, python3-dev and PyPI."""
 
 from __future__ import annotations
 
@@ -14,10 +14,13 @@ import os
 import subprocess
 import sys
 import tarfile
+import time
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 NEEDED = ["numpy", "nanobind>=2.4", "scikit-build-core>=0.11"]
+# What is installed, or compiled into the module.
+PACKAGE_SOURCES = ("CMakeLists.txt", "LICENSE", "README", "app/", "cmake/", "engine/", "include/", "pyproject.toml", "python/")
 FARM_WITH = ["distributed", "dask-jobqueue", "zarr"]
 TESTS_WITH = [
     *FARM_WITH,
@@ -40,6 +43,10 @@ def main() -> None:
     parser.add_argument("--library", type=Path)
     parser.add_argument("--compiler")
     options = parser.parse_args()
+    stamp = options.venv / "installed"
+    start = time.time()
+    if options.library is not None and is_newest(stamp, options.library):
+        return
     python = options.venv / "bin/python"
     if not python.exists():
         made = subprocess.run([sys.executable, "-m", "venv", options.venv], capture_output=True, text=True)
@@ -57,6 +64,20 @@ def main() -> None:
     run([str(python), "-c", "import promin; print('promin', promin.__version__)"])
     if options.library is not None and not (options.venv / "trimesh").exists():
         fetch_trimesh_tests(pip, options.venv)
+    stamp.touch()
+    # A source that is changed meanwhile is newer.
+    os.utime(stamp, (start, start))
+
+
+def is_newest(stamp: Path, library: Path) -> bool:
+    """Whether the stamp is there, and no source of the package and no library of the build is newer."""
+    if not stamp.exists():
+        return False
+    listed = subprocess.run(["git", "ls-files"], cwd=REPOSITORY, capture_output=True, text=True)
+    sources = [REPOSITORY / name for name in listed.stdout.splitlines() if name.startswith(PACKAGE_SOURCES)]
+    libraries = [*library.glob("*/*.a"), *library.glob("lib/*/*")]
+    files = [file for file in sources + libraries if file.is_file()]
+    return listed.returncode == 0 and max(file.stat().st_mtime for file in files) < stamp.stat().st_mtime
 
 
 def fetch_trimesh_tests(pip: list[str], venv: Path) -> None:

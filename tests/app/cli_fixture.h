@@ -29,11 +29,11 @@ v 0 1 0
 f 1 2 3
 )";
 
-/// A unit square at z = 0, a point source and two cameras.
+/// A unit square at z = 0 of Phong's model, whose kernels compile soonest, a point source and two cameras.
 inline constexpr const char* kSquareGltf =
     R"({
   "asset": {"version": "2.0"},
-  "extensionsUsed": ["KHR_lights_punctual"],
+  "extensionsUsed": ["KHR_lights_punctual", "PROMIN_materials_phong"],
   "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 3}]}},
   "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)"
     R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAABAAIAAAACAAMA"}],
@@ -41,7 +41,8 @@ inline constexpr const char* kSquareGltf =
   "accessors": [
     {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
     {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+  "materials": [{"extensions": {"PROMIN_materials_phong": {}}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
   "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7853981633974483, "znear": 0.01}}],
   "nodes": [
     {"mesh": 0},
@@ -57,10 +58,10 @@ inline constexpr const char* kSquareGltf =
 inline std::string make_mixed_gltf() {
   nlohmann::json gltf = nlohmann::json::parse(kSquareGltf);
   gltf["extensionsUsed"].push_back("KHR_materials_unlit");
-  gltf["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.02, 1}}}},
-                        {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}};
+  gltf["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.02, 1}}}},
+                               {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}});
   gltf["meshes"].push_back(gltf["meshes"][0]);
-  gltf["meshes"][1]["primitives"][0]["material"] = 0;
+  gltf["meshes"][1]["primitives"][0]["material"] = 1;
   gltf["nodes"][0]["translation"] = {-1.2, 0, 0};
   gltf["nodes"].push_back({{"mesh", 1}, {"translation", {1.2, 0, 0}}});
   gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);

@@ -63,6 +63,9 @@ Subject load_subject(const std::string& name) {
 
 class GoldenTest : public test::DeviceTest {
  protected:
+  /// With packets, as users have them.
+  static void SetUpTestSuite() { open({}); }
+
   static Image render(const Subject& subject) {
     return make_renderer(device(), subject.scene).render(subject.view).image;
   }
