@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""tools/prose finds what it lists, leaves plain sentences alone, and fails where a file has more than the baseline.
+"""tools/prose finds what it lists, leaves plain sentences alone, and fails where a file has more than the baseline;
+docs/tour.md names files and functions that exist.
 
 prose_test.py TEST TOOLS: TEST is a function below."""
 
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -65,6 +67,17 @@ def baseline_only_shrinks(folder):
     expect(code == 0 and "--lower" in text, f"fewer suspects say how to lower the baseline: {text}")
     run(folder, "--lower")
     expect((folder / BASELINE).read_text() == "1 a.h\n", "lowering writes the lower count")
+
+
+def tour_names_what_exists(_):
+    repository = pathlib.Path(sys.argv[2]).parent
+    steps = re.findall(r"^ *Code: (.*?)\n\n", (repository / "docs/tour.md").read_text(), re.MULTILINE | re.DOTALL)
+    expect(len(steps) == 12, f"{len(steps)} of 12 steps name their code")
+    for place in "; ".join(" ".join(step.split()) for step in steps).split("; "):
+        file, *functions = re.findall(r"`([^`]+)`", place)
+        text = (repository / file).read_text()
+        for function in functions:
+            expect(re.search(rf"\b{function}\b", text), f"{file} has {function}")
 
 
 if __name__ == "__main__":
