@@ -63,35 +63,27 @@ class CompilerSpace {
 const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                                                std::span<const SpecializationConstant> constants,
                                                std::span<const vk::DescriptorSetLayoutBinding> bindings) {
+  for (const SpecializationConstant& constant : constants) {
+    if (!has_specialization_constant(spirv, constant.id)) {
+      throw std::logic_error("the shader has no specialization constant " + std::to_string(constant.id));
+    }
+  }
+  const std::vector<uint32_t> code = specialize(spirv, constants);
   std::vector<uint32_t> key;
   for (const vk::DescriptorSetLayoutBinding& binding : bindings) {
     key.insert(key.end(), {binding.binding, static_cast<uint32_t>(binding.descriptorType)});
   }
-  for (const SpecializationConstant& constant : constants) key.insert(key.end(), {constant.id, constant.value});
-  key.insert(key.end(), {static_cast<uint32_t>(bindings.size()), static_cast<uint32_t>(constants.size())});
-  key.insert(key.end(), spirv.begin(), spirv.end());
+  key.push_back(static_cast<uint32_t>(bindings.size()));
+  key.insert(key.end(), code.begin(), code.end());
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = compiled_.find(key); found != compiled_.end()) return found->second;
   }
 
-  std::vector<vk::SpecializationMapEntry> entries;
-  std::vector<uint32_t> values;
-  for (const SpecializationConstant& constant : constants) {
-    if (!has_specialization_constant(spirv, constant.id)) {
-      throw std::logic_error("the shader has no specialisation constant " + std::to_string(constant.id));
-    }
-    entries.emplace_back(constant.id, static_cast<uint32_t>(values.size() * sizeof(uint32_t)), sizeof(uint32_t));
-    values.push_back(constant.value);
-  }
-  const vk::SpecializationInfo specialization(static_cast<uint32_t>(entries.size()), entries.data(),
-                                              values.size() * sizeof(uint32_t), values.data());
-  const std::vector<uint32_t> live = remove_dead_code(spirv, constants);
-  const CompilerSpace space(live.size() * sizeof(uint32_t));
+  const CompilerSpace space(code.size() * sizeof(uint32_t));
   const vk::raii::ShaderModule module(device,
-                                      vk::ShaderModuleCreateInfo({}, live.size() * sizeof(uint32_t), live.data()));
-  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
-                                                &specialization);
+                                      vk::ShaderModuleCreateInfo({}, code.size() * sizeof(uint32_t), code.data()));
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
   CompiledPipeline made;
   made.set_layout = vk::raii::DescriptorSetLayout(
       device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));

@@ -34,9 +34,9 @@ struct CompiledPipeline {
   vk::raii::Pipeline pipeline{nullptr};
 };
 
-/// What a device has compiled: the same shader with the same constants and bindings is compiled once. VkPipelineCache
-/// does not see to that: lavapipe's is empty, and SwiftShader's takes pipelines of two layout objects for different.
-/// For several threads: none waits while another compiles.
+/// The pipelines that a device has compiled. Two requests share one where the same code is left of their shaders
+/// (specialize) and their bindings are equal. VkPipelineCache does not do this: lavapipe's is empty, and SwiftShader
+/// distinguishes pipelines by their layout objects. Several threads can use it; none waits while another compiles.
 class CompiledPipelines {
  public:
   /// Compiles where needed. The pipeline lives as long as this. Throws vk::SystemError, and std::logic_error if the
@@ -48,7 +48,7 @@ class CompiledPipelines {
 
  private:
   mutable std::mutex mutex_;
-  /// By all words that `get` was told.
+  /// The key holds the bindings and the specialized code.
   std::map<std::vector<uint32_t>, CompiledPipeline> compiled_;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <ranges>
 #include <stdexcept>
 
 #define SPV_ENABLE_UTILITY_CODE
@@ -78,9 +79,14 @@ struct Function {
 class KnownValues {
  public:
   KnownValues(uint32_t id_bound, std::span<const SpecializationConstant> constants)
-      : constants_(constants.begin(), constants.end()), values_(id_bound), spec_ids_(id_bound), is_scalar_(id_bound) {}
+      : constants_(constants.begin(), constants.end()),
+        values_(id_bound),
+        spec_ids_(id_bound),
+        is_scalar_(id_bound),
+        is_bool_(id_bound) {}
 
   std::optional<uint32_t> of(uint32_t id) const { return values_.at(id); }
+  bool is_bool(uint32_t type) const { return is_bool_.at(type); }
 
   /// Of an instruction before the first function.
   void learn_constant(Words instruction) {
@@ -91,6 +97,7 @@ class KnownValues {
         break;
       case Op::OpTypeBool:
         is_scalar_.at(instruction[1]) = true;
+        is_bool_.at(instruction[1]) = true;
         break;
       case Op::OpTypeInt:
         is_scalar_.at(instruction[1]) = instruction[2] == 32;
@@ -123,14 +130,15 @@ class KnownValues {
   }
 
   void learn(Words instruction, std::optional<uint32_t> value) {
-    if (!is_scalar_.at(instruction[1])) return;
     const uint32_t id = instruction[2];
+    const bool is_scalar = is_scalar_.at(instruction[1]);
     if (const auto spec_id = spec_ids_.at(id)) {
       const auto has_id = [&](const SpecializationConstant& constant) { return constant.id == *spec_id; };
       const auto chosen = std::ranges::find_if(constants_, has_id);
       if (chosen != constants_.end()) value = chosen->value;
+      if (!is_scalar) throw std::logic_error("a specialization constant is neither a bool nor an integer of 32 bits");
     }
-    values_.at(id) = value;
+    if (is_scalar) values_.at(id) = value;
   }
 
  private:
@@ -191,6 +199,7 @@ class KnownValues {
   std::vector<std::optional<uint32_t>> spec_ids_;
   /// By types' ids.
   std::vector<bool> is_scalar_;
+  std::vector<bool> is_bool_;
 };
 
 struct Module {
@@ -423,23 +432,126 @@ std::vector<uint32_t> prune_functions(Module& module, KnownValues& values) {
   return words;
 }
 
-/// Ids that functions of the module define, but not what is left of them.
-std::vector<bool> find_dead_ids(const Module& module, uint32_t id_bound, const std::vector<uint32_t>& functions) {
-  std::vector<bool> is_dead(id_bound);
-  const auto set = [&](Words instruction, bool value) {
-    if (const auto id = result_of(instruction)) is_dead.at(*id) = value;
-  };
-  for (const Function& function : module.functions) {
-    for (const Words instruction : function.head) set(instruction, true);
-    for (const Block& block : function.blocks) {
-      for (const Words instruction : block.instructions) set(instruction, true);
+bool is_constant(Op op) {
+  switch (op) {
+    case Op::OpConstantTrue:
+    case Op::OpConstantFalse:
+    case Op::OpConstant:
+    case Op::OpConstantComposite:
+    case Op::OpConstantNull:
+    case Op::OpSpecConstantTrue:
+    case Op::OpSpecConstantFalse:
+    case Op::OpSpecConstant:
+    case Op::OpSpecConstantComposite:
+    case Op::OpSpecConstantOp:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Returns the operands that can be ids, for an instruction with a result. Where this function does not know the
+/// instruction, some of them are literals.
+Words operands_of(Words instruction) {
+  size_t first = 3;
+  size_t count = instruction.size();
+  switch (op_of(instruction)) {
+    case Op::OpConstantTrue:
+    case Op::OpConstantFalse:
+    case Op::OpConstant:
+    case Op::OpConstantNull:
+      count = 0;
+      break;
+    case Op::OpLoad:
+    case Op::OpCompositeExtract:
+      count = 1;
+      break;
+    case Op::OpCompositeInsert:
+    case Op::OpVectorShuffle:
+      count = 2;
+      break;
+    case Op::OpVariable:
+    case Op::OpSpecConstantOp:
+      first = 4;
+      break;
+    case Op::OpExtInst:
+      first = 5;
+      break;
+    default:
+      break;
+  }
+  first = std::min(first, instruction.size());
+  return instruction.subspan(first, std::min(count, instruction.size() - first));
+}
+
+/// Writes what comes before the functions: constants have their values, and what nothing uses is left out.
+class HeadWriter {
+ public:
+  HeadWriter(const Module& module, const KnownValues& values, Words functions, uint32_t id_bound)
+      : head_(module.head), values_(values), is_defined_(id_bound), is_used_(id_bound) {
+    for (size_t i = 0; i < functions.size(); i += functions[i] >> spv::WordCountShift) {
+      const Words instruction = functions.subspan(i, functions[i] >> spv::WordCountShift);
+      if (const auto id = result_of(instruction)) is_defined_.at(*id) = true;
+      use(instruction);
+    }
+    for (const Words instruction : head_) {
+      if (const auto id = result_of(instruction)) is_defined_.at(*id) = true;
+      // Nothing else there is made of constants: the words of other instructions are literals, types and variables.
+      const Op op = op_of(instruction);
+      if (op == Op::OpTypeArray || op == Op::OpVariable || op == Op::OpExecutionModeId) use(instruction);
+    }
+    // A constant comes after those that it is made of.
+    for (const Words instruction : std::views::reverse(head_)) {
+      if (!is_constant(op_of(instruction))) continue;
+      const uint32_t id = instruction[2];
+      if (!is_used_.at(id)) is_defined_.at(id) = false;
+      if (is_used_.at(id) && !values_.of(id)) use(instruction);
     }
   }
-  for (size_t i = 0; i < functions.size(); i += functions[i] >> spv::WordCountShift) {
-    set(Words(functions).subspan(i, functions[i] >> spv::WordCountShift), false);
+
+  void write(std::vector<uint32_t>& out) const {
+    for (const Words instruction : head_) {
+      const Op op = op_of(instruction);
+      if (is_about_id(instruction) && !is_defined_.at(instruction[1])) continue;
+      if (op == Op::OpDecorate && instruction[2] == static_cast<uint32_t>(spv::Decoration::SpecId)) continue;
+      if (!is_constant(op)) {
+        out.insert(out.end(), instruction.begin(), instruction.end());
+      } else if (is_defined_.at(instruction[2])) {
+        write_constant(instruction, out);
+      }
+    }
   }
-  return is_dead;
-}
+
+ private:
+  static bool is_about_id(Words instruction) {
+    return op_of(instruction) == Op::OpName || op_of(instruction) == Op::OpDecorate;
+  }
+
+  void use(Words instruction) {
+    const Words operands = result_of(instruction) ? operands_of(instruction) : instruction.subspan(1);
+    for (const uint32_t operand : operands) {
+      if (operand < is_used_.size()) is_used_[operand] = true;
+    }
+  }
+
+  void write_constant(Words instruction, std::vector<uint32_t>& out) const {
+    const auto value = values_.of(instruction[2]);
+    if (!value) {
+      out.insert(out.end(), instruction.begin(), instruction.end());
+    } else if (values_.is_bool(instruction[1])) {
+      out.insert(out.end(),
+                 {word(*value != 0 ? Op::OpConstantTrue : Op::OpConstantFalse, 3), instruction[1], instruction[2]});
+    } else {
+      out.insert(out.end(), {word(Op::OpConstant, 4), instruction[1], instruction[2], *value});
+    }
+  }
+
+  const std::vector<Words>& head_;
+  const KnownValues& values_;
+  /// By ids: those that the written module defines, but for names and decorations.
+  std::vector<bool> is_defined_;
+  std::vector<bool> is_used_;
+};
 
 }  // namespace
 
@@ -453,24 +565,17 @@ bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id) {
   return is_found;
 }
 
-std::vector<uint32_t> remove_dead_code(std::span<const uint32_t> spirv,
-                                       std::span<const SpecializationConstant> constants) {
+std::vector<uint32_t> specialize(std::span<const uint32_t> spirv, std::span<const SpecializationConstant> constants) {
   if (spirv.size() < kHeaderWords) throw std::logic_error("these words are no SPIR-V module");
   Module module(spirv);
   const uint32_t id_bound = spirv[kIdBoundWord];
   KnownValues values(id_bound, constants);
   for (const Words instruction : module.head) values.learn_constant(instruction);
   const std::vector<uint32_t> functions = prune_functions(module, values);
-  const std::vector<bool> is_dead = find_dead_ids(module, id_bound, functions);
-
-  std::vector<uint32_t> left(spirv.begin(), spirv.begin() + kHeaderWords);
-  for (const Words instruction : module.head) {
-    const bool is_about_id = op_of(instruction) == Op::OpName || op_of(instruction) == Op::OpDecorate;
-    if (is_about_id && is_dead.at(instruction[1])) continue;
-    left.insert(left.end(), instruction.begin(), instruction.end());
-  }
-  left.insert(left.end(), functions.begin(), functions.end());
-  return left;
+  std::vector<uint32_t> written(spirv.begin(), spirv.begin() + kHeaderWords);
+  HeadWriter(module, values, functions, id_bound).write(written);
+  written.insert(written.end(), functions.begin(), functions.end());
+  return written;
 }
 
 }  // namespace promin::gpu

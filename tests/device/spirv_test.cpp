@@ -20,6 +20,8 @@
 #include "follow_paths.spv.h"
 #include "gpu/spirv_module.h"
 #include "layout.h"
+#include "list_rays.spv.h"
+#include "place_rays.spv.h"
 #include "support/process.h"
 #include "support/thorough.h"
 #include "trace_shadow_rays.spv.h"
@@ -44,17 +46,17 @@ std::string find_faults(std::span<const uint32_t> spirv) {
 
 std::set<std::string> functions_left(std::span<const uint32_t> spirv,
                                      const std::vector<SpecializationConstant>& constants) {
-  return test::SpirvModule(remove_dead_code(spirv, constants)).functions;
+  return test::SpirvModule(specialize(spirv, constants)).functions;
 }
 
-TEST(RemoveDeadCodeTest, WhatIsLeftIsValid) {
+TEST(SpecializeTest, WhatIsLeftIsValid) {
   for (const test::BranchConstants& constants : test::all_branch_constants()) {
-    EXPECT_EQ(find_faults(remove_dead_code(k_branches_spirv, constants.list())), "")
+    EXPECT_EQ(find_faults(specialize(k_branches_spirv, constants.list())), "")
         << constants.first << ' ' << constants.second << ' ' << constants.third;
   }
 }
 
-TEST(RemoveDeadCodeTest, FunctionsThatAreCalledNowhereGo) {
+TEST(SpecializeTest, FunctionsThatAreCalledNowhereGo) {
   EXPECT_THAT(functions_left(k_branches_spirv, test::BranchConstants{.first = 1, .second = 1}.list()),
               AllOf(Contains("with_first"), Contains("with_second"), Not(Contains("without_first"))));
   EXPECT_THAT(
@@ -62,15 +64,15 @@ TEST(RemoveDeadCodeTest, FunctionsThatAreCalledNowhereGo) {
       AllOf(Contains("without_first"), Contains("is_odd"), Not(Contains("with_first")), Not(Contains("with_second"))));
 }
 
-TEST(RemoveDeadCodeTest, ConstantsThatAreNotGivenHaveTheirDefaults) {
-  EXPECT_EQ(remove_dead_code(k_branches_spirv, {}), remove_dead_code(k_branches_spirv, test::BranchConstants().list()));
+TEST(SpecializeTest, ConstantsThatAreNotGivenHaveTheirDefaults) {
+  EXPECT_EQ(specialize(k_branches_spirv, {}), specialize(k_branches_spirv, test::BranchConstants().list()));
 }
 
-TEST(RemoveDeadCodeTest, WhatIsNoModuleIsRefused) {
+TEST(SpecializeTest, WhatIsNoModuleIsRefused) {
   // Cut within its second instruction.
-  EXPECT_THROW(remove_dead_code(std::span(k_branches_spirv).first(9), {}), std::logic_error);
-  EXPECT_THROW(remove_dead_code(std::vector<uint32_t>(4), {}), std::logic_error);
-  EXPECT_THROW(remove_dead_code(std::vector<uint32_t>(40), {}), std::logic_error);
+  EXPECT_THROW(specialize(std::span(k_branches_spirv).first(9), {}), std::logic_error);
+  EXPECT_THROW(specialize(std::vector<uint32_t>(4), {}), std::logic_error);
+  EXPECT_THROW(specialize(std::vector<uint32_t>(40), {}), std::logic_error);
 }
 
 struct Kernel {
@@ -102,7 +104,7 @@ class KernelTest : public testing::TestWithParam<Kernel> {};
 TEST_P(KernelTest, WhatIsLeftIsValidWithEachFeature) {
   std::set<std::vector<uint32_t>> modules;
   const auto add = [&](uint64_t mask, uint32_t packet_size, uint32_t any) {
-    modules.insert(remove_dead_code(GetParam().spirv, constants_of(mask, packet_size, any)));
+    modules.insert(specialize(GetParam().spirv, constants_of(mask, packet_size, any)));
   };
   add(0, 1, 0);
   add(~uint64_t{0}, 8, 0);
@@ -128,6 +130,30 @@ TEST_P(KernelTest, OnlyTheScenesPrimitivesAreLeft) {
       EXPECT_EQ(left.contains(other_function), bit == other_bit) << function << ", " << other_function;
     }
   }
+}
+
+// A caller that asks for one thing more waits for the kernels that read it, not for the others.
+TEST(SpecializeTest, UsesOfOneSceneShareTheKernelsThatDoNotDiffer) {
+  // Those of a scene like scenes/showcase.gltf.
+  constexpr uint64_t kScene = 0xE3FFF;
+  std::vector<uint64_t> masks = {kScene};
+#define PROMIN_FEATURE(NAME, BIT, LABEL)
+#define PROMIN_REQUEST(NAME, BIT, LABEL) masks.push_back(kScene | uint64_t{1} << (BIT));
+#include "features.def"
+  for (uint64_t debug_view = 1; debug_view <= layout::DEBUG_VIEW_STEPS; ++debug_view) {
+    masks.push_back(kScene | debug_view << (32 + layout::DEBUG_VIEW_SHIFT));
+  }
+  ASSERT_EQ(masks.size(), 15U);
+  const auto count_kernels = [&](std::span<const uint32_t> spirv) {
+    std::set<std::vector<uint32_t>> kernels;
+    for (const uint64_t mask : masks) kernels.insert(specialize(spirv, constants_of(mask, 1, 0)));
+    return kernels.size();
+  };
+  EXPECT_EQ(count_kernels(k_camera_stage_spirv), 15U);
+  EXPECT_EQ(count_kernels(k_follow_paths_spirv), 7U);
+  EXPECT_EQ(count_kernels(k_trace_shadow_rays_spirv), 3U);
+  EXPECT_EQ(count_kernels(k_list_rays_spirv), 1U);
+  EXPECT_EQ(count_kernels(k_place_rays_spirv), 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shaders, KernelTest, testing::ValuesIn(kKernels),

@@ -145,7 +145,7 @@ TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   EXPECT_THAT(module.contractible, IsEmpty());
   // Nor does it lose that where the scene lacks features.
   const gpu::SpecializationConstant constants[] = {{layout::CONSTANT_FEATURES, 1}, {layout::CONSTANT_MORE_FEATURES, 0}};
-  const test::SpirvModule left(gpu::remove_dead_code(GetParam().spirv, constants));
+  const test::SpirvModule left(gpu::specialize(GetParam().spirv, constants));
   EXPECT_THAT(left.contractible, IsEmpty());
   if (GetParam().least_float_operation_count == 0) return;
   EXPECT_THAT(left.float_operation_count, AllOf(Gt(50U), Lt(module.float_operation_count)));
