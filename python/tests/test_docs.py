@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What README.md and docs/python.md say can be pasted, and the examples run."""
+"""The code in README.md and docs/python.md can be pasted, the tutorial works as it stands, and the examples run."""
 
 from __future__ import annotations
 
+import os
 import re
 import runpy
+import subprocess
 import sys
 from pathlib import Path
 
@@ -37,6 +39,24 @@ def test_rays_of_the_manual_hit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     rays = np.load("rays.npy")
     assert rays.shape == (100, 8) and (rays[:, 3] < rays[:, 7]).all()
     assert (promin.Caster(scene).cast(rays)["object"] >= 0).any()
+
+
+@pytest.mark.long
+def test_tutorial_works_as_it_stands(tmp_path: Path) -> None:
+    document = (REPOSITORY / "docs/tutorial.md").read_text()
+    program = Path(os.environ.get("PROMIN_PROGRAM", REPOSITORY / "build/release/bin/promin"))
+    folders = [str(program.parent), str(Path(sys.executable).parent), os.environ["PATH"]]
+    environment = {**os.environ, "PATH": os.pathsep.join(folders)}
+    for language, block in re.findall(r"^```(\w+)\n(.*?)^```", document, re.MULTILINE | re.DOTALL):
+        if name := re.match(r"# (\w+\.\w+)\n", block):
+            (tmp_path / name[1]).write_text(block)
+        elif language == "sh":
+            subprocess.run(["bash", "-e", "-c", block], cwd=tmp_path, env=environment, check=True)
+    pictures = re.findall(r"\(tutorial/([^)]*)\)", document)
+    assert len(pictures) == 9
+    for name in pictures:
+        made, shown = promin.read_image(tmp_path / name), promin.read_image(REPOSITORY / "docs/tutorial" / name)
+        assert made.shape == shown.shape and np.abs(made - shown).mean() < 0.01, name
 
 
 def run_example(name: str, monkeypatch: pytest.MonkeyPatch, *words: object) -> None:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The installed library as another project meets it without CMake, and the promises of its headers and README.
+"""The installed library as another project uses it without CMake, and the promises of its headers and of docs/library.md.
 
 consumer_test.py TEST PREFIX FOLDER COMPILER: PREFIX is where promin is installed, FOLDER the test's own.
 """
@@ -84,12 +84,12 @@ def code_blocks(text, language):
     return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 
-def builds_the_readme(installed):
-    """README's program by README's CMakeLists.txt, run as a reader would."""
-    readme = (REPOSITORY / "README.md").read_text()
-    (program,) = code_blocks(readme, "cpp")
-    (project,) = code_blocks(readme, "cmake")
-    (command,) = re.findall(r"^c\+\+ .*pkg-config.*$", readme, re.MULTILINE)
+def builds_the_documented_program(installed):
+    """Builds the program of docs/library.md by the CMakeLists.txt there, and runs it as a reader would."""
+    document = (REPOSITORY / "docs/library.md").read_text()
+    (program,) = code_blocks(document, "cpp")
+    (project,) = code_blocks(document, "cmake")
+    (command,) = re.findall(r"^c\+\+ .*pkg-config.*$", document, re.MULTILINE)
     source = installed.folder / "main.cpp"
     source.write_text(program)
     (installed.folder / "CMakeLists.txt").write_text(
@@ -100,7 +100,7 @@ def builds_the_readme(installed):
     options.append("-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
     run("cmake", "-G", "Ninja", "-S", installed.folder, "-B", build, *options)
     run("cmake", "--build", build)
-    # The same by README's other way.
+    # The same with pkg-config.
     environment = {**os.environ, "PKG_CONFIG_PATH": str(installed.libraries / "pkgconfig")}
     run("sh", "-c", command, cwd=installed.folder, env=environment)
     shutil.copy(REPOSITORY / "scenes" / "sphere.gltf", installed.folder / "scene.gltf")
