@@ -73,8 +73,8 @@ def names_keywords(function: Function) -> Function:
                 if name in FIELDS:
                     cure = f"give it to render, or in view=promin.View({name}=...)"
                     raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {cure}")
-                if name == "look":
-                    raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {_LOOK}")
+                if name in _ELSEWHERE:
+                    raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {_ELSEWHERE[name]}")
                 meant = _OTHER_KEYWORDS.get(name) or _promin.find_option(name.replace("_", "-")).replace("-", "_")
                 cure = f"did you mean {meant}?" if meant in known else suggest(name, known)
                 raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {cure}")
@@ -87,14 +87,20 @@ def _name_of(function: Callable[..., Any]) -> str:
     return function.__qualname__.removesuffix(".__init__")
 
 
-_LOOK = "a point to look at is look_at, a direction of view is direction"
+_ELSEWHERE = {
+    **dict.fromkeys(("alpha", "transparent"), 'give aovs=("alpha",)'),
+    **dict.fromkeys(("root", "strict", "variant"), "promin.Scene.load(file, ...) has it"),
+    **dict.fromkeys(("dither", "tone_mapping"), "frame.save(file, promin.Display(...)) has it"),
+    "lights_off": "switch a light off by scene.set_light(0, is_on=False)",
+    "look": "a point to look at is look_at, a direction of view is direction",
+    "output": "save what is returned: frame.save(file)",
+}
+"""Where there is what the programs have an option for and these functions no keyword."""
 _OTHER_KEYWORDS = {
-    "alpha": "aovs",
     "aov": "aovs",
     "framing": "from_",
     "height": "size",
     "shading": "debug_view",
-    "transparent": "aovs",
     "width": "size",
 }
 """What is called otherwise than in the programs."""

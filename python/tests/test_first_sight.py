@@ -339,6 +339,8 @@ def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.
         ({"shading": "uv"}, "did you mean debug_view?"),
         ({"look": (0, 0, 0)}, "a point to look at is look_at, a direction of view is direction"),
         ({"azimut": 45}, "did you mean azimuth?"),
+        ({"transparent": True}, 'give aovs=("alpha",)'),
+        ({"variant": "red"}, "promin.Scene.load(file, ...) has it"),
     ],
 )
 def test_unknown_keywords_are_told_with_the_one_that_is_meant(
