@@ -150,7 +150,8 @@ def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDA
 def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     """R, G and B of a picture file of any format that OpenImageIO knows, (rows, columns, 3) float32, without
     conversion: EXR and Radiance files hold linear light, others codes of sRGB as 0...1. Where there is alpha, which
-    `read_aovs` reads, the colours of EXR and WebP files are multiplied by it and others are not. Raises InputError, RunError."""
+    `read_aovs` reads, the colours of EXR and WebP files are multiplied by it and others are not. Raises InputError,
+    RunError."""
     return _promin.read_image(os.fsdecode(path))
 
 

@@ -150,18 +150,17 @@ class Renderer:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
         is built anew. scene: or the path of its file. view: that of pictures which are given none; what it takes is
-        compiled at once. light: what
-        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". background: what lies behind
-        all, as --background of promin render has it: three sRGB numbers from 0 to 1, a name as "white" or "#80a0ff",
-        which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed and tone mapped;
-        "environment" for what lights the scene; None: the scene's, or a grey gradient. environment: the file of an
-        equirectangular panorama around the scene, in place of its sky. environment_rotation turns the sky about +Y from
-        +Z towards +X, light_rotation the directional lights too, in degrees; environment_intensity multiplies its
-        radiance. exposure: stops by which pictures are shown brighter, -64
-        to 64; "auto": what suits the scene's light, 0 for most. texture_memory: the most bytes that textures take.
-        expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
-        kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The rest as Caster.
-        Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
+        compiled at once. light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none".
+        background: what lies behind all, as --background of promin render has it: three sRGB numbers from 0 to 1, a
+        name as "white" or "#80a0ff", which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed
+        and tone mapped; "environment" for what lights the scene; None: the scene's, or a grey gradient. environment:
+        the file of an equirectangular panorama around the scene, in place of its sky. environment_rotation turns the
+        sky about +Y from +Z towards +X, light_rotation the directional lights too, in degrees; environment_intensity
+        multiplies its radiance. exposure: stops by which pictures are shown brighter, -64 to 64; "auto": what suits the
+        scene's light, 0 for most. texture_memory: the most bytes that textures take. expected_samples: about how many
+        samples all pictures will have together, over all pixels; where they are few, kernels are taken that are
+        compiled sooner and trace slower, with the same bits; None: many. The rest as Caster. Raises UsageError,
+        InputError, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
@@ -226,8 +225,8 @@ class Renderer:
 
     def camera(self, camera: CameraLike = None, aspect_ratio: float = _ASPECT_RATIO) -> Camera:
         """The camera of pictures with this one, None being that of the Renderer's view, to change with
-        dataclasses.replace. aspect_ratio: of the picture in which the scene is framed. Raises UsageError where the scene
-        has none of this name or number."""
+        dataclasses.replace. aspect_ratio: of the picture in which the scene is framed. Raises UsageError where the
+        scene has none of this name or number."""
         if isinstance(camera, Camera):
             return camera
         record = self._choose_camera(change_view(self._view, {"camera": camera}), None, aspect_ratio)

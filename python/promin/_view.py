@@ -110,8 +110,8 @@ def of_view(view: object) -> View:
 
 
 def change_view(view: View, given: Mapping[str, Any]) -> View:
-    """The view with those of its fields that are given and not None. They take the place of fields that contradict them:
-    numbers of samples that of a quality, a camera that of all that changes the view's own."""
+    """The view with those of its fields that are given and not None. They take the place of fields that contradict
+    them: numbers of samples that of a quality, a camera that of all that changes the view's own."""
     changes = {name: given[name] for name in FIELDS if given.get(name) is not None}
     for name in list(changes):
         changes = {**dict.fromkeys(_TAKES_PLACE_OF.get(name, ())), **changes}

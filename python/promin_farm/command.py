@@ -111,7 +111,7 @@ def _make_parser() -> argparse.ArgumentParser:
     )
     for command in (render, cast):
         command.add_argument("--job", metavar="DIR", help="the job's folder, which all workers must see")
-        command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="file to write; repeatable")
+        command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="file to write")
         command.add_argument(
             "--prepare", action="store_true", help="only make the job's folder; promin-farm work makes the pieces"
         )
@@ -123,7 +123,7 @@ def _make_parser() -> argparse.ArgumentParser:
         metavar="FILE",
         action="append",
         default=[],
-        help="file to write in place of those that the job names; repeatable",
+        help="file to write in place of those that the job names",
     )
     for command in (render, cast, resume):
         _add_run_options(command)
@@ -138,7 +138,7 @@ def _make_parser() -> argparse.ArgumentParser:
     status.add_argument("--page", action="store_true", help="also write the job's page, DIR/index.html")
     verify = add("verify", "Read and hash every piece of a job")
     check = add("audit", "Make a sample of a job's pieces again and compare")
-    check.add_argument("--share", metavar="P", default="1%", help="share of the pieces to make again, as 5%% or 0.05 [1%%]")
+    check.add_argument("--share", metavar="P", default="1%", help="share of the pieces to make, as 5%% or 0.05 [1%%]")
     check.add_argument("--seed", metavar="N", type=int, default=0, help="number that selects the sample [0]")
     for command in (resume, alone, status, verify, check):
         command.add_argument("folder", metavar="DIR", help="the job's folder")
@@ -151,7 +151,7 @@ def _make_parser() -> argparse.ArgumentParser:
 
 def _add_run_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
-    add("--workers", metavar="N", type=int, help="number of processes or, with a queue, of its jobs [one for each device]")
+    add("--workers", metavar="N", type=int, help="number of processes, or of jobs of a queue [one for each device]")
     add(
         "--device",
         metavar="NAME|INDEX|uuid:…",
@@ -159,9 +159,13 @@ def _add_run_options(command: argparse.ArgumentParser) -> None:
         default=[],
         help="device of this machine to use; repeatable, and each device gets workers of its own",
     )
-    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="address of a Dask scheduler, or the queue that starts workers")
+    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a Dask scheduler, or the queue that starts workers")
     add("--queue-config", metavar="FILE.toml", help="settings of the queue's jobs, as dask-jobqueue takes them")
-    add("--allow-mixed", action="store_true", help="let devices share the work whose results differ in bits; each frame comes from one kind")
+    add(
+        "--allow-mixed",
+        action="store_true",
+        help="let devices share the work whose results differ in bits; each frame comes from one kind",
+    )
     add("--quiet", action="store_true", help="print nothing but errors")
 
 

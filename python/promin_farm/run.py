@@ -98,7 +98,7 @@ def _check(options: Options) -> None:
             f"give --scheduler {', '.join(QUEUES)}"
         )
     if scheduler and "://" in scheduler and options.workers:
-        raise jobs.UsageError("--workers does not apply to a running cluster, on the command line; it has its own workers")
+        raise jobs.UsageError("--workers does not apply to a running cluster, on the command line; it has its own")
 
 
 def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int], assembly: Assembly) -> int | None:
