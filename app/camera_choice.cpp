@@ -183,16 +183,22 @@ Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pos
   return zoom(camera, pose.zoom);
 }
 
-void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,
-                            const Console& console) {
+std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size) {
   const float aspect_ratio = static_cast<float>(size.x) / static_cast<float>(size.y);
-  if (std::ranges::any_of(cameras, [&](const Camera& camera) { return may_see(scene, camera, aspect_ratio); })) return;
-  if (bounds_of(scene).is_empty()) return;  // what has read it says so
+  if (std::ranges::any_of(cameras, [&](const Camera& camera) { return may_see(scene, camera, aspect_ratio); }))
+    return "";
+  if (bounds_of(scene).is_empty()) return "";  // what has read it says so
   const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
-  console.warn(fmt::format(
+  return fmt::format(
       "nothing of the scene is in the picture; --look-at {:.6g} {:.6g} {:.6g} in place of a direction shows "
       "its middle, and --from three-quarter in place of a camera shows all of it",
-      middle.x, middle.y, middle.z));
+      middle.x, middle.y, middle.z);
+}
+
+void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,
+                            const Console& console) {
+  const std::string sentence = describe_empty_pictures(scene, cameras, size);
+  if (!sentence.empty()) console.warn(sentence);
 }
 
 }  // namespace promin::app

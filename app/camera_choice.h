@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "console.h"
 #include "promin/scene.h"
@@ -30,7 +31,10 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
 Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& pose, const uvec2& size,
                    const Console& console);
 
-/// Warns where none of the cameras sees anything of the scene in pictures of this size.
+/// Says that none of the cameras sees anything of the scene in pictures of this size, and what shows it. Returns an
+/// empty text where one of them may see something.
+std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size);
+/// Warns with that sentence.
 void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,
                             const Console& console);
 

@@ -3,13 +3,12 @@
 #include "image/compare_channels.h"
 
 #include <algorithm>
-#include <bit>
 #include <iterator>
 
 #include "core/parallel.h"
+#include "image/channel_file.h"
 #include "image/difference_of.h"
 #include "image/exr_parts.h"
-#include "image/opened_picture.h"
 
 namespace promin {
 namespace {
@@ -21,86 +20,6 @@ constexpr uint64_t kMostBandBytes = uint64_t{4} << 20;
 constexpr uint32_t kLeastRows = 32;
 /// Channels that a message names, of each file.
 constexpr size_t kMostNamed = 5;
-
-struct FileChannel {
-  std::string name;
-  bool is_integer = false;
-  /// Of its part.
-  uvec2 size{0};
-  size_t part = 0;
-  /// Among the part's channels.
-  size_t place = 0;
-};
-
-/// All channels of a file, some rows at a time.
-class ChannelFile {
- public:
-  explicit ChannelFile(const fs::path& file) : file_(file), picture_(file) {
-    const uint32_t part_count = picture_.info().part_count;
-    for (uint32_t number = 0; number < part_count; ++number) {
-      const ProminPicturesPart part = picture_.describe_part(number);
-      const std::string part_name = part.name;
-      parts_.push_back({uvec2(part.width, part.height), part.channel_count, {}});
-      for (size_t i = 0; i < part.channel_count; ++i) {
-        const ProminPicturesChannel& channel = part.channels[i];
-        const std::string group = part_of_channel(channel.name);
-        // R, G and B of the first part are the picture, whatever the part is called.
-        const bool is_ours = part_count == 1 || group == part_name || (number == 0 && group == kColorPart);
-        channels_.push_back({is_ours ? channel.name : part_name + "." + channel.name,
-                             channel.sample == PROMIN_PICTURES_UINT32, parts_.back().size, number, i});
-      }
-    }
-  }
-
-  const fs::path& file() const { return file_; }
-  /// In the file's order.
-  const std::vector<FileChannel>& channels() const { return channels_; }
-
-  uint32_t row_count() const {
-    uint32_t count = 0;
-    for (const Part& part : parts_) count = std::max(count, part.size.y);
-    return count;
-  }
-
-  uint64_t row_bytes() const {
-    uint64_t bytes = 0;
-    for (const Part& part : parts_) bytes += part.size.x * part.channel_count * sizeof(uint32_t);
-    return bytes;
-  }
-
-  /// Of all parts that reach so far down.
-  void read_rows(uint32_t begin, uint32_t end) {
-    for (size_t i = 0; i < parts_.size(); ++i) {
-      Part& part = parts_[i];
-      const uint32_t last = std::min(end, part.size.y);
-      if (begin >= last) continue;
-      part.values.resize(size_t{last - begin} * part.size.x * part.channel_count);
-      picture_.read_rows(static_cast<uint32_t>(i), begin, last - begin, part.values.data());
-    }
-    first_row_ = begin;
-  }
-
-  /// Of a pixel in the rows that were read last.
-  double value(const FileChannel& channel, uint32_t x, uint32_t y) const {
-    const Part& part = parts_[channel.part];
-    const size_t pixel = size_t{y - first_row_} * part.size.x + x;
-    const uint32_t bits = part.values[pixel * part.channel_count + channel.place];
-    return channel.is_integer ? static_cast<double>(bits) : static_cast<double>(std::bit_cast<float>(bits));
-  }
-
- private:
-  struct Part {
-    uvec2 size{0};
-    size_t channel_count = 0;
-    std::vector<uint32_t> values;
-  };
-
-  fs::path file_;
-  OpenedPicture picture_;
-  std::vector<Part> parts_;
-  std::vector<FileChannel> channels_;
-  uint32_t first_row_ = 0;
-};
 
 /// Of both files the channels of one name.
 struct ChannelPair {

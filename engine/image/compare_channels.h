@@ -22,11 +22,8 @@ struct ChannelDifference {
   uint64_t different_count = 0;
 };
 
-/// Compares all channels of two picture files but R, G and B, those of all parts of an EXR, so that it does not matter
-/// whether they lie in one part or in several: a channel of a part has its own name where the part is the one that
-/// ExrOptions::is_multipart puts it into, and as a colour of the first, else the part's name and a dot before it. Rows
-/// are held some at a time. Throws as read_image, and InputError where one file has channels that the other lacks or a
-/// channel's sizes differ.
+/// Compares all channels of two picture files (image/channel_file.h) but R, G and B. Rows are held some at a time.
+/// Throws as read_image, and InputError where one file has channels that the other lacks or a channel's sizes differ.
 std::vector<ChannelDifference> compare_other_channels(const std::filesystem::path& reference,
                                                       const std::filesystem::path& test, double allowed);
 

@@ -95,9 +95,9 @@ PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& i
 /// The most pixels that read_image takes; larger pictures are refused before their pixels are read.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
-/// Reads R, G, B, or a luminance as all three, of any format OpenImageIO knows, as fp32 without conversion; of an EXR
-/// the data window. Any thread may call it. Throws InputError where the file is no such picture, RunError where
-/// libpromin_pictures.so, the plugin that reads pictures, is missing.
+/// Reads R, G, B, or a luminance as all three, of any format OpenImageIO knows, as fp32 without conversion, not
+/// multiplied by alpha but of WebP and EXR; of an EXR the data window. Any thread may call it. Throws InputError where
+/// the file is no such picture, RunError where libpromin_pictures.so, the plugin that reads pictures, is missing.
 PROMIN_EXPORT Image read_image(const std::filesystem::path& file);
 
 /// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.

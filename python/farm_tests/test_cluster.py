@@ -95,7 +95,7 @@ def test_ctrl_c_lets_pieces_be_made_and_a_second_one_leaves_them(farm: Farm, cou
         os.killpg(process.pid, signal.SIGINT)
         time.sleep(0.3)
     out, err = process.communicate(timeout=40)
-    assert process.returncode == 1 and "resume" in err and "goes on" in err, (out, err)
+    assert process.returncode == 1 and "resume" in err and "continues" in err, (out, err)
     made = 0 if count == 2 else len(farm.events("begun"))
     assert len(farm.events("done")) == made and not farm.events("failed")
 
@@ -213,7 +213,7 @@ def test_a_scheduler_that_has_gone_is_told(farm: Farm) -> None:
     from promin_farm.crews import DaskCrew
 
     farm.write_scene(3)
-    with pytest.raises(jobs.RunError, match=r"the scheduler has gone .*; the pieces that are made are there"):
+    with pytest.raises(jobs.RunError, match=r"the scheduler has gone .*; the pieces that are made are kept"):
         DaskCrew(Gone(), farm.create(), 1.0).members()
 
 
@@ -226,7 +226,7 @@ def test_a_scheduler_that_goes_ends_the_run_and_resume_goes_on(farm: Farm, clust
     wait_for(lambda: farm.events("done"))
     cluster.scheduler.kill()
     out, err = process.communicate(timeout=60)
-    assert process.returncode == 1 and "the scheduler has gone" in err and "promin-farm resume goes on" in err, err
+    assert process.returncode == 1 and "the scheduler has gone" in err and "promin-farm resume continues" in err, err
     assert farm.status()["done"] < 60
     farm.run("resume", farm.job, "--workers", 2)
     assert farm.out.read_bytes() == farm.expected()

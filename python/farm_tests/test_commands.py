@@ -26,7 +26,10 @@ def test_wrong_use_is_refused_in_one_line(farm: Farm) -> None:
     base = ("render", farm.scene, "--job", farm.job)
     out = ("-o", farm.out)
     for words, sentence in (
-        (base, "name it by -o"),
+        (base, "name one by -o FILE"),
+        (("render", farm.scene, *out), "there is no folder for the job, on the command line; name one by --job DIR"),
+        (("my model.glb",), "type: promin-farm render 'my model.glb' -o 'my model.png' --job 'my model.job'"),
+        (("resume", farm.scene), f"{farm.scene} is a file, not a job's folder"),
         ((*base, "-o", "out.jpg"), f"an output is none of .exr, .png, {farm.root}/out.jpg"),
         ((*base, *out, "--nonsense"), "--nonsense is not known"),
         ((*base, *out, "--workers", "0"), "give 1 or more"),
@@ -34,13 +37,23 @@ def test_wrong_use_is_refused_in_one_line(farm: Farm) -> None:
         ((*base, *out, "--scheduler", "slurm", "--device", "A"), "set PROMIN_DEVICE"),
         ((*base, *out, "--scheduler", "tcp://a:1", "--workers", "2"), "it has its own"),
         ((*base, *out, "--scheduler", "slurm", "--queue-config", "nothing.toml"), "no settings can be read"),
-        ((*base, *out, "--queue-config", "queue.toml"), "--queue-config is of a queue's jobs, and there is no queue"),
+        ((*base, *out, "--queue-config", "queue.toml"), "--queue-config needs a queue"),
         ((*base, *out, "--scheduler", "tcp://a:1", "--queue-config", "queue.toml"), "give --scheduler slurm, pbs, lsf"),
         (("resume", farm.job, "--nonsense"), "--nonsense is not known"),
-        (("audit", farm.job, "--share", "200%"), "give a part, as 1% or 0.01"),
+        (("audit", farm.job, "--share", "200%"), "give a share, as 1% or 0.01"),
     ):
         said = farm.run(*words, code=2)
         assert sentence in said and said.startswith("promin-farm: error: ") and said.count("\n") == 1, said
+
+
+def test_a_scene_or_a_job_in_a_wrong_place_is_answered_with_the_command(farm: Farm) -> None:
+    farm.write_scene(3)
+    job = farm.create()
+    assert f"is a job's folder, not a command; type: promin-farm status {job.folder}" in farm.run(farm.job, code=2)
+    (farm.root / "a.OBJ").touch()
+    said = farm.run("resume", "a.OBJ", code=2)
+    assert "a.OBJ is a file, not a job's folder; to make a job of it, type: promin-farm render a.OBJ -o a.png" in said
+    assert "a.OBJ is a scene, not a command" in farm.run("a.OBJ", "-o", "b.png", code=2)
 
 
 def test_frames_need_files_of_their_own_and_outputs_a_folder(farm: Farm) -> None:
@@ -124,7 +137,8 @@ def test_audit_finds_a_machine_that_gives_other_bits(farm: Farm) -> None:
     farm.run("work", farm.job, FAKE_SALT="a broken machine")
     said = farm.run("audit", farm.job, "--share", "100%", code=1)
     for piece in job.pieces[:3]:
-        assert f"{piece.name}: other bits of the same fingerprint, 100 % are others: a machine is broken\n" in said
+        broken = f"{piece.name}: other bits of the same fingerprint, 100 % see another surface: a machine is broken\n"
+        assert broken in said
     assert "an audit has found wrong pieces" in said and "17 of 20 pieces of this fingerprint have equal bits" in said
     # It is so however little they differ.
     farm.run("audit", farm.job, "--share", "100%", code=1, FAKE_DIFFERENCE="0.001")
@@ -140,12 +154,13 @@ def test_audit_holds_other_fingerprints_to_the_bounds(farm: Farm) -> None:
         assert job.runner().run(piece.number)
     audit = ("audit", farm.job, "--share", "100%")
     said = farm.run(*audit, FAKE_DIFFERENCE="0.0012")
-    assert f"{job.pieces[16].name}: within the bounds, 0.2 % are others, the rest differs by 0.0012 at most\n" in said
+    within = "within the bounds, 0.2 % see another surface, the rest differs by at most 0.0012\n"
+    assert f"{job.pieces[16].name}: {within}" in said
     assert "16 of 16 pieces of this fingerprint have equal bits" in said
     assert "of 4 pieces of other fingerprints 0 have equal bits, 4 are within the bounds, 0 beyond" in said
     assert said.count("\n") == 6
     said = farm.run(*audit, FAKE_FINGERPRINT="three", FAKE_DIFFERENCE="0.01", code=1)
-    assert f"{job.pieces[16].name}: beyond the bounds, 100 % are others\n" in said
+    assert f"{job.pieces[16].name}: beyond the bounds, 100 % see another surface\n" in said
     assert "of 20 pieces of other fingerprints 16 have equal bits, 0 are within the bounds, 4 beyond" in said
 
 
@@ -166,7 +181,7 @@ def test_an_audit_counts_pieces_without_a_fingerprint_among_the_others(farm: Far
 def test_an_audit_of_nothing_is_refused(farm: Farm) -> None:
     farm.write_scene(3)
     farm.create()
-    assert "no piece is there to be audited" in farm.run("audit", farm.job, code=1)
+    assert "the job has no piece to audit" in farm.run("audit", farm.job, code=1)
 
 
 def test_samples_are_spread_and_the_same_for_a_seed(farm: Farm) -> None:

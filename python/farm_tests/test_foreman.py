@@ -208,7 +208,7 @@ def test_where_all_refuse_the_run_ends_with_what_they_say(farm: Farm) -> None:
 def test_without_workers_it_ends(farm: Farm) -> None:
     farm.write_scene(10)
     tally, _ = run(farm, Scripted(farm, ""))
-    assert tally.reason == "no worker has come for 0 s"
+    assert tally.reason == "no worker has joined for 0 s"
 
 
 def test_pieces_of_another_fingerprint_go_to_its_workers(farm: Farm) -> None:

@@ -23,7 +23,7 @@ def test_tasks_of_an_array_share_the_pieces_and_take_what_others_leave(farm: Far
     # Its own third first, then the rest from its place of the list on, as nobody else was there.
     made = farm.events("done")
     assert made[:10] == list(range(1, 30, 3)) and made[10] == 11 and sorted(made) == list(range(30))
-    assert "30 pieces made; all are there" in said
+    assert "30 pieces made; all pieces are made" in said
     assert "0 pieces made" in farm.run("work", farm.job, "--array-task", "0/3")
     assert farm.run("resume", farm.job).strip().endswith(f"30 pieces: {farm.out}")
     assert farm.out.read_bytes() == farm.expected()
@@ -63,7 +63,7 @@ def test_what_another_is_at_is_left_to_it(farm: Farm) -> None:
         said = farm.run("work", farm.job, "--array-task", "1/2")
     finally:
         first.send_signal(signal.SIGCONT)
-    assert "1 piece made; 1 of 2 are missing or with others" in said
+    assert "1 piece made; 1 of 2 are missing or made by others" in said
     assert first.wait(30) == 0 and sorted(farm.events("done")) == [0, 1] == sorted(farm.events("begun"))
 
 
@@ -74,7 +74,7 @@ def test_a_signal_lets_the_piece_at_hand_be_made(farm: Farm) -> None:
     wait_for(lambda: farm.events("begun"))
     process.send_signal(signal.SIGTERM)
     out, err = process.communicate(timeout=20)
-    assert process.returncode == 1 and f"promin-farm work {farm.job} goes on" in err
+    assert process.returncode == 1 and f"promin-farm work {farm.job} continues" in err
     assert farm.events("begun") == farm.events("done") and len(farm.events("done")) == 1
 
 
@@ -126,7 +126,7 @@ def test_other_bits_are_refused_and_left_alone(farm: Farm) -> None:
     for piece in farm.create().pieces[:3]:
         os.unlink(piece.file)
     said = farm.run("work", farm.job, code=1, FAKE_FINGERPRINT="two")
-    assert "this worker would give other bits" in said and "--allow-mixed" in said
+    assert "this worker gives other bits" in said and "--allow-mixed" in said
     assert farm.status()["done"] == 3
 
 
@@ -184,7 +184,7 @@ def test_frames_of_two_kinds_of_devices_stay_apart(farm: Farm) -> None:
     Settings(outputs=[str(farm.out)], allow_mixed=True).write(farm.job)
     claim_group(farm.job, "frame000001", hashlib.sha256(b"two").hexdigest())
     said = farm.run("work", farm.job, FAKE_FINGERPRINT="one")
-    assert "6 pieces made; 2 of 8 are missing or with others" in said and sorted(farm.events("done")) == [
+    assert "6 pieces made; 2 of 8 are missing or made by others" in said and sorted(farm.events("done")) == [
         0,
         1,
         4,
@@ -192,7 +192,7 @@ def test_frames_of_two_kinds_of_devices_stay_apart(farm: Farm) -> None:
         6,
         7,
     ]
-    assert "2 pieces made; all are there" in farm.run("work", farm.job, FAKE_FINGERPRINT="two")
+    assert "2 pieces made; all pieces are made" in farm.run("work", farm.job, FAKE_FINGERPRINT="two")
     # One of whose bits no frame is does nothing.
     Path(farm.create().pieces[0].file).unlink()
     assert "0 pieces made" in farm.run("work", farm.job, FAKE_FINGERPRINT="three")

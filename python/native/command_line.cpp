@@ -9,6 +9,7 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <regex>
 #include <utility>
 #include <vector>
 
@@ -170,6 +171,25 @@ nb::object error_target(const nb::dict& asked, const nb::dict& display) {
 
 }  // namespace
 
+std::string name_keywords(const std::string& sentence) {
+  static const std::regex option("--([a-z]+(-[a-z]+)*)");
+  std::string named;
+  size_t end = 0;
+  for (std::sregex_iterator found(sentence.begin(), sentence.end(), option), none; found != none; ++found) {
+    std::string name = (*found)[1];
+    std::ranges::replace(name, '-', '_');
+    named += sentence.substr(end, static_cast<size_t>(found->position()) - end) + name;
+    if (name == "from") named += '_';  // a word of Python's
+    end = static_cast<size_t>(found->position() + found->length());
+  }
+  return named + sentence.substr(end);
+}
+
+UsageError name_keywords(const UsageError& error) {
+  const Problem& problem = error.problems().front();
+  return UsageError({name_keywords(problem.what), "", name_keywords(problem.cure)});
+}
+
 app::RenderOptions read_options(const std::vector<std::string>& words) {
   CLI::App command("", "promin");
   app::RenderOptions options;
@@ -180,11 +200,8 @@ app::RenderOptions read_options(const std::vector<std::string>& words) {
   try {
     app::parse_arguments(command, static_cast<int>(all.size()), all.data());
   } catch (const UsageError& error) {
-    // Python has no command line, and its keywords no dashes.
-    Problem problem = error.problems().front();
-    if (const size_t dashes = problem.what.find("--"); dashes != std::string::npos) problem.what.erase(dashes, 2);
+    Problem problem = name_keywords(error).problems().front();
     if (!problem.cure.starts_with("did you mean")) problem.cure.clear();
-    problem.where.clear();
     throw UsageError(problem);
   }
   return options;

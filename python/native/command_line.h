@@ -4,6 +4,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <concepts>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "promin/aovs.h"
 #include "promin/device_info.h"
 #include "promin/display.h"
+#include "promin/error.h"
 #include "promin/image.h"
 #include "promin/renderer.h"
 #include "promin/scene.h"
@@ -21,6 +23,23 @@ namespace promin::python {
 
 /// What options of `promin render` and their values come to, read as the command line reads them. Throws UsageError.
 app::RenderOptions read_options(const std::vector<std::string>& words);
+
+/// The sentence with Python's keywords in place of the options of `promin render`: look_at for --look-at.
+std::string name_keywords(const std::string& sentence);
+
+/// The problem as Python has it, which has no command line.
+UsageError name_keywords(const UsageError& error);
+
+/// Calls a function of the programs; the UsageError that it throws has Python's keywords.
+template <typename Function>
+requires std::invocable<Function>
+auto with_keywords(const Function& function) {
+  try {
+    return function();
+  } catch (const UsageError& error) {
+    throw name_keywords(error);
+  }
+}
 
 /// What the header of an EXR tells of a picture that `promin render` has written. `named` has the objects and materials
 /// whose names Cryptomatte tells.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bind.h"
+#include "image/channel_file.h"
 #include "picture_arrays.h"
 #include "promin/compare.h"
 #include "promin/cryptomatte.h"
@@ -58,6 +59,34 @@ nb::object load(const std::filesystem::path& file) {
   Image image;
   run_watched(nb::none(), [&](const ProgressCallback&) { image = read_image(file); });
   return write_image_array(std::move(image));
+}
+
+/// The bits of a channel, whose rows are all read.
+std::vector<uint32_t> copy_channel(const ChannelFile& picture, const FileChannel& channel) {
+  std::vector<uint32_t> values;
+  values.reserve(size_t{channel.size.x} * channel.size.y);
+  for (uint32_t y = 0; y < channel.size.y; ++y) {
+    for (uint32_t x = 0; x < channel.size.x; ++x) values.push_back(picture.bits(channel, x, y));
+  }
+  return values;
+}
+
+/// All channels of a file: name, whether they are integers, and the bits of their values.
+nb::list load_channels(const std::filesystem::path& file) {
+  std::vector<std::vector<uint32_t>> all;
+  std::optional<ChannelFile> picture;
+  run_watched(nb::none(), [&](const ProgressCallback&) {
+    picture.emplace(file);
+    picture->read_rows(0, picture->row_count());
+    for (const FileChannel& channel : picture->channels()) all.push_back(copy_channel(*picture, channel));
+  });
+  nb::list rows;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const FileChannel& channel = picture->channels()[i];
+    rows.append(
+        nb::make_tuple(channel.name, channel.is_integer, write_array<uint32_t>(std::move(all[i]), channel.size)));
+  }
+  return rows;
 }
 
 /// `unlit` is Aovs::unlit of the picture.
@@ -120,6 +149,7 @@ void bind_pictures(nb::module_& module) {
   module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
              nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr").none());
   module.def("read_image", &load, nb::arg("file"));
+  module.def("read_channels", &load_channels, nb::arg("file"));
   module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"), nb::arg("unlit").none());
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),
              nb::arg("fail"));

@@ -5,13 +5,17 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstring>
+#include <utility>
 
 #include "bind.h"
+#include "camera_choice.h"
 #include "command_line.h"
+#include "environment_options.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/lighting.h"
@@ -85,19 +89,16 @@ LightChoice read_choice(const std::string& name) {
   return static_cast<LightChoice>(find_name(light_choice_names(), name, "light"));
 }
 
-/// A copy with the light that the choice adds, before the background that words of --background name, if there are any.
-Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& background) {
-  app::LookOptions look;
-  if (!background.empty()) {
-    std::vector<std::string> words = background;
-    // A word alone may begin with a dash.
-    if (words.size() == 1) words.front().insert(0, "--background=");
-    if (words.size() > 1) words.insert(words.begin(), "--background");
-    look = read_options(words).view.look;
-  }
-  look.light = read_choice(choice);
+/// A copy with the light that the choice adds, in the surroundings and before the background of these options.
+Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& words) {
+  app::ViewOptions options = read_options(words).view;
+  options.look.light = read_choice(choice);
   Scene lit = scene;
-  app::light_up(lit, look);
+  run_watched(nb::none(), [&](const ProgressCallback&) {
+    const app::EnvironmentChoice surroundings(options.environment);
+    app::light_up(lit, options.look, surroundings);
+    lit.warnings = surroundings.warnings();
+  });
   return lit;
 }
 
@@ -108,14 +109,34 @@ void replace_all(std::vector<T>& values, const nb::list& records, const Read& re
   values = std::move(replaced);
 }
 
-nb::dict frame(const Scene& scene, float aspect_ratio, const std::string& name, float fit) {
-  FrameOptions options{.fit = fit};
-  if (!name.empty()) options.from = static_cast<Framing>(find_name(framing_names(), name, "framing"));
-  return write(frame_scene(scene, aspect_ratio, options));
+/// Poses a camera that is not widened for a picture's size.
+Camera pose_exactly(const Scene& scene, Camera camera, const app::PoseOptions& pose) {
+  const float aspect_ratio = std::exchange(camera.aspect_ratio, 0.0F);
+  camera = app::pose_camera(scene, camera, pose, uvec2(1), app::Console(app::Verbosity::kQuiet));
+  camera.aspect_ratio = aspect_ratio;
+  return camera;
 }
 
-nb::dict widen(const nb::dict& camera, uint32_t width, uint32_t height) {
-  return write(widen_camera(read_camera(camera), uvec2(width, height)));
+/// The camera of a picture with these options. `given` takes the place of the scene's cameras and is not widened. Where
+/// no sides are given, the camera is that of a picture of this aspect ratio, and none is widened.
+nb::dict choose_camera(const Scene& scene, const std::vector<std::string>& words, const std::optional<nb::dict>& given,
+                       const std::optional<std::pair<uint32_t, uint32_t>>& sides, float aspect_ratio) {
+  app::ViewOptions options = read_options(words).view;
+  if (sides && sides != std::pair(0U, 0U)) options.size = uvec2(sides->first, sides->second);
+  return write(with_keywords([&] {
+    app::check_pose_options(options.pose, given || options.camera);
+    if (given) return pose_exactly(scene, read_camera(*given), options.pose);
+    if (sides) return app::make_view(scene, options, app::Console(app::Verbosity::kQuiet)).camera;
+    const Camera* own = app::find_file_camera(scene, options);
+    if (own == nullptr) return app::make_camera(scene, options, aspect_ratio);
+    return pose_exactly(scene, *own, options.pose);
+  }));
+}
+
+/// What is wrong where a picture of this size shows nothing of the scene; empty where it may show something.
+std::string describe_empty_picture(const Scene& scene, const nb::dict& camera, uint32_t width, uint32_t height) {
+  const Camera one = read_camera(camera);
+  return name_keywords(app::describe_empty_pictures(scene, {&one, 1}, uvec2(width, height)));
 }
 
 nb::object bounds(const Scene& scene) {
@@ -168,9 +189,11 @@ void bind_scene(nb::module_& module) {
       .def("bounds", &bounds)
       .def("problems", &find_problems)
       .def("copy", [](const Scene& s) { return Scene(s); })
-      .def("lit", &light, nb::arg("choice"), nb::arg("background"))
-      .def_static("widen_camera", &widen, nb::arg("camera"), nb::arg("width"), nb::arg("height"))
-      .def("frame", &frame, nb::arg("aspect_ratio"), nb::arg("framing"), nb::arg("fit"))
+      .def("set_center", [](Scene& s, double x, double y, double z) { s.center = dvec3(x, y, z); })
+      .def("lit", &light, nb::arg("choice"), nb::arg("words"))
+      .def("choose_camera", &choose_camera, nb::arg("words"), nb::arg("given").none(), nb::arg("sides").none(),
+           nb::arg("aspect_ratio"))
+      .def("describe_empty_picture", &describe_empty_picture, nb::arg("camera"), nb::arg("width"), nb::arg("height"))
       .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })
       .def("mixes_unlit", [](const Scene& s) { return mixes_unlit(s); })
       .def(

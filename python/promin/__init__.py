@@ -13,7 +13,7 @@ from promin._arrays import HIT_DTYPE, Hits, RaysLike, positions
 from promin._caster import Caster, Progress
 from promin._device import Device, DeviceInfo, DeviceLike
 from promin._errors import Cancelled, DeviceError, DifferenceError, Error, InputError, RunError, UsageError
-from promin._frame import Frame, cryptomatte_id, read_image, write_image
+from promin._frame import Frame, cryptomatte_id, read_aovs, read_image, write_image
 from promin._promin import __version__
 from promin._records import (
     Backdrop,
@@ -75,6 +75,7 @@ __all__ = [
     "__version__",
     "cryptomatte_id",
     "positions",
+    "read_aovs",
     "read_image",
     "render",
     "write_image",

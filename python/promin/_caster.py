@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any, Union
 
@@ -13,11 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from promin import _promin
-from promin._arrays import HIT_DTYPE, Hits, RaysLike, join_rays, pack_rays
+from promin._arrays import HIT_DTYPE, Hits, RaysLike, join_rays, pack_rays, to_vectors
 from promin._device import Device, DeviceLike, find_device
 from promin._errors import UsageError
 from promin._scene import Scene, SceneLike, to_scene
 
+PROBE = np.array((0.4375, 0.625, 0.65625), np.float32)
+"""The direction of rays that find what is inside: no component is small or a simple ratio of another."""
 _RAYS_AT_A_TIME = 2**20
 """As many as the library asks for at a time."""
 
@@ -139,6 +142,26 @@ class Caster:
         counts = prepare_answers(out, shape, np.dtype(np.int32), packed)
         native.count(packed, counts.reshape(-1), progress)
         return counts
+
+    def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether points (..., 3) are inside of a closed surface, the scene as a whole: bool (...).
+
+        A point is inside where a ray from it crosses the surface an odd number of times, by the rule of `count`: edges
+        and corners count once. The ray the other way must agree. Where it does not, the point lies on the surface, or
+        the surface is not closed: it counts as outside, and a Python warning says of how many points that is so. A
+        point in two solids that overlap is outside; give each solid a Caster of its own. Raises UsageError, RunError,
+        Cancelled."""
+        places = to_vectors(points, "points")
+        is_odd, agrees = (self.count(places, way) % 2 == 1 for way in (PROBE, -PROBE))
+        doubtful = int((is_odd != agrees).sum())
+        if doubtful:
+            verb = "is" if doubtful == 1 else "are"
+            warnings.warn(
+                f"{doubtful} of {is_odd.size} points {verb} on the surface, or the surface is not closed: rays both "
+                "ways disagree; such points count as outside",
+                stacklevel=2,
+            )
+        return np.asarray(is_odd & agrees)
 
     def list(
         self,

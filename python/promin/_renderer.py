@@ -8,6 +8,7 @@ import functools
 import inspect
 import os
 import threading
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
@@ -26,16 +27,20 @@ from promin._frame import Frame, to_mattes
 from promin._records import Camera, Display, Environment, Light, Material, from_dict, suggest, to_dict
 from promin._scene import Scene, SceneLike, move_camera, move_light, replace_one, to_scene, to_world
 from promin._view import (
+    FIELDS,
     CameraLike,
+    Numbers,
     Size,
     View,
     begins_with_target,
+    camera_words,
     change_view,
     check_shading,
     has_target,
     limit_of,
     mode_of,
     of_view,
+    option_words,
     settle_quality,
     shows_light,
     size_of,
@@ -65,6 +70,9 @@ def names_keywords(function: Function) -> Function:
     def call(*values: Any, **keywords: Any) -> Any:
         for name in keywords:
             if name not in known and name != "view":
+                if name in FIELDS:
+                    cure = f"give it to render, or in view=promin.View({name}=...)"
+                    raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {cure}")
                 if name in _ELSEWHERE:
                     raise TypeError(f"{_name_of(function)}() has no keyword {name!r}; {_ELSEWHERE[name]}")
                 meant = _OTHER_KEYWORDS.get(name) or _promin.find_option(name.replace("_", "-")).replace("-", "_")
@@ -79,20 +87,20 @@ def _name_of(function: Callable[..., Any]) -> str:
     return function.__qualname__.removesuffix(".__init__")
 
 
-_POSE = "give camera=promin.Camera.look_at(eye, target), or camera=dataclasses.replace(renderer.camera(), ...)"
-_SKY = "give the scene one: scene.environment = promin.Environment(sky=promin.Panorama(promin.read_image(file)))"
 _ELSEWHERE = {
-    **dict.fromkeys(("azimuth", "direction", "elevation", "eye", "fov", "look_at", "near", "roll", "up", "zoom"), _POSE),
-    **dict.fromkeys(("environment", "environment_intensity", "environment_rotation"), _SKY),
+    **dict.fromkeys(("alpha", "transparent"), 'give aovs=("alpha",)'),
+    **dict.fromkeys(("root", "strict", "variant"), "promin.Scene.load(file, ...) has it"),
+    **dict.fromkeys(("dither", "tone_mapping"), "frame.save(file, promin.Display(...)) has it"),
+    "lights_off": "switch a light off by scene.set_light(0, is_on=False)",
+    "look": "a point to look at is look_at, a direction of view is direction",
+    "output": "save what is returned: frame.save(file)",
 }
-"""Where there is what the programs have an option for and Python no keyword."""
+"""Where there is what the programs have an option for and these functions no keyword."""
 _OTHER_KEYWORDS = {
-    "alpha": "aovs",
     "aov": "aovs",
     "framing": "from_",
     "height": "size",
     "shading": "debug_view",
-    "transparent": "aovs",
     "width": "size",
 }
 """What is called otherwise than in the programs."""
@@ -128,8 +136,10 @@ class Renderer:
         view: View = View(),
         light: str = "auto",
         background: Background = None,
-        from_: str = "auto",
-        fit: float = 0.85,
+        environment: str | os.PathLike[str] | None = None,
+        environment_rotation: float | None = None,
+        environment_intensity: float | None = None,
+        light_rotation: float | None = None,
         exposure: float | str = "auto",
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
@@ -140,23 +150,28 @@ class Renderer:
         """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
         "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
         is built anew. scene: or the path of its file. view: that of pictures which are given none; what it takes is
-        compiled at once. light: what
-        stands in for light that the scene lacks: "auto", "studio", "headlight" or "none". background: what lies behind
-        all, as --background of promin render has it: three sRGB numbers from 0 to 1, a name as "white" or "#80a0ff",
-        which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed and tone mapped;
-        "environment" for what lights the scene; None: the scene's, or a grey gradient. from_: from where a scene is seen: "auto" (by its camera, without one from three quarters, or inside where one stands in it) or, whatever
-        cameras it has, "three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside". fit: the share
-        of the picture that a framed scene covers, 0.05 to 1. exposure: stops by which pictures are shown brighter, -64
-        to 64; "auto": what suits the scene's light, 0 for most. texture_memory: the most bytes that textures take.
-        expected_samples: about how many samples all pictures will have together, over all pixels; where they are few,
-        kernels are taken that are compiled sooner and trace slower, with the same bits; None: many. The rest as Caster.
-        Raises UsageError, InputError, DeviceError, RunError, Cancelled."""
+        compiled at once. light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none".
+        background: what lies behind all, as --background of promin render has it: three sRGB numbers from 0 to 1, a
+        name as "white" or "#80a0ff", which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed
+        and tone mapped; "environment" for what lights the scene; None: the scene's, or a grey gradient. environment:
+        the file of an equirectangular panorama around the scene, in place of its sky. environment_rotation turns the
+        sky about +Y from +Z towards +X, light_rotation the directional lights too, in degrees; environment_intensity
+        multiplies its radiance. exposure: stops by which pictures are shown brighter, -64 to 64; "auto": what suits the
+        scene's light, 0 for most. texture_memory: the most bytes that textures take. expected_samples: about how many
+        samples all pictures will have together, over all pixels; where they are few, kernels are taken that are
+        compiled sooner and trace slower, with the same bits; None: many. The rest as Caster. Raises UsageError,
+        InputError, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
-        self._background = _words_of(background)
-        self._from = "" if from_ == "auto" else str(from_)
-        self._fit = float(fit)
+        self._surroundings = [
+            *option_words("background", background),
+            *_panorama_words(environment),
+            *option_words("environment_rotation", environment_rotation),
+            *option_words("environment_intensity", environment_intensity),
+            *option_words("light_rotation", light_rotation),
+        ]
+        self._has_background = background is not None
         self._exposure = _stops_of(exposure)
         self._builder = str(builder)
         self._bvh = None if bvh is None else os.fsdecode(bvh)
@@ -209,25 +224,21 @@ class Renderer:
         return shown if self._exposure is None else replace(shown, exposure_ev=self._exposure)
 
     def camera(self, camera: CameraLike = None, aspect_ratio: float = _ASPECT_RATIO) -> Camera:
-        """The camera that a view with this one has, to change with dataclasses.replace. Raises UsageError where the
+        """The camera of pictures with this one, None being that of the Renderer's view, to change with
+        dataclasses.replace. aspect_ratio: of the picture in which the scene is framed. Raises UsageError where the
         scene has none of this name or number."""
         if isinstance(camera, Camera):
             return camera
-        cameras = self._scene.cameras
-        if camera is None and (self._from or not cameras):
-            record = self._lit().frame(float(aspect_ratio), self._from, self._fit)
-            framed: Camera = self._back(from_dict(Camera, record))
-            return framed
-        if camera is None:
-            return cameras[0]
-        for one in cameras:
-            if one.name == camera:
-                return one
-        number = int(camera) if str(camera).isdecimal() else len(cameras)
-        if number >= len(cameras):
-            names = ", ".join(f"{i} ({one.name})" if one.name else str(i) for i, one in enumerate(cameras))
-            raise UsageError(f"no camera {camera!r}; " + (f"choose one of: {names}" if names else "the scene has none"))
-        return cameras[number]
+        record = self._choose_camera(change_view(self._view, {"camera": camera}), None, aspect_ratio)
+        chosen: Camera = self._back(from_dict(Camera, record))
+        return chosen
+
+    def _choose_camera(self, view: View, sides: tuple[int, ...] | None, aspect_ratio: float) -> dict[str, Any]:
+        """For the native module; sides: of its pictures, None where they are not known."""
+        given = None
+        if isinstance(view.camera, Camera):
+            given = move_camera(view.camera, self._scene.native_center)
+        return self._scene.native().choose_camera(camera_words(view), given, sides, float(aspect_ratio))
 
     @names_keywords
     def render(
@@ -252,6 +263,18 @@ class Renderer:
         depth: str | None = None,
         debug_view: str | None = None,
         shadows: bool | None = None,
+        from_: str | None = None,
+        fit: float | None = None,
+        azimuth: float | None = None,
+        elevation: float | None = None,
+        roll: float | None = None,
+        zoom: float | None = None,
+        eye: Numbers | None = None,
+        look_at: Numbers | None = None,
+        direction: Numbers | None = None,
+        up: Numbers | str | None = None,
+        fov: float | None = None,
+        near: float | None = None,
     ) -> Frame:
         """Traces one picture. view: None is the one that the Renderer was made with; what is given beside it takes the
         place of its fields. aovs: None are those that the Renderer was made with. Of a scene file the picture has the
@@ -264,6 +287,9 @@ class Renderer:
         self._check_background(names)
         opened = self._open(names, whole, progress)
         record, shown = self._describe_view(whole)
+        nothing = self._scene.native().describe_empty_picture(record["camera"], *record["size"])
+        if nothing:
+            warnings.warn(nothing, stacklevel=3)
         path = self._scene.path
         result = opened.native.render(
             record, limit_of(whole), to_dict(shown), "" if path is None else Path(path).name, progress
@@ -321,20 +347,12 @@ class Renderer:
         self.update(lights=replace_one(self.lights, light, _one_of(new, Light), fields, "light"))
 
     def _check_background(self, aovs: tuple[str, ...]) -> None:
-        if self._background and "alpha" in aovs:
+        if self._has_background and "alpha" in aovs:
             raise UsageError("background and the AOV \"alpha\", which leaves it out, contradict each other; leave one out")
 
     def _describe_view(self, view: View) -> tuple[dict[str, Any], Display]:
         """The view for the native module, and how its picture is shown."""
-        size = size_of(view)
-        aspect_ratio = size[0] / size[1] if min(size) > 0 else _ASPECT_RATIO
-        chosen = self.camera(view.camera, aspect_ratio)
-        camera = move_camera(chosen, self._scene.native_center)
-        sides = _promin.choose_size(camera, size) if max(size) > 0 else None
-        if sides is not None and not isinstance(view.camera, Camera):
-            # A camera of the file shows in any picture what it showed its author.
-            wider = _promin.Scene.widen_camera(to_dict(chosen), *sides)
-            camera.update(yfov=wider["yfov"], ymag=wider["ymag"])
+        camera = self._choose_camera(view, size_of(view), _ASPECT_RATIO)
         shown = self.display if shows_light(view) else Display()
         return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 
@@ -371,7 +389,7 @@ class Renderer:
 
     def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
         device = find_device(self._chosen)
-        lit = self._scene.native().lit(self._light, self._background)
+        lit = self._scene.native().lit(self._light, self._surroundings)
         unasked = {"object"} if self._moves(aovs) else set()
         if lit.mixes_unlit():
             unasked.add("unlit")
@@ -449,19 +467,13 @@ def _names(aovs: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted({str(name) for name in aovs}))
 
 
-def _words_of(background: Background) -> list[str]:
-    """As the command line has them. Raises UsageError."""
-    if background is None:
+def _panorama_words(file: str | os.PathLike[str] | None) -> list[str]:
+    if file is None:
         return []
-    if isinstance(background, str):
-        words = background.split() or ["-"]
-        if any(word.startswith("--") for word in words):
-            raise UsageError(f"background is {background!r:.80}; give three numbers or a word as \"environment\"")
-        return words
-    try:
-        return [repr(float(value)) for value in background]
-    except (TypeError, ValueError):
-        raise UsageError(f"background is {background!r:.80}; give three numbers or a word as \"environment\"") from None
+    if isinstance(file, (str, os.PathLike)):
+        # Where a process is that unpickles the Renderer, another folder may be the current one.
+        return ["--environment=" + os.path.abspath(os.fsdecode(file))]
+    raise UsageError(f"environment is {file!r:.80}; give a panorama's file, or assign to scene.environment")
 
 
 def _stops_of(exposure: float | str) -> float | None:
@@ -517,8 +529,10 @@ def render(
     aovs: Iterable[str] = (),
     light: str = "auto",
     background: Background = None,
-    from_: str = "auto",
-    fit: float = 0.85,
+    environment: str | os.PathLike[str] | None = None,
+    environment_rotation: float | None = None,
+    environment_intensity: float | None = None,
+    light_rotation: float | None = None,
     exposure: float | str = "auto",
     builder: str = "sah",
     progress: Progress = None,
@@ -530,8 +544,26 @@ def render(
     max_depth: int | None = None,
     target_error: float | None = None,
     time_limit: float | str | None = None,
+    min_spp: int | None = None,
+    max_spp: int | None = None,
+    error_in: str | None = None,
+    filter: str | None = None,
+    filter_width: float | None = None,
+    depth: str | None = None,
     debug_view: str | None = None,
     shadows: bool | None = None,
+    from_: str | None = None,
+    fit: float | None = None,
+    azimuth: float | None = None,
+    elevation: float | None = None,
+    roll: float | None = None,
+    zoom: float | None = None,
+    eye: Numbers | None = None,
+    look_at: Numbers | None = None,
+    direction: Numbers | None = None,
+    up: Numbers | str | None = None,
+    fov: float | None = None,
+    near: float | None = None,
 ) -> Frame:
     """One picture of a scene or a scene's file, as in promin.render("model.glb", size="hd").save("model.png"): what
     `promin render` makes without a word, or with options of these names. Of several pictures of one scene make a
@@ -544,8 +576,10 @@ def render(
         view=view,
         light=light,
         background=background,
-        from_=from_,
-        fit=fit,
+        environment=environment,
+        environment_rotation=environment_rotation,
+        environment_intensity=environment_intensity,
+        light_rotation=light_rotation,
         exposure=exposure,
         builder=builder,
         expected_samples=_count_samples(view),

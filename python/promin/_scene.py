@@ -436,6 +436,7 @@ class Scene:
         if self._file is not None and not self._has_additions():
             return self._load_base()
         scene = _promin.Scene() if self._file is None else self._load_base().copy()
+        scene.set_center(*center.tolist())
         if self._all_materials is not None:
             scene.set_materials([to_dict(material) for material in self._all_materials])
         elif self._materials:

@@ -12,6 +12,7 @@ from operator import index
 from typing import Any, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from promin import _promin
 from promin._errors import UsageError
@@ -22,6 +23,9 @@ CameraLike = Union[Camera, str, int, None]
 
 Size = Union[tuple[int, int], Sequence[int], int, str, None]
 """Width and height in pixels; a width; or a word of `promin render --size`: "640x480", "640", "x480", "hd"."""
+
+Numbers = Union[Sequence[float], NDArray[Any]]
+"""Three numbers."""
 
 _ERROR_SPACES = _promin.list_choices()["error_in"]
 
@@ -68,6 +72,35 @@ class View:
     shadows: bool = True
     """Whether lights cast shadows."""
 
+    # What changes the camera, as the options of `promin render` of these names do.
+
+    from_: str | None = None
+    """"three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside": shows all of the scene from
+    there, whatever cameras it has."""
+    fit: float | None = None
+    """Share of the picture that such a view covers, 0.05 to 1; None: 0.85."""
+    azimuth: float | None = None
+    """Degrees by which the camera goes around the scene to the right."""
+    elevation: float | None = None
+    """Degrees by which it then rises over the scene."""
+    roll: float | None = None
+    """Degrees by which the picture then turns clockwise."""
+    zoom: float | None = None
+    """Magnifies the picture around its middle; None: 1."""
+    eye: Numbers | None = None
+    """Place of the eye, instead of the camera's."""
+    look_at: Numbers | None = None
+    """Point to look at."""
+    direction: Numbers | None = None
+    """Direction of view, instead of the camera's."""
+    up: Numbers | str | None = None
+    """Direction that is up in the scene or, where a camera is given, in its picture: a vector or "x", "y", "z", "-x",
+    "-y", "-z"; None: +Y, or the camera's."""
+    fov: float | None = None
+    """Vertical field of view in degrees, instead of the camera's."""
+    near: float | None = None
+    """Distance before which nothing is drawn, instead of the camera's."""
+
 
 def of_view(view: object) -> View:
     """The view itself. Raises UsageError for what is none."""
@@ -77,10 +110,11 @@ def of_view(view: object) -> View:
 
 
 def change_view(view: View, given: Mapping[str, Any]) -> View:
-    """The view with what of its fields is given and not None. What is said of samples takes the place of a quality, and
-    a quality of all that the view says of samples."""
-    names = [field.name for field in dataclasses.fields(View)]
-    changes = {name: given[name] for name in names if given.get(name) is not None}
+    """The view with those of its fields that are given and not None. They take the place of fields that contradict
+    them: numbers of samples that of a quality, a camera that of all that changes the view's own."""
+    changes = {name: given[name] for name in FIELDS if given.get(name) is not None}
+    for name in list(changes):
+        changes = {**dict.fromkeys(_TAKES_PLACE_OF.get(name, ())), **changes}
     if "quality" in changes:
         beside = [name for name in _NUMBERS_OF_SAMPLES if name in changes]
         if beside:
@@ -90,6 +124,26 @@ def change_view(view: View, given: Mapping[str, Any]) -> View:
         changes["quality"] = None
     return dataclasses.replace(view, **changes)
 
+
+FIELDS = tuple(field.name for field in dataclasses.fields(View))
+POSE = FIELDS[FIELDS.index("from_") :]
+"""The fields that change the camera."""
+_TAKES_PLACE_OF = {
+    "camera": POSE,
+    "from_": ("camera", "eye", "look_at", "direction"),
+    "fit": ("camera", "eye", "look_at"),
+    "eye": ("from_", "fit"),
+    "look_at": ("from_", "fit", "direction"),
+    "direction": ("from_", "look_at"),
+}
+"""The fields that contradict a field."""
+
+_VECTORS = {
+    **dict.fromkeys(("eye", "look_at", "direction"), "three numbers"),
+    "background": 'three numbers or a word as "environment"',
+    "up": 'three numbers or a word as "z"',
+}
+"""What options with three numbers take."""
 
 _NUMBERS_OF_SAMPLES = ("spp", "target_error", "time_limit")
 
@@ -140,6 +194,30 @@ def size_of(view: View) -> tuple[int, ...]:
     if least < 1:
         raise UsageError(f"size is {view.size!r:.80}; give pixels, 1 or more each way")
     return sides
+
+
+def option_words(name: str, value: object) -> list[str]:
+    """The option of `promin render` that has a keyword's name, with the words of its value; no words where it is None.
+    Raises UsageError where the value is neither a text nor as many numbers as the option takes."""
+    if value is None:
+        return []
+    option = "--" + name.rstrip("_").replace("_", "-")
+    try:
+        is_text = isinstance(value, str)
+        words = str(value).split() or ["-"] if is_text else [repr(float(x)) for x in np.ravel(np.asarray(value))]
+    except (TypeError, ValueError):
+        words = []
+    count = 3 if name in _VECTORS else 1
+    if any(word.startswith("--") for word in words) or (len(words) != count and not is_text):
+        raise UsageError(f"{name} is {value!r:.80}; give {_VECTORS.get(name, 'a number')}")
+    # A word alone may begin with a dash.
+    return [f"{option}={words[0]}"] if len(words) == 1 else [option, *words]
+
+
+def camera_words(view: View) -> list[str]:
+    """The options of `promin render` that choose the view's camera and change it."""
+    words = [] if view.camera is None or isinstance(view.camera, Camera) else [f"--camera={view.camera}"]
+    return words + [word for name in POSE for word in option_words(name, getattr(view, name))]
 
 
 def limit_of(view: View) -> float | None:

@@ -55,8 +55,8 @@ class Audit:
 
 
 def _describe(found: jobs.Comparison) -> str:
-    share = f"{100.0 * found.others / max(found.count, 1):.3g} % are others"
-    return f"{share}, the rest differs by {found.largest:.3g} at most" if found.others < found.count else share
+    share = f"{100.0 * found.others / max(found.count, 1):.3g} % see another surface"
+    return f"{share}, the rest differs by at most {found.largest:.3g}" if found.others < found.count else share
 
 
 def parse_share(words: str) -> float:
@@ -66,7 +66,7 @@ def parse_share(words: str) -> float:
     except ValueError:
         share = math.nan
     if not 0.0 < share <= 1.0:
-        raise jobs.UsageError(f"--share is {words!r}, on the command line; give a part, as 1% or 0.01")
+        raise jobs.UsageError(f"--share is {words!r}, on the command line; give a share, as 1% or 0.01")
     return share
 
 
@@ -85,7 +85,7 @@ def audit(job: jobs.Job, share: str, seed: int, device: str | None) -> Audit:
     survey = take_survey(job)
     sample = pick_sample(job, sorted(survey.done), part, seed)
     if not sample:
-        raise jobs.RunError(f"no piece is there to be audited, {job.folder}; run promin-farm resume first")
+        raise jobs.RunError(f"the job has no piece to audit, {job.folder}; run promin-farm resume first")
     runner = job.runner(device)
     found = Audit(runner.fingerprint)
     for number in sample:

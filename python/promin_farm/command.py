@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
 import sys
 import time
 from collections.abc import Sequence
@@ -26,17 +27,24 @@ from promin_farm.status import describe, to_json
 from promin_farm.survey import take_survey
 from promin_farm.watch import Progress, of_pieces
 
-_EPILOG = """Exit codes: 0 done; 1 failed while running, or pieces were given up; 2 wrong use; 3 bad input; 4 no device.
-docs/farm.md tells how to run on one machine, several, and queues."""
+_EPILOG = """Examples:
+  promin-farm render model.glb -o model.png --job job
+  promin-farm resume job
+
+Exit codes: 0 done; 1 failed while running, or pieces were given up; 2 wrong use; 3 bad input; 4 no device.
+docs/farm.md explains how to run on one machine, on several, and in queues."""
+_SCENES = (".glb", ".gltf", ".nff", ".obj", ".ply", ".stl")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit code."""
-    parser = _make_parser()
-    options, others = parser.parse_known_args(arguments)
-    if "folder" in options:
-        options.folder = os.path.abspath(options.folder)
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
+        _check_first(words)
+        options, others = _make_parser().parse_known_args(words)
+        if "folder" in options:
+            _check_folder(options.folder)
+            options.folder = os.path.abspath(options.folder)
         if options.command in ("render", "cast"):
             return _begin(options, [word for word in others if word != "--"])
         if others:
@@ -50,10 +58,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("\n".join([f"promin-farm: error: {first}", *rest]), file=sys.stderr)
         return exit_code_of(error)
     except KeyboardInterrupt:
-        print("promin-farm: stopped; what is made is there, promin-farm resume goes on", file=sys.stderr)
+        print("promin-farm: stopped; finished pieces are kept, promin-farm resume continues", file=sys.stderr)
         return 1
     except BrokenPipeError:
         return 1
+
+
+def _check_first(words: list[str]) -> None:
+    """Raises UsageError where a scene or a job stands in place of the command."""
+    first = Path(words[0]) if words else Path()
+    if first.suffix.lower() in _SCENES:
+        raise jobs.UsageError(f"{first} is a scene, not a command; type: {_render_words(first)}")
+    if (first / "job.json").is_file():
+        raise jobs.UsageError(
+            f"{first} is a job's folder, not a command; type: promin-farm status {first}, or promin-farm resume {first}"
+        )
+
+
+def _check_folder(folder: str) -> None:
+    """Raises UsageError for a scene."""
+    if Path(folder).is_file():
+        cure = f"; to make a job of it, type: {_render_words(Path(folder))}"
+        is_scene = Path(folder).suffix.lower() in _SCENES
+        raise jobs.UsageError(f"{folder} is a file, not a job's folder{cure if is_scene else ''}")
+
+
+def _render_words(scene: Path) -> str:
+    """The command that renders a scene."""
+    return shlex.join(["promin-farm", "render", str(scene), "-o", f"{scene.stem}.png", "--job", f"{scene.stem}.job"])
 
 
 def _make_parser() -> argparse.ArgumentParser:
@@ -78,33 +110,40 @@ def _make_parser() -> argparse.ArgumentParser:
         "promin-farm cast SCENE RAYS.npy|RAYS.zarr -o HITS --job DIR [options] [options of promin cast]",
     )
     for command in (render, cast):
-        command.add_argument("--job", metavar="DIR", required=True, help="the job's folder, seen by all workers")
-        command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="repeatable")
+        command.add_argument("--job", metavar="DIR", help="the job's folder, which all workers must see")
+        command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="file to write")
         command.add_argument(
-            "--prepare", action="store_true", help="make the job's folder and no piece, for promin-farm work"
+            "--prepare", action="store_true", help="only make the job's folder; promin-farm work makes the pieces"
         )
-    cast.add_argument("--offsets", metavar="FILE", help="as of promin cast --all")
-    resume = add("resume", "Make what is missing of a job, then its files")
-    resume.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="in place of the job's own")
+    cast.add_argument("--offsets", metavar="FILE", help="file for the offsets of --all, as promin cast takes it")
+    resume = add("resume", "Make the missing pieces of a job, then its files")
+    resume.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="file to write in place of those that the job names",
+    )
     for command in (render, cast, resume):
         _add_run_options(command)
     alone = add("work", "Make a share of a job in this process, without Dask")
     alone.add_argument(
         "--array-task",
         metavar="I/N",
-        help="every N-th piece from I on, then what is missing; default: of Slurm's array",
+        help="make every N-th piece, beginning with I (from 0), then missing ones [the task's number in a Slurm array]",
     )
-    status = add("status", "Tell how far a job is")
-    status.add_argument("--json", action="store_true", help="as JSON")
-    status.add_argument("--page", action="store_true", help="write the job's page, DIR/index.html, anew")
+    status = add("status", "Show the progress of a job")
+    status.add_argument("--json", action="store_true", help="print JSON")
+    status.add_argument("--page", action="store_true", help="also write the job's page, DIR/index.html")
     verify = add("verify", "Read and hash every piece of a job")
-    check = add("audit", "Make a sample of a job's pieces once more and compare")
-    check.add_argument("--share", metavar="P", default="1%", help="of the pieces, as 1%% or 0.01 (1%%)")
-    check.add_argument("--seed", metavar="N", type=int, default=0, help="picks another sample (0)")
+    check = add("audit", "Make a sample of a job's pieces again and compare")
+    check.add_argument("--share", metavar="P", default="1%", help="share of the pieces to make, as 5%% or 0.05 [1%%]")
+    check.add_argument("--seed", metavar="N", type=int, default=0, help="number that selects the sample [0]")
     for command in (resume, alone, status, verify, check):
         command.add_argument("folder", metavar="DIR", help="the job's folder")
     for command in (alone, check):
-        command.add_argument("--device", metavar="NAME|INDEX", help="as of promin render")
+        command.add_argument("--device", metavar="NAME|INDEX", help="device to use, as promin render takes it")
     for command in (alone, verify, check):
         command.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
@@ -112,23 +151,28 @@ def _make_parser() -> argparse.ArgumentParser:
 
 def _add_run_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
-    add("--workers", metavar="N", type=int, help="processes; with a queue, its jobs (one for each device)")
+    add("--workers", metavar="N", type=int, help="number of processes, or of jobs of a queue [one for each device]")
     add(
         "--device",
         metavar="NAME|INDEX|uuid:…",
         action="append",
         default=[],
-        help="device of this machine's workers, repeatable: each is used by workers of its own",
+        help="device of this machine to use; repeatable, and each device gets workers of its own",
     )
-    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a cluster of Dask, or the queue that starts workers")
-    add("--queue-config", metavar="FILE.toml", help="of a queue's jobs: what dask-jobqueue takes")
-    add("--allow-mixed", action="store_true", help="devices of different bits may share the work, frame by frame")
+    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a Dask scheduler, or the queue that starts workers")
+    add("--queue-config", metavar="FILE.toml", help="settings of the queue's jobs, as dask-jobqueue takes them")
+    add(
+        "--allow-mixed",
+        action="store_true",
+        help="let devices share the work whose results differ in bits; each frame comes from one kind",
+    )
     add("--quiet", action="store_true", help="print nothing but errors")
 
 
 def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
-    if not options.output:
-        raise jobs.UsageError("there is no output, on the command line; name it by -o")
+    for value, what, name in ((options.output, "output", "-o FILE"), (options.job, "folder for the job", "--job DIR")):
+        if not value:
+            raise jobs.UsageError(f"there is no {what}, on the command line; name one by {name}")
     if options.command == "cast":
         from promin_farm.rays import prepare_rays  # NumPy takes a while to load.
 
@@ -154,7 +198,7 @@ def _run(job: jobs.Job, options: argparse.Namespace) -> int:
     if options.command != "resume" and options.prepare:
         if not options.quiet:
             pieces = of_pieces(len(job.pieces))
-            print(f"{pieces} in {job.folder}; promin-farm work makes them, promin-farm resume the files")
+            print(f"{pieces} in {job.folder}; promin-farm work makes them, then promin-farm resume writes the files")
         return 0
     return carry_on(
         job,
@@ -182,7 +226,7 @@ def _work(options: argparse.Namespace) -> int:
     survey = take_survey(job)
     left = survey.total - len(survey.done)
     if tally.was_stopped and left:
-        print(f"promin-farm: stopped; promin-farm work {job.folder} goes on", file=sys.stderr)
+        print(f"promin-farm: stopped; promin-farm work {job.folder} continues", file=sys.stderr)
         return 1
     if not options.quiet:
         print(f"{of_pieces(tally.done)} made; {_words_of_left(left, job)}")
@@ -191,8 +235,8 @@ def _work(options: argparse.Namespace) -> int:
 
 def _words_of_left(left: int, job: jobs.Job) -> str:
     if left:
-        return f"{left} of {len(job.pieces)} are missing or with others"
-    return f"all are there, promin-farm resume {job.folder} writes the files"
+        return f"{left} of {len(job.pieces)} are missing or made by others"
+    return f"all pieces are made; promin-farm resume {job.folder} writes the files"
 
 
 def _tell_failed(tally: Tally) -> int:
@@ -214,7 +258,7 @@ def _verify(options: argparse.Namespace) -> int:
     bad = [number for number, state in states.items() if state == "bad"]
     for number in bad:
         print(
-            f"promin-farm: error: {job.why(number)}, {job.pieces[number].file}; promin-farm resume makes it anew",
+            f"promin-farm: error: {job.why(number)}, {job.pieces[number].file}; promin-farm resume makes it again",
             file=sys.stderr,
         )
     missing = sum(state == "missing" for state in states.values())

@@ -35,8 +35,8 @@ def need(module: str, package: str) -> Any:
         return importlib.import_module(module)
     except ImportError as error:
         raise jobs.UsageError(
-            f"{package} is not installed ({error}), in this Python; run: pip install 'promin[farm]', or take "
-            "promin-farm work, which needs none"
+            f"{package} is not installed ({error}), in this Python; run: pip install 'promin[farm]', or use "
+            "promin-farm work, which does without"
         ) from error
 
 
@@ -75,7 +75,7 @@ class DaskCrew:
         except Exception as error:
             raise jobs.RunError(
                 f"the scheduler has gone ({type(error).__name__}: {error}), {self._folder}; the pieces that are made "
-                "are there: promin-farm resume goes on"
+                "are kept, and promin-farm resume continues"
             ) from error
         return self._members
 

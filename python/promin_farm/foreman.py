@@ -340,7 +340,7 @@ class Foreman:
             return
         ready = {member.fingerprint for member in self._members.values() if member.state == "ready"}
         if not self._members:
-            self._end(f"no worker has come for {patience_s:.0f} s")
+            self._end(f"no worker has joined for {patience_s:.0f} s")
         elif not ready:
             self._end(*self._last_refusal)
         else:

@@ -66,7 +66,7 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
             print(f"{pieces}: {', '.join(settings.outputs)}")
         else:
             verb = "is" if len(job.pieces) == 1 else "are"
-            print(f"{pieces} {verb} in {job.folder}; name the files to make of them by -o")
+            print(f"{pieces} {verb} in {job.folder}; name the files to write by -o")
     return 0
 
 
@@ -89,15 +89,16 @@ def _check(options: Options) -> None:
         raise jobs.UsageError(f"--scheduler is {scheduler!r}, on the command line; give tcp://HOST:PORT, {known}")
     if scheduler and options.devices:
         raise jobs.UsageError(
-            "--device is of this machine's workers, on the command line; set PROMIN_DEVICE where the others start"
+            "--device selects devices of this machine, and --scheduler starts workers elsewhere, on the command line; "
+            "set PROMIN_DEVICE where they start"
         )
     if options.queue_config and scheduler not in QUEUES:
         raise jobs.UsageError(
-            "--queue-config is of a queue's jobs, and there is no queue, on the command line; "
+            "--queue-config needs a queue, on the command line; "
             f"give --scheduler {', '.join(QUEUES)}"
         )
     if scheduler and "://" in scheduler and options.workers:
-        raise jobs.UsageError("--workers is not for a cluster that there is, on the command line; it has its own")
+        raise jobs.UsageError("--workers does not apply to a running cluster, on the command line; it has its own")
 
 
 def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int], assembly: Assembly) -> int | None:
@@ -117,8 +118,8 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
         watch.say(f"{len(missing)} of {of_pieces(len(job.pieces))} to make, by {words}")
         if len(job.pieces) < workers:
             watch.say(
-                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; a job in another "
-                "folder may be cut into more by --pieces"
+                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; --pieces cuts a "
+                "job in another folder into more"
             )
         foreman = Foreman(
             job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon, leave=signals.end_now
@@ -149,25 +150,25 @@ def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew,
 def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     again = f"promin-farm resume {job.folder}"
     if tally.reason:
-        print(f"promin-farm: error: {tally.reason}; {of_pieces(tally.done)} made, {again} goes on", file=sys.stderr)
+        print(f"promin-farm: error: {tally.reason}; {of_pieces(tally.done)} made, {again} continues", file=sys.stderr)
         return tally.exit_code
     if tally.was_stopped:
-        print(f"promin-farm: stopped after {of_pieces(tally.done)}; {again} goes on", file=sys.stderr)
+        print(f"promin-farm: stopped after {of_pieces(tally.done)}; {again} continues", file=sys.stderr)
         return 1
     if tally.failed:
         named = [f"{job.pieces[number].name} ({tries.reason})" for number, tries in sorted(tally.failed.items())]
         more = ", …" if len(named) > _MOST_NAMED else ""
         print(
             f"promin-farm: error: {len(named)} of {of_pieces(len(job.pieces))} cannot be made: "
-            f"{', '.join(named[:_MOST_NAMED])}{more}, {job.folder}; mend that, then {again} tries them again",
+            f"{', '.join(named[:_MOST_NAMED])}{more}, {job.folder}; correct that, then {again} tries again",
             file=sys.stderr,
         )
         return 1
     if tally.foreign:
         owner = next(iter(tally.foreign.values()))
         print(
-            f"promin-farm: error: {of_pieces(len(tally.foreign))} must have the bits of the fingerprint {owner[:16]}, "
-            f"which no worker has, {Path(job.folder)}; {again} with a worker of that kind",
+            f"promin-farm: error: {of_pieces(len(tally.foreign))} need a worker with the fingerprint {owner[:16]}, "
+            f"which no worker has, {Path(job.folder)}; run {again} where one has it",
             file=sys.stderr,
         )
         return 1

@@ -36,7 +36,7 @@ class Settings:
             return Settings()
         damaged = jobs.InputError(
             f"the farm's settings are damaged or of another version, {file}; remove the file, and name the outputs "
-            "to resume again by -o"
+            "by -o when you resume"
         )
         there = read_json(file)
         if there is None or there.get("promin_farm") != FORMAT:

@@ -59,7 +59,7 @@ class Bench:
         if self.settings.allow_mixed:
             return {"elsewhere": owner}
         return _refuse(
-            f"this worker would give other bits, {self.heart.presence.name}: its fingerprint is "
+            f"this worker gives other bits, {self.heart.presence.name}: its fingerprint is "
             f"{self.runner.fingerprint[:16]}, that of the job {owner[:16]}; use machines of one kind, or resume with "
             "--allow-mixed",
             1,

@@ -11,10 +11,13 @@ from typing import Callable
 import numpy as np
 import pytest
 from conftest import make_box, make_rays
+from numpy.typing import NDArray
+from peers import make_ball
 
 import promin
 from promin import _promin
 from promin._arrays import pack_rays
+from promin._caster import PROBE
 
 
 @pytest.mark.parametrize("name", ["showcase.gltf", "obj_materials.obj", "all_primitives.gltf"])
@@ -338,3 +341,58 @@ def test_positions() -> None:
     assert points[0].tolist() == [2, 2, 3] and np.isnan(points[1]).all()
     with pytest.raises(promin.UsageError, match="hits"):
         promin.positions(((1, 2, 3), (1, 0, 0)), np.zeros(2))
+
+
+def cut_ball(radius: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A ball of triangles whose corners are whole numbers times 1/64, and so are the middles of edges times 1/128."""
+    vertices, faces = make_ball(2)
+    return np.round(vertices * radius * 64) / 64, faces
+
+
+def lies_within(
+    points: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Whether points are inside of a mesh around the origin that each ray from there leaves once, in float64: whether
+    the tetrahedron of the origin and a triangle, with its inner sides, holds the point."""
+    result = np.zeros(len(points), bool)
+    for corners in vertices[faces]:
+        weights = np.linalg.solve(corners.T, points.T)
+        result |= (weights >= -1e-12).all(axis=0) & (weights.sum(axis=0) < 1)
+    return result
+
+
+def test_points_are_inside_whatever_their_rays_are_aimed_at(recwarn: pytest.WarningsRecorder) -> None:
+    outer, faces = cut_ball(2.0)
+    inner, _ = cut_ball(0.75)
+    scene = promin.Scene()
+    scene.add_triangles(outer, faces)
+    scene.add_triangles(inner, faces[:, ::-1])
+    caster = promin.Caster(scene)
+    corners = np.concatenate([outer, inner])
+    triangles = np.concatenate([faces, faces + len(outer)])
+    middles = (corners[triangles] + corners[np.roll(triangles, 1, axis=1)]).reshape(-1, 3) / 2
+    aims = np.concatenate([corners, middles])
+    # Each ray, or the one the other way, meets a corner or the middle of an edge exactly.
+    steps = np.array([-4, -2, -1, -0.5, -0.25, 0.25, 0.5, 1, 2, 4]).reshape(-1, 1, 1)
+    points = (aims - steps * PROBE.astype(np.float64)).reshape(-1, 3)
+    assert (points == points.astype(np.float32)).all(), "no number is rounded"
+    bulk = np.random.default_rng(8).normal(size=(20000, 3))
+    for chosen in (points, bulk):
+        expected = lies_within(chosen, outer, faces) & ~lies_within(chosen, inner, faces)
+        assert 0.05 < expected.mean() < 0.95
+        assert (caster.inside(chosen) == expected).all()
+    assert caster.inside((1.5, 0, 0)).shape == () and caster.inside(bulk.reshape(10, 2000, 3)).shape == (10, 2000)
+    assert not recwarn.list
+
+
+def test_surfaces_that_are_not_closed_are_told() -> None:
+    vertices, faces = make_box()
+    scene = promin.Scene()
+    scene.add_triangles(vertices, faces[:-2])
+    with pytest.warns(UserWarning, match=r"^\d+ of 8000 points are on the surface, or the surface is not closed"):
+        told = promin.Caster(scene).inside(np.random.default_rng(3).uniform(-2, 2, (8000, 3)))
+    assert told.any()
+    with pytest.warns(UserWarning, match="^1 of 2 points is on the surface"):
+        plane = promin.Scene()
+        plane.add_plane()
+        assert not promin.Caster(plane).inside([(0, -1, 0), (0, np.nan, 0)]).any()

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import base64
 import dataclasses
+import json
 import pickle
 import re
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
+from conftest import make_box
 
 import promin
 from promin import _renderer, _view
@@ -57,6 +60,135 @@ def test_an_exposure_is_that_of_promin_render(
     for wrong in ("bright", 65, float("nan"), None):
         with pytest.raises(promin.UsageError, match='^exposure is .*; give stops from -64 to 64, or "auto"'):
             promin.render(scenes / "box.gltf", size=8, exposure=wrong)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def scene_with_cameras(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A triangle and a bar below it with two cameras: a perspective one of an aspect ratio of 2 and one that is not."""
+    triangles = np.array([[0, 0, 0], [2, 0, 0], [0, 1, 0], [-1, -2, -3], [3, -2, -3], [0, -1, 0]], np.float32)
+    data = base64.b64encode(triangles.tobytes()).decode()
+    accessor = {"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3"}
+    bounds = {"min": triangles.min(axis=0).tolist(), "max": triangles.max(axis=0).tolist()}
+    gltf = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0.5, 0, 6]}, {"camera": 1, "translation": [0, 0, 9]}],
+        "cameras": [
+            {"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 2, "znear": 0.1}, "name": "wide"},
+            {"type": "orthographic", "orthographic": {"xmag": 4, "ymag": 3, "znear": 0.1, "zfar": 99}, "name": "flat"},
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{**accessor, **bounds}],
+        "bufferViews": [{"buffer": 0, "byteLength": 72}],
+        "buffers": [{"byteLength": 72, "uri": f"data:application/octet-stream;base64,{data}"}],
+    }
+    file = tmp_path_factory.mktemp("cameras") / "cameras.gltf"
+    file.write_text(json.dumps(gltf))
+    return file
+
+
+@pytest.fixture(scope="module")
+def sky(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("sky") / "sky.hdr"
+    promin.write_image(file, np.random.default_rng(2).random((8, 16, 3)))
+    return file
+
+
+def as_options(keywords: dict[str, Any]) -> list[object]:
+    """The words of the same options of `promin render`."""
+    words: list[object] = []
+    for name, value in keywords.items():
+        words.append("--" + name.rstrip("_").replace("_", "-"))
+        words += value if isinstance(value, tuple) else [value]
+    return words
+
+
+@pytest.mark.parametrize(
+    "scene, keywords",
+    [
+        ("ply_faces.ply", {"azimuth": 40, "elevation": -15.5, "roll": 7, "zoom": 1.3, "fit": 0.6}),
+        ("box.gltf", {"eye": (3, 2, 5), "look_at": (0, 0.25, 0), "fov": 33, "near": 4}),
+        ("box.gltf", {"from_": "back", "up": "-x", "environment": "sky", "environment_rotation": 70}),
+        ("cameras", {"azimuth": -30, "environment": "sky", "environment_intensity": 0.5, "light_rotation": 9}),
+        ("cameras", {"camera": "flat", "direction": (0.1, -0.2, -1), "up": (1, 0, 0)}),
+        ("cameras", {"from_": "top", "size": "48x40"}),
+        ("cameras", {}),
+    ],
+)
+def test_a_pose_is_that_of_promin_render(
+    scene: str,
+    keywords: dict[str, Any],
+    scenes: Path,
+    scene_with_cameras: Path,
+    sky: Path,
+    tmp_path: Path,
+    run_promin: Callable[..., None],
+) -> None:
+    file = scene_with_cameras if scene == "cameras" else scenes / scene
+    whole = {"size": "40x48", "quality": "draft", **keywords}
+    if "environment" in whole:
+        whole["environment"] = sky
+    promin.render(file, **whole).save(tmp_path / "ours.png")
+    run_promin("render", file, "-o", tmp_path / "theirs.png", *as_options(whole))
+    assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "keywords, said",
+    [
+        ({"look_at": (0, 0, 0), "direction": (0, 0, 1)}, "look_at and direction contradict each other; leave one out"),
+        ({"from_": "left", "camera": "wide"}, "from_ and camera contradict each other; leave one out"),
+        ({"fit": 0.5}, "fit has nothing to frame: the scene has a camera; give from_ as well"),
+        ({"from_": "lfet"}, "from_ takes three-quarter or front or .*, not .lfet"),
+        ({"azimuth": "left"}, "azimuth takes a number from -3600 to 3600, not .left"),
+        ({"azimuth": (1, 2, 3)}, r"azimuth is \(1, 2, 3\); give a number"),
+        ({"eye": (1, 2)}, r"eye is \(1, 2\); give three numbers"),
+        ({"up": 3}, 'up is 3; give three numbers or a word as "z"'),
+        ({"zoom": float("nan")}, "zoom takes a number"),
+        ({"direction": (0, 0, 1), "up": "z"}, "the camera's look and up directions are zero, not finite or parallel"),
+        ({"camera": "none"}, r"no camera .none.; choose one of: 0 \(wide\), 1 \(flat\)"),
+        ({"environment": 3}, "environment is 3; give a panorama's file"),
+        ({"environment_rotation": "up"}, "environment_rotation takes a number"),
+    ],
+)
+def test_poses_that_cannot_be_are_refused_with_keywords(
+    keywords: dict[str, Any], said: str, scene_with_cameras: Path
+) -> None:
+    with pytest.raises(promin.UsageError, match="^" + said) as refused:
+        promin.render(scene_with_cameras, size=8, **keywords)
+    assert "--" not in str(refused.value) and "command line" not in str(refused.value)
+
+
+def test_what_is_given_takes_the_place_of_what_contradicts_it(scene_with_cameras: Path) -> None:
+    view = promin.View(camera="flat", azimuth=10, fov=20)
+    assert _view.change_view(view, {"camera": 0}) == promin.View(camera=0)
+    assert _view.change_view(view, {"from_": "left"}) == promin.View(from_="left", azimuth=10, fov=20)
+    looks = promin.View(eye=(1, 2, 3), look_at=(0, 0, 0))
+    assert _view.change_view(looks, {"direction": (1, 0, 0)}) == promin.View(eye=(1, 2, 3), direction=(1, 0, 0))
+    assert _view.change_view(looks, {"from_": "top"}) == promin.View(from_="top")
+    renderer = promin.Renderer(scene_with_cameras, view=promin.View(size=(32, 16), spp=1, azimuth=25, zoom=2))
+    camera = renderer.camera()
+    assert (renderer.render(camera=camera).rgb == renderer.render().rgb).all(), "it is not turned twice"
+    assert camera != renderer.camera("wide")
+
+
+def test_a_camera_of_ones_own_is_posed_too(box: promin.Scene) -> None:
+    moved = promin.Scene()
+    moved.add_triangles(*make_box((1e6, 0, 0)))
+    frames = []
+    for scene, offset in ((box, 0.0), (moved, 1e6)):
+        camera = promin.Camera.look_at((offset + 2, 1, 6), (offset, 0, 0))
+        pose = {"azimuth": 30, "look_at": (offset, 0.5, 0), "zoom": 1.5}
+        frames.append(promin.render(scene, camera=camera, size=(24, 18), spp=1, debug_view="normals", **pose).rgb)
+        eye = {"eye": (offset + 2, 1, 6), "direction": (-2, -1, -6)}
+        frames.append(promin.render(scene, size=(24, 18), spp=1, debug_view="normals", **eye).rgb)
+    assert (frames[0] == frames[2]).all() and (frames[1] == frames[3]).all() and (frames[0] != frames[1]).any()
+
+
+def test_a_picture_of_nothing_warns(box: promin.Scene) -> None:
+    with pytest.warns(UserWarning, match="nothing of the scene is in the picture; look_at 0 0 0 .* from_ three-qu"):
+        promin.render(box, eye=(0, 0, 9), direction=(0, 0, 1), size=8, spp=1)
 
 
 @pytest.mark.parametrize(
@@ -205,8 +337,10 @@ def test_things_show_themselves_in_a_line(box: promin.Scene, box_caster: promin.
         ({"framing": "left"}, "did you mean from_?"),
         ({"backgrund": "environment"}, "did you mean background?"),
         ({"shading": "uv"}, "did you mean debug_view?"),
-        ({"azimuth": 45}, "give camera=promin.Camera.look_at("),
-        ({"environment": "sky.hdr"}, "give the scene one: scene.environment = "),
+        ({"look": (0, 0, 0)}, "a point to look at is look_at, a direction of view is direction"),
+        ({"azimut": 45}, "did you mean azimuth?"),
+        ({"transparent": True}, 'give aovs=("alpha",)'),
+        ({"variant": "red"}, "promin.Scene.load(file, ...) has it"),
     ],
 )
 def test_unknown_keywords_are_told_with_the_one_that_is_meant(
@@ -214,6 +348,11 @@ def test_unknown_keywords_are_told_with_the_one_that_is_meant(
 ) -> None:
     with pytest.raises(TypeError, match=re.escape(f"render() has no keyword '{next(iter(keywords))}'; {cure}")):
         promin.render(box, **keywords)
+
+
+def test_a_renderer_tells_where_fields_of_a_view_go(box: promin.Scene) -> None:
+    with pytest.raises(TypeError, match=re.escape("Renderer() has no keyword 'size'; give it to render, or in view=")):
+        promin.Renderer(box, size=64)  # type: ignore[call-arg]
 
 
 def test_files_stand_for_scenes(scenes: Path) -> None:

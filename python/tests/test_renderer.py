@@ -10,7 +10,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 import pytest
@@ -210,15 +210,17 @@ def test_a_centre_moves_camera_light_and_positions() -> None:
 
 
 def test_a_scene_is_framed_from_any_side(box: promin.Scene) -> None:
-    left = promin.Renderer(box, from_="left").camera()
+    def camera(**pose: Any) -> promin.Camera:
+        return promin.Renderer(box, view=promin.View(**pose)).camera()
+
+    left = camera(from_="left")
     assert left.look == (1, 0, 0)
-    small = promin.Renderer(box, from_="left", fit=0.1).camera()
-    assert small.eye[0] < left.eye[0] - 1
+    assert camera(from_="left", fit=0.1).eye[0] < left.eye[0] - 1
     with pytest.raises(promin.UsageError, match="0.05"):
-        promin.Renderer(box, from_="left", fit=2).camera()
+        camera(from_="left", fit=2)
     box.add_camera(promin.Camera(eye=(0, 0, 9)))
-    assert promin.Renderer(box).camera().eye == (0, 0, 9)
-    assert promin.Renderer(box, from_="left").camera() == left, "whatever cameras there are"
+    assert camera().eye == (0, 0, 9)
+    assert camera(from_="left") == left, "whatever cameras there are"
 
 
 def test_a_hit_may_be_at_the_centre() -> None:
@@ -391,7 +393,7 @@ def test_no_time_gives_the_first_picture_alone(box: promin.Scene) -> None:
     frame = renderer.render(size=(8, 8), time_limit=1e-9)
     assert frame.error is None and frame.metadata["promin:spp"] == "1"
     assert (renderer.render(size=(8, 8), spp=1).rgb == frame.rgb).all()
-    with pytest.raises(promin.UsageError, match="time-limit takes a number from 0.001 to 1e.06, not .soon"):
+    with pytest.raises(promin.UsageError, match="time_limit takes a number from 0.001 to 1e.06, not .soon"):
         renderer.render(size=(8, 8), time_limit="soon")  # type: ignore[arg-type]
 
 

@@ -81,7 +81,8 @@ def test_a_view_has_the_defaults_of_the_library() -> None:
     assert _view.mode_of(view) == theirs["mode"]
     assert view.error_in == CHOICES["error_in"][0]
     open_ones = {"camera", "size", "crop", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
-    assert {f.name for f in dataclasses.fields(view) if f.default is None} == open_ones | {"filter_width"}
+    open_ones |= {"filter_width", *_view.POSE}
+    assert {f.name for f in dataclasses.fields(view) if f.default is None} == open_ones
     told = told_fields(promin.View)
     target = DEFAULTS["ErrorTarget"]
     assert f"a height of {DEFAULTS['height']}." in told["size"]
@@ -119,6 +120,9 @@ def test_every_field_of_a_view_is_a_keyword_of_render() -> None:
     fields = {field.name for field in dataclasses.fields(promin.View)}
     assert parameters.keys() == {"self", "view", "aovs", "progress"} | fields
     assert all(parameters[name].default is None for name in fields)
+    keywords = inspect.signature(promin.render).parameters
+    own = inspect.signature(promin.Renderer.__init__).parameters.keys() - {"self", "view", "bvh", "texture_memory"}
+    assert keywords.keys() == fields | own - {"expected_samples"}, "and those of a Renderer"
 
 
 def test_choices_are_told_whole() -> None:
@@ -135,8 +139,7 @@ def test_choices_are_told_whole() -> None:
     for function, name in ((promin.Renderer.__init__, "light"), (promin.Frame.save, "compression")):
         assert quoted(told_argument(function, name)) == CHOICES[name]
     assert sorted(quoted(told_argument(promin.Caster.__init__, "builder"))) == sorted(CHOICES["builder"])
-    # "auto" is Python's word for what the command line says by saying nothing.
-    assert quoted(told_argument(promin.Renderer.__init__, "from_")) == ["auto", *CHOICES["framing"]]
+    assert quoted(told_fields(promin.View)["from_"]) == CHOICES["framing"]
 
 
 def test_every_option_of_promin_render_is_in_python_or_told_of() -> None:

@@ -181,6 +181,15 @@ TEST_F(ImageTest, WebpAndTiffHoldShownColoursAndAlpha) {
   EXPECT_EQ(glm::round(255.0F * back.pixels[7]), vec3(188.0F, 137.0F, 99.0F));
 }
 
+TEST_F(ImageTest, ColoursAreReadAsFilesHaveThemBesideAlpha) {
+  const Covered covered;
+  for (const char* name : {"a.png", "a.tif"}) {
+    write_image(folder_ / name, covered.image, {}, {}, std::span(&covered.alpha, 1));
+    const Image back = read_image(folder_ / name);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.pixels[0][c], back.pixels[7][c], 0.02F) << name;
+  }
+}
+
 TEST_F(ImageTest, RadianceFilesHoldLight) {
   Image image;
   image.size = uvec2(2, 1);

@@ -85,6 +85,13 @@ bool is_exr(const ProminPicturesReader& reader) {
   return std::string_view(reader.input->format_name()) == "openexr";
 }
 
+/// How files are opened: some readers would multiply colours by alpha.
+OIIO::ImageSpec keep_alpha_apart() {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  return config;
+}
+
 ProminPicturesInfo describe(ProminPicturesReader& reader) {
   const OIIO::ImageSpec& spec = reader.input->spec();
   reader.first_channel = find_rgb(spec);
@@ -244,7 +251,8 @@ int promin_pictures_open(const char* file, ProminPicturesReader** reader, Promin
   *reader = nullptr;
   return guard(message, [&] {
     auto opened = std::make_unique<ProminPicturesReader>();
-    opened->input = OIIO::ImageInput::open(file);
+    const OIIO::ImageSpec config = keep_alpha_apart();
+    opened->input = OIIO::ImageInput::open(file, &config);
     if (!opened->input) throw std::runtime_error(first_line(OIIO::geterror()));
     opened->input = make_upright(std::move(opened->input));
     *info = describe(*opened);
@@ -268,8 +276,7 @@ int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char*
     opened->memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, byte_count);
     opened->input = OIIO::ImageInput::create(format);
     if (!opened->input) throw std::runtime_error(first_line(OIIO::geterror()));
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
+    const OIIO::ImageSpec config = keep_alpha_apart();
     OIIO::ImageSpec spec;
     const bool takes_memory = opened->input->supports("ioproxy") && opened->input->set_ioproxy(opened->memory.get());
     if (!takes_memory) throw std::runtime_error(std::string(format) + " cannot be read from memory");

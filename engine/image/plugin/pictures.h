@@ -70,12 +70,13 @@ struct ProminPicturesPart {
 /// The PROMIN_PICTURES_INTERFACE that the plugin was built with.
 uint32_t promin_pictures_interface(void);
 
-/// Opens a file of any format that OpenImageIO knows. Where it succeeds, `reader` is to be closed by the caller.
+/// Opens a file of any format that OpenImageIO knows. Alpha is kept apart from colours, but of EXR and WebP. Where it
+/// succeeds, `reader` is to be closed by the caller.
 int promin_pictures_open(const char* file, struct ProminPicturesReader** reader, struct ProminPicturesInfo* info,
                          struct ProminPicturesMessage* message);
 
 /// Opens a file in memory, which must stay there until the reader is closed, by OpenImageIO's name of its format, such
-/// as "webp". Alpha is kept apart from colours. Else as promin_pictures_open; any number of threads may call it.
+/// as "webp". Else as promin_pictures_open; any number of threads may call it.
 int promin_pictures_open_bytes(const void* bytes, size_t byte_count, const char* format,
                                struct ProminPicturesReader** reader, struct ProminPicturesInfo* info,
                                struct ProminPicturesMessage* message);

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from promin._arrays import round_once, to_numbers, to_vectors
-from promin._caster import Caster
+from promin._caster import PROBE, Caster
 from promin._device import DeviceLike
 from promin._errors import UsageError
 from promin._scene import Scene
@@ -93,7 +93,7 @@ class RaycastingScene:
         """1 where points (..., 3) are inside of closed meshes, else 0: float32 (...). One ray each suffices, so
         nsamples is ignored."""
         points = to_vectors(_to_numpy(query_points), "query_points")
-        counts = self._open().count((points, (0.4395064455, 0.617598629942, 0.652231566745)))
+        counts = self._open().count(points, PROBE)
         return _give((counts % 2).astype(np.float32))
 
     @staticmethod

@@ -15,13 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from promin._arrays import to_vectors
-from promin._caster import Caster
+from promin._caster import PROBE, Caster
 from promin._device import DeviceLike
 from promin._errors import UsageError
 from promin._scene import Scene, meet_planes
-
-# A direction of which no component is small or a simple ratio of another, for contains_points.
-_DIRECTION = (0.4395064455, 0.617598629942, 0.652231566745)
 
 
 class RayMeshIntersector:
@@ -72,7 +69,7 @@ class RayMeshIntersector:
         if places.ndim != 2:
             raise UsageError(f"points have the shape {places.shape}; give (n, 3)")
         caster, _ = self._caster()
-        return np.asarray(caster.count((places, _DIRECTION)) % 2 == 1)
+        return np.asarray(caster.count(places, PROBE) % 2 == 1)
 
     def _intersect(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool, max_hits: int | None = None
