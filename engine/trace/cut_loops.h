@@ -10,8 +10,8 @@ namespace promin {
 /// shader wrote then is not all. Throws RunError if loops were cut.
 inline void refuse_cut_loops(bool were_loops_cut) {
   if (!were_loops_cut) return;
-  throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device",
-                  "take another device, or leave out surfaces that lie in one another", Setting::kDevice});
+  throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 iterations", "on this device",
+                  "use another device, or remove surfaces that coincide", Setting::kDevice});
 }
 
 }  // namespace promin

@@ -28,9 +28,9 @@ def test_errors_mirror_the_library() -> None:
     for kind in (promin.UsageError, promin.InputError, promin.DeviceError, promin.RunError, promin.Cancelled):
         assert issubclass(kind, promin.Error)
     assert issubclass(promin.UsageError, ValueError)
-    with pytest.raises(promin.InputError, match="file not found, /none/scene.obj; check the path") as caught:
+    with pytest.raises(promin.InputError, match="the file does not exist, /none/scene.obj; check the path") as caught:
         promin.Scene.load("/none/scene.obj")
-    assert caught.value.problems == ("file not found, /none/scene.obj; check the path",)
+    assert caught.value.problems == ("the file does not exist, /none/scene.obj; check the path",)
     again = pickle.loads(pickle.dumps(caught.value))
     assert type(again) is promin.InputError and str(again) == str(caught.value)
 
@@ -72,7 +72,7 @@ def test_devices_are_named() -> None:
     assert device.info == first and first.name in device.fingerprint and device.choice
     assert pickle.loads(pickle.dumps(device)).info == first
     assert promin.Device(f"uuid:{first.uuid}").info.uuid == first.uuid and len(first.uuid) == 32
-    with pytest.raises(promin.DeviceError, match="no Vulkan device matches"):
+    with pytest.raises(promin.DeviceError, match="there is no Vulkan device matches"):
         promin.Device("no such device")
     with pytest.raises(promin.UsageError, match="device is"):
         promin.Caster(promin.Scene(), device=1.5)  # type: ignore[arg-type]

@@ -223,6 +223,6 @@ def test_files_stand_for_scenes(scenes: Path) -> None:
     assert (hits["object"] >= 0).all()
     with pytest.raises(promin.UsageError, match="is no promin.Scene"):
         promin.Renderer(3)  # type: ignore[arg-type]
-    with pytest.raises(promin.InputError, match="file not found"):
+    with pytest.raises(promin.InputError, match="the file does not exist"):
         promin.render("none.glb")
     assert _renderer._count_samples(promin.View(size="100x50")) == 100 * 50 * 8

@@ -100,11 +100,11 @@ class PlyTextRows {
   /// A number that may be infinite or none ("nan"), as programs write for what they do not know.
   double take(PlyType type) {
     const double number = take_any(type);
-    if (!is_number_ && problem_.empty()) problem_ = quote(word_) + " is no number";
+    if (!is_number_ && problem_.empty()) problem_ = quote(word_) + " is not a number";
     return number;
   }
 
-  /// The same of any word: NaN where it is no number.
+  /// The same of any word: NaN where it is not a number.
   double take_any(PlyType /*type*/) {
     word_ = take_field(rest_);
     if (word_.empty() && problem_.empty()) problem_ = "a row has fewer numbers than its element has properties";
