@@ -121,7 +121,7 @@ def test_threads_and_devices_are_dealt_out() -> None:
 @pytest.mark.long
 def test_without_a_device_it_ends_with_4(farm: Farm) -> None:
     farm.write_scene(4)
-    assert "there is there is no Vulkan device" in farm.render("--workers", 2, code=4, FAKE_NO_DEVICE="1", timeout=30)
+    assert "there is no Vulkan device" in farm.render("--workers", 2, code=4, FAKE_NO_DEVICE="1", timeout=30)
 
 
 class Cluster:
@@ -188,7 +188,7 @@ def test_workers_of_a_cluster_with_one_that_gives_other_bits_and_one_without_a_d
     process = farm.start("resume", farm.job, "-o", farm.out, "--scheduler", cluster.address)
     # The good one is kept at its first piece until the others have said why they make none.
     assert process.stderr is not None
-    awaited = {"would give other bits", "there is there is no Vulkan device"}
+    awaited = {"would give other bits", "there is no Vulkan device"}
     for line in process.stderr:
         awaited = {words for words in awaited if words not in line}
         if not awaited:

@@ -192,9 +192,9 @@ def test_a_worker_without_a_device_idles_and_the_others_make_all(farm: Farm) -> 
     farm.write_scene(10)
     crew = Scripted(farm)
     proof = crew.proof
-    crew.proof = lambda name: {"idle": "there is there is no Vulkan device", "exit_code": 4} if name == "a" else proof(name)
+    crew.proof = lambda name: {"idle": "there is no Vulkan device", "exit_code": 4} if name == "a" else proof(name)
     tally, watch = run(farm, crew)
-    assert tally.done == 10 and crew.most["a"] == 1 and "a takes no pieces: there is there is no Vulkan device" in watch.said
+    assert tally.done == 10 and crew.most["a"] == 1 and "a takes no pieces: there is no Vulkan device" in watch.said
 
 
 def test_where_all_refuse_the_run_ends_with_what_they_say(farm: Farm) -> None:

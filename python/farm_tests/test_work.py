@@ -116,7 +116,7 @@ def test_a_wrong_share_is_refused(farm: Farm, words: str) -> None:
 def test_without_a_device_it_says_so(farm: Farm) -> None:
     farm.write_scene(3)
     farm.create()
-    assert "there is there is no Vulkan device" in farm.run("work", farm.job, code=4, FAKE_NO_DEVICE="1")
+    assert "there is no Vulkan device" in farm.run("work", farm.job, code=4, FAKE_NO_DEVICE="1")
 
 
 def test_other_bits_are_refused_and_left_alone(farm: Farm) -> None:

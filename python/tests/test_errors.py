@@ -72,7 +72,7 @@ def test_devices_are_named() -> None:
     assert device.info == first and first.name in device.fingerprint and device.choice
     assert pickle.loads(pickle.dumps(device)).info == first
     assert promin.Device(f"uuid:{first.uuid}").info.uuid == first.uuid and len(first.uuid) == 32
-    with pytest.raises(promin.DeviceError, match="there is no Vulkan device matches"):
+    with pytest.raises(promin.DeviceError, match="no Vulkan device matches"):
         promin.Device("no such device")
     with pytest.raises(promin.UsageError, match="device is"):
         promin.Caster(promin.Scene(), device=1.5)  # type: ignore[arg-type]

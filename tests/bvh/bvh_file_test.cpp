@@ -214,7 +214,7 @@ TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
             "the BVH file does not name its builder" + cure);
   EXPECT_THAT(refusal(Bytes()), HasSubstr("the file is empty"));
   EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }),
-              HasSubstr("the file is the scene is the file is not a regular file"));
+              HasSubstr("the scene is not a regular file"));
   EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasSubstr("not found"));
 }
 

@@ -221,7 +221,7 @@ class Job:
 class Runner:
     def __init__(self, job: Job, device: str | None) -> None:
         if os.environ.get("FAKE_NO_DEVICE"):
-            raise DeviceError("there is there is no Vulkan device, on this machine; apt install mesa-vulkan-drivers")
+            raise DeviceError("there is no Vulkan device, on this machine; apt install mesa-vulkan-drivers")
         for name, sha256 in job._manifest["files"].items():
             if not Path(name).exists() or _hash_file(name) != sha256:
                 raise InputError(f"the file has changed since the job was begun, {name}; take another folder")
