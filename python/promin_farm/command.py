@@ -27,7 +27,7 @@ from promin_farm.survey import take_survey
 from promin_farm.watch import Progress, of_pieces
 
 _EPILOG = """Exit codes: 0 done; 1 failed while running, or pieces were given up; 2 wrong use; 3 bad input; 4 no device.
-docs/farm.md tells how to run on one machine, several, and queues."""
+docs/farm.md describes the use on one machine, on several machines and with queues."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="promin-farm",
-        description="Makes pictures and casts rays piece by piece, on many processes and machines.",
+        description="Renders pictures and casts rays piece by piece on many processes and machines.",
         epilog=_EPILOG,
         allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -78,29 +78,31 @@ def _make_parser() -> argparse.ArgumentParser:
         "promin-farm cast SCENE RAYS.npy|RAYS.zarr -o HITS --job DIR [options] [options of promin cast]",
     )
     for command in (render, cast):
-        command.add_argument("--job", metavar="DIR", required=True, help="the job's folder, seen by all workers")
+        command.add_argument("--job", metavar="DIR", required=True, help="the job's folder, accessible to all workers")
         command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="repeatable")
         command.add_argument(
-            "--prepare", action="store_true", help="make the job's folder and no piece, for promin-farm work"
+            "--prepare", action="store_true", help="create the job's folder but make no piece, for promin-farm work"
         )
     cast.add_argument("--offsets", metavar="FILE", help="as of promin cast --all")
-    resume = add("resume", "Make what is missing of a job, then its files")
-    resume.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="in place of the job's own")
+    resume = add("resume", "Make the missing pieces of a job, then its files")
+    resume.add_argument(
+        "-o", "--output", metavar="FILE", action="append", default=[], help="files to write, in place of the job's own"
+    )
     for command in (render, cast, resume):
         _add_run_options(command)
-    alone = add("work", "Make a share of a job in this process, without Dask")
+    alone = add("work", "Make a share of a job's pieces in this process, without Dask")
     alone.add_argument(
         "--array-task",
         metavar="I/N",
-        help="every N-th piece from I on, then what is missing; default: of Slurm's array",
+        help="make every N-th piece, starting with piece I, then other missing pieces; default: from the Slurm array",
     )
-    status = add("status", "Tell how far a job is")
+    status = add("status", "Print the progress of a job")
     status.add_argument("--json", action="store_true", help="as JSON")
-    status.add_argument("--page", action="store_true", help="write the job's page, DIR/index.html, anew")
+    status.add_argument("--page", action="store_true", help="write the job's page, DIR/index.html, again")
     verify = add("verify", "Read and hash every piece of a job")
-    check = add("audit", "Make a sample of a job's pieces once more and compare")
-    check.add_argument("--share", metavar="P", default="1%", help="of the pieces, as 1%% or 0.01 (1%%)")
-    check.add_argument("--seed", metavar="N", type=int, default=0, help="picks another sample (0)")
+    check = add("audit", "Make a sample of a job's pieces again and compare")
+    check.add_argument("--share", metavar="P", default="1%", help="part of the pieces, as 1%% or 0.01 (1%%)")
+    check.add_argument("--seed", metavar="N", type=int, default=0, help="number that selects another sample (0)")
     for command in (resume, alone, status, verify, check):
         command.add_argument("folder", metavar="DIR", help="the job's folder")
     for command in (alone, check):
@@ -112,17 +114,17 @@ def _make_parser() -> argparse.ArgumentParser:
 
 def _add_run_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
-    add("--workers", metavar="N", type=int, help="processes; with a queue, its jobs (one for each device)")
+    add("--workers", metavar="N", type=int, help="number of processes; with a queue, of its jobs (one per device)")
     add(
         "--device",
         metavar="NAME|INDEX|uuid:…",
         action="append",
         default=[],
-        help="device of this machine's workers, repeatable: each is used by workers of its own",
+        help="device for workers of this machine, repeatable; each device gets workers of its own",
     )
-    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a cluster of Dask, or the queue that starts workers")
-    add("--queue-config", metavar="FILE.toml", help="of a queue's jobs: what dask-jobqueue takes")
-    add("--allow-mixed", action="store_true", help="devices of different bits may share the work, frame by frame")
+    add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a running Dask cluster, or the queue that starts workers")
+    add("--queue-config", metavar="FILE.toml", help="settings of a queue's jobs, as dask-jobqueue takes them")
+    add("--allow-mixed", action="store_true", help="let devices of different bits share the work, frame by frame")
     add("--quiet", action="store_true", help="print nothing but errors")
 
 
@@ -130,10 +132,10 @@ def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
     if not options.output:
         raise jobs.UsageError("there is no output, on the command line; name it by -o")
     if options.command == "cast":
-        from promin_farm.rays import prepare_rays  # NumPy takes a while to load.
+        from promin_farm.rays import prepare_rays  # Loading NumPy takes a while.
 
         arguments = prepare_rays(arguments, Path(options.job))
-        # The assembly writes them behind the hits.
+        # The assembly writes them after the hits.
         options.output += [options.offsets] if options.offsets else []
     job = jobs.create(options.command, arguments, os.path.abspath(options.job))
     return _run(job, options)
@@ -147,7 +149,7 @@ def _run(job: jobs.Job, options: argparse.Namespace) -> int:
     folder = Path(job.folder)
     settings = Settings.read(folder).with_outputs(options.output)
     settings = replace(settings, allow_mixed=settings.allow_mixed or options.allow_mixed, retries_from=time.time())
-    # Of a resumed job without files there is nothing to check.
+    # A resumed job without files needs no check.
     if settings.outputs:
         check_outputs(job, settings.outputs)
     settings.write(folder)
