@@ -14,15 +14,15 @@ struct SpecializationConstant {
   uint32_t value = 0;
 };
 
-/// Whether a SPIR-V module declares a specialisation constant with this SpecId.
+/// Returns whether a SPIR-V module declares a specialisation constant with this SpecId.
 bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 
-/// The module without what it cannot reach when its specialisation constants have these values: blocks behind branches
-/// that hang on constants alone, and functions that are called from such blocks only. It computes the same, and still
-/// has its specialisation constants. Drivers find out the same, but later: lavapipe first puts all functions into one
-/// and unrolls their loops, and a scene of one sphere would pay for every other shape. Where a loop's first block
-/// begins with an OpPhi, which glslang does not write, the function is left whole.
-/// Throws std::logic_error if the words are no SPIR-V module.
+/// Returns the module without code that is unreachable if its specialisation constants have these values: blocks behind
+/// branches that depend only on constants, and functions that are called only from such blocks. The result computes the
+/// same and keeps its specialisation constants. Drivers remove this code too, but later: lavapipe first puts all
+/// functions into one and unrolls their loops, and a scene of one sphere would pay for every other shape. A function is
+/// not changed if a loop's first block begins with an OpPhi, which glslang never writes. Throws std::logic_error if the
+/// words are not a SPIR-V module.
 std::vector<uint32_t> remove_dead_code(std::span<const uint32_t> spirv,
                                        std::span<const SpecializationConstant> constants);
 
