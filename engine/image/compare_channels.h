@@ -11,22 +11,22 @@
 
 namespace promin {
 
-/// How far apart one channel of two picture files is, in the files' numbers.
+/// The difference of one channel between two picture files, in the files' units.
 struct ChannelDifference {
   std::string name;
   uint64_t pixel_count = 0;
-  /// As PictureDifference has it.
+  /// As PictureDifference::largest.
   double largest = 0.0;
   uvec2 largest_at{0};
-  /// Pixels whose values differ by more than is allowed.
+  /// Number of pixels whose values differ by more than is allowed.
   uint64_t different_count = 0;
 };
 
-/// Compares all channels of two picture files but R, G and B, those of all parts of an EXR, so that it does not matter
-/// whether they lie in one part or in several: a channel of a part has its own name where the part is the one that
-/// ExrOptions::is_multipart puts it into, and as a colour of the first, else the part's name and a dot before it. Rows
-/// are held some at a time. Throws as read_image, and InputError where one file has channels that the other lacks or a
-/// channel's sizes differ.
+/// Compares all channels of two picture files except R, G and B, in an EXR those of all parts. It does not matter
+/// whether channels lie in one part or in several: a channel keeps its own name if it lies in the part into which
+/// ExrOptions::is_multipart puts it, or is a colour of the first part; else its name is prefixed by the part's name and
+/// a dot. Only some rows are in memory at a time. Throws as read_image, and InputError if one file lacks channels of
+/// the other or if a channel's sizes differ.
 std::vector<ChannelDifference> compare_other_channels(const std::filesystem::path& reference,
                                                       const std::filesystem::path& test, double allowed);
 
