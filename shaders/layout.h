@@ -140,10 +140,10 @@ struct MaterialRecord {
 };
 LAYOUT_CONSTANT MATERIAL_TEXELS = 6u;
 LAYOUT_CONSTANT MATERIAL_MODEL_MASK = 0xFFu;
-LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;    // where the texture's alpha says so
+LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;  // where the texture's alpha says so
 LAYOUT_CONSTANT MATERIAL_IS_ONE_SIDED = 0x200u;
-LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;       // with what is behind, by alpha
-LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;     // the number of its GlassRecord, from 1 on, 0: it has none
+LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;    // with what is behind, by alpha
+LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;  // the number of its GlassRecord, from 1 on, 0: it has none
 LAYOUT_CONSTANT MOST_GLASSES = 0x3FFFu;
 // The largest number of surfaces that blend on a ray; the next one counts as opaque.
 LAYOUT_CONSTANT MOST_LAYERS = 64u;
@@ -189,7 +189,7 @@ LAYOUT_CONSTANT COLORS = 3u;  // that dispersion separates
 
 // A material's reference to a texture (textures.glsl). u = to_u . (s, t, 1), and the same for v.
 struct TextureSlotRecord {
-  vec4 to_u;    // w = bits of TEXTURE_*
+  vec4 to_u;  // w = bits of TEXTURE_*
   vec4 to_v;
   uvec4 image;  // x = its first word, y = width, z = height, w = levels
 };
@@ -227,24 +227,24 @@ LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 // The constants of a view of a scene (uniform buffer). No branch or loop depends on them; constants that control flow
 // depends on are in Dispatch.
 struct ViewConstants {
-  vec4 eye;  // w = near: distance of the viewport plane
+  vec4 eye;    // w = near: distance of the viewport plane
   vec4 look;   // w = width of a sample's cone of sight at the eye, with TEXTURES
   vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = growth of that cone
   vec4 up;
   vec4 ambient;
-  vec4 background;  // w = SHOWS_*: what rays from the camera see
+  vec4 background;       // w = SHOWS_*: what rays from the camera see
   vec4 backdrop_top;     // w = factor by which mirrors and glass see it
   vec4 backdrop_bottom;  // w = rows of the picture
-  vec4 backdrop_rise;    // upwards, 1 over the picture's height at distance 1 (orthographic: in the world); w = 1 for an
-                         // orthographic camera
-  vec4 tree_bounds;   // center and max-norm radius of the tree's primitives
-  vec4 film_center;   // x, y = half the picture's size in pixels
-  uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
-  uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
-                       // w = extensions, as ExtensionRecords
+  vec4 backdrop_rise;   // upwards, 1 over the picture's height at distance 1 (orthographic: in the world); w = 1 for an
+                        // orthographic camera
+  vec4 tree_bounds;     // center and max-norm radius of the tree's primitives
+  vec4 film_center;     // x, y = half the picture's size in pixels
+  uvec4 first_index;    // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
+  uvec4 first_lookup;   // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
+                        // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
   uvec4 first_glass;    // x = GlassRecords; y, z = the media in which the camera is (glass.glsl)
-  vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
+  vec4 irradiance[9];   // of a sky: coefficients of its light over pi (environment.glsl)
 };
 
 LAYOUT_FLOAT SHOWS_BACKGROUND = 0.0f;
@@ -267,11 +267,11 @@ struct Dispatch {
 
 // The state of the stream of paths, which lies behind the pixels of a film (stream.glsl), for a piece of a picture.
 struct StreamState {
-  uvec4 place;           // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
-  uvec4 turn;            // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
-                         // of this turn's have a ray
-  uvec4 shadow_rays;     // x = how many are listed; y = records of a path, its sources among them
-  uvec4 list_groups;     // workgroups of each dispatch of the turn, as Vulkan takes them
+  uvec4 place;        // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
+  uvec4 turn;         // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
+                      // of this turn's have a ray
+  uvec4 shadow_rays;  // x = how many are listed; y = records of a path, its sources among them
+  uvec4 list_groups;  // workgroups of each dispatch of the turn, as Vulkan takes them
   uvec4 shadow_groups;
   uvec4 path_groups;
 };
@@ -326,11 +326,11 @@ LAYOUT_CONSTANT NO_LISTED_SAMPLE = 0xFFFFFFFFu;
 
 // The records of a film, each kind for all pixels together. The first has the sum over a pixel's samples, and `order`
 // of the primitive that it shows. With FEATURE_AOVS, records of the middle sample's hit follow.
-LAYOUT_CONSTANT AOV_NORMAL = 1u;          // geometric; w = distance from the eye
-LAYOUT_CONSTANT AOV_ALBEDO = 2u;          // w = material
+LAYOUT_CONSTANT AOV_NORMAL = 1u;  // geometric; w = distance from the eye
+LAYOUT_CONSTANT AOV_ALBEDO = 2u;  // w = material
 LAYOUT_CONSTANT AOV_POSITION = 3u;
 LAYOUT_CONSTANT AOV_SHADING_NORMAL = 4u;
-LAYOUT_CONSTANT AOV_MEASURES = 5u;        // x, y = texture coordinates; z = distance along the view; w = steps, an integer
+LAYOUT_CONSTANT AOV_MEASURES = 5u;  // x, y = texture coordinates; z = distance along the view; w = steps, an integer
 LAYOUT_CONSTANT AOV_RECORDS = 6u;
 // With FEATURE_LIGHT_AOVS the parts of the sum follow after these.
 LAYOUT_CONSTANT PART_EMISSION = 0u;      // what the surface that the camera sees emits,
@@ -340,7 +340,8 @@ LAYOUT_CONSTANT PART_REFLECTION = 3u;    // mirror rays from it,
 LAYOUT_CONSTANT PART_TRANSMISSION = 4u;  // and rays through it
 LAYOUT_CONSTANT PART_BACKGROUND = 5u;    // what is seen beside and behind surfaces; w = how much of the pixel shows it
 LAYOUT_CONSTANT LIGHT_PARTS = 6u;
-LAYOUT_CONSTANT PART_SEEN = 6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
+LAYOUT_CONSTANT PART_SEEN =
+    6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
 LAYOUT_CONSTANT PART_RECORDS = 7u;
 // With FEATURE_SAMPLE_IDS the `order` of each of this number of samples follows, four per record.
 LAYOUT_CONSTANT SAMPLE_IDS = 16u;
