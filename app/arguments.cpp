@@ -30,7 +30,7 @@ std::string cure_for(const std::string& command, std::string_view near = {}) {
 }
 
 std::string tell_too_few(const std::string& option, const std::string& placeholders) {
-  return fmt::format("too few values for {} {}", option, placeholders);
+  return fmt::format("too few values are given for {} {}", option, placeholders);
 }
 
 /// "promin render" of the command "render".
@@ -102,7 +102,7 @@ void refuse_leftovers(const CLI::App& program) {
   const std::string& word = leftovers.front();
   if (!lacks_command) {
     const bool is_output = is_writable_format(word) && command.get_option_no_throw("--output") != nullptr;
-    throw UsageError({"unexpected argument " + word, kWhere, is_output ? "say -o " + word : cure_for(path)});
+    throw UsageError({"unexpected argument " + word, kWhere, is_output ? "write -o " + word : cure_for(path)});
   }
   throw UsageError({"unknown command " + word, kWhere, cure_for(path, nearest_command(word, program))});
 }

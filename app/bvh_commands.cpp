@@ -56,10 +56,10 @@ void add_file_row(OptionTable& table, BvhOptions& options) {
 void add_common_rows(OptionTable& table, BvhOptions& options) {
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
-  table.add("--threads", "N", fmt::format("Threads to use, 1 to {} [one a core]", kMaxThreads),
+  table.add("--threads", "N", fmt::format("Number of threads, 1 to {} [one per core]", kMaxThreads),
             [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
-  table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
-  table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
+  table.add_flag("--quiet", "Print only errors", options.is_quiet);
+  table.add_flag("-v,--verbose", "Print each step and how long it takes", options.is_verbose);
 }
 
 Scene load(const BvhOptions& options, const Console& console) {
@@ -117,7 +117,7 @@ std::string describe_memory(const TreeView& tree) {
   const auto nodes = static_cast<double>(tree.nodes.size_bytes());
   const double records =
       static_cast<double>(tree.references.size()) * (sizeof(layout::Primitive) + sizeof(layout::SurfaceRecord));
-  return fmt::format("{:.1f} bytes a primitive on the device: {:.1f} of nodes, {:.1f} of what the leaves hold",
+  return fmt::format("{:.1f} bytes per primitive on the device: {:.1f} of nodes, {:.1f} of the contents of leaves",
                      per_primitive(nodes + records), per_primitive(nodes), per_primitive(records));
 }
 
@@ -175,7 +175,7 @@ Command add_build_command(CLI::App& program) {
 }
 
 Command add_bvh_info_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "info", "Check a BVH file and print what it holds");
+  CLI::App& command = add_command(program, "info", "Check a BVH file and describe its contents");
   const auto options = std::make_shared<BvhOptions>();
   OptionTable table(command);
   add_file_row(table, *options);
@@ -183,8 +183,8 @@ Command add_bvh_info_command(CLI::App& program) {
 }
 
 Command add_verify_command(CLI::App& program) {
-  CLI::App& command =
-      add_command(program, "verify", "Check that a BVH file is whole and that its boxes hold the scene's primitives");
+  CLI::App& command = add_command(
+      program, "verify", "Check that a BVH file is complete and that its boxes contain the scene's primitives");
   const auto options = std::make_shared<BvhOptions>();
   OptionTable table(command);
   add_scene_row(table, *options);

@@ -32,7 +32,7 @@ std::string list_cameras(const Scene& scene) {
 /// The name is tried first, because a camera may be called "2".
 const Camera& find_camera(const Scene& scene, const std::string& selection) {
   if (scene.cameras.empty()) {
-    throw UsageError({"the scene has no cameras to choose from", scene.file.string(), "leave --camera out"});
+    throw UsageError({"the scene has no cameras", scene.file.string(), "leave --camera out"});
   }
   for (const Camera& camera : scene.cameras) {
     if (camera.name == selection) return camera;
@@ -41,7 +41,8 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   const char* end = selection.data() + selection.size();
   const auto [rest, error] = std::from_chars(selection.data(), end, index);
   if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
-    throw UsageError({"no camera \"" + selection + "\"", scene.file.string(), "choose one of: " + list_cameras(scene)});
+    throw UsageError({"the scene has no camera \"" + selection + "\"", scene.file.string(),
+                      "choose one of: " + list_cameras(scene)});
   }
   return scene.cameras[index];
 }
@@ -69,7 +70,7 @@ void face(Camera& camera, const std::optional<dvec3>& direction, const std::opti
 dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Camera& camera, const dvec3& center) {
   const dvec3 direction = eye ? point - *eye : point - center - dvec3(camera.eye);
   if (direction != dvec3(0.0)) return direction;
-  throw UsageError({"--look-at is the place of the eye", kWhere, "give another point, or --direction"});
+  throw UsageError({"--look-at names the position of the eye", kWhere, "give another point, or --direction"});
 }
 
 /// The direction that the user gives; empty where none is given.
@@ -108,7 +109,8 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
     direction = middle_of(bounds) + scene.center - *pose.eye;
     // The bounds of shapes are rounded to fp32.
     if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(bounds.extent()))) {
-      throw UsageError({"--eye is in the middle of the scene", kWhere, "give --look-at or --direction as well"});
+      throw UsageError({"--eye is at the middle of the scene, so there is no direction of view", kWhere,
+                        "give --look-at or --direction as well"});
     }
   }
   face(camera, direction, pose.up);
@@ -165,7 +167,7 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
 Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pose, const uvec2& size,
                    const Console& console) {
   if (pose.fit) {
-    throw UsageError({"--fit has nothing to frame: the scene has a camera", kWhere, "give --from as well"});
+    throw UsageError({"--fit has no effect on the scene's own camera", kWhere, "give --from as well"});
   }
   Camera camera = widen_camera(own, size);
   if (pose.eye) camera.eye = vec3(*pose.eye - scene.center);
@@ -173,7 +175,7 @@ Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pos
   if (pose.fov_deg) {
     // With an eye and a direction it is a camera of the user's own.
     if (camera.projection == Projection::kOrthographic && !(pose.eye && pose.looks())) {
-      console.note("the camera is orthographic; --fov makes it a perspective one");
+      console.note("the camera is orthographic; --fov makes it perspective");
     }
     camera.projection = Projection::kPerspective;
     camera.yfov = to_yfov(*pose.fov_deg);
@@ -190,8 +192,8 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
   if (bounds_of(scene).is_empty()) return "";  // what has read it says so
   const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
   return fmt::format(
-      "nothing of the scene is in the picture; --look-at {:.6g} {:.6g} {:.6g} in place of a direction shows "
-      "its middle, and --from three-quarter in place of a camera shows all of it",
+      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} looks at its middle, and "
+      "--from three-quarter shows all of it",
       middle.x, middle.y, middle.z);
 }
 

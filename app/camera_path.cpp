@@ -27,7 +27,7 @@ constexpr double kMaxTime = 1e9;
 /// Nearer to 0 and 180 degrees radians in fp32 show nothing.
 constexpr double kMinFovDeg = 1e-5;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
-const char* const kWriteAnew = "record the path again or mend the file";
+const char* const kWriteAnew = "record the path again or correct the file";
 
 const std::array kRules{
     rules::object(""),
@@ -59,7 +59,8 @@ void check_look(const json& frame, int version, const std::string& place, LoadRe
   if (version == 1) {
     if (!frame.contains("look")) report.refuse("\"look\" is missing", place, kWriteAnew);
   } else if (frame.contains("look") == frame.contains("look_at")) {
-    report.refuse("a frame has one of look and look_at", place, "give a direction as look, or a point as look_at");
+    report.refuse("a frame has both look and look_at", place,
+                  "give only one: a direction as look, or a point as look_at");
   }
 }
 
@@ -73,12 +74,12 @@ TimedCamera read_frame(const json& frame, int version, const std::string& place,
         looks_at ? vec3(read_place(frame["look_at"]) - read_place(frame["eye"])) : read_vector(frame["look"]);
     timed.camera = FreeCamera::from_pose(read_vector(frame["eye"]), look, read_vector(frame["up"])).camera();
   } catch (const UsageError&) {
-    report.refuse(looks_at ? "look_at is the place of the eye, or straight up or down from it"
+    report.refuse(looks_at ? "look_at is the position of the eye, or lies straight above or below it"
                            : "look and up are zero or parallel",
-                  place, looks_at ? "give another point or another up" : "give two directions at an angle");
+                  place, looks_at ? "give another point or another up" : "give two directions that differ");
   }
   if (frame.contains("fov_deg") == frame.contains("ymag")) {
-    report.refuse("a frame has one of fov_deg and ymag", place, "give fov_deg for a perspective camera");
+    report.refuse("a frame has both fov_deg and ymag", place, "give only one: fov_deg for a perspective camera");
   } else if (frame.contains("fov_deg")) {
     timed.camera.yfov = static_cast<float>(glm::radians(frame["fov_deg"].get<double>()));
   } else {
@@ -166,12 +167,12 @@ CameraPath read_camera_path(const std::filesystem::path& file) {
     const std::string place = place_of(path.frames.size());
     const TimedCamera next = read_frame(frame, version, place, report);
     if (!path.frames.empty() && !(next.time_s > path.frames.back().time_s)) {
-      report.refuse("time_s does not grow from frame to frame", place, "order the frames by their times");
+      report.refuse("time_s does not increase from frame to frame", place, "sort the frames by time");
     }
     path.frames.push_back(next);
   }
   if (document.contains("fps")) path.fps = document["fps"].get<double>();
-  if (path.frames.empty()) report.refuse("there are no frames", "frames", kWriteAnew);
+  if (path.frames.empty()) report.refuse("the path has no frames", "frames", kWriteAnew);
   report.throw_if_refused();
   return path;
 }
@@ -202,9 +203,9 @@ PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
   constexpr double kRounding = 1e-6;
   const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
   if (count > static_cast<double>(kMaxCount)) {
-    throw UsageError({fmt::format("{:.0f} pictures are more than {}", count, kMaxCount),
-                      fmt::format("of a path of {:g} s at {:g} a second", path_.frames.back().time_s, fps_),
-                      "give a smaller --fps"});
+    throw UsageError({fmt::format("{:.0f} pictures are more than the largest number, {}", count, kMaxCount),
+                      fmt::format("for a path of {:g} s at {:g} pictures per second", path_.frames.back().time_s, fps_),
+                      "lower --fps"});
   }
   count_ = static_cast<size_t>(count);
 }

@@ -61,9 +61,10 @@ struct RayChunks {
 
 void warn_of_idle_rays(const RayChunks& chunks, const Console& console) {
   if (chunks.idle_count == 0) return;
-  console.warn(fmt::format(
-      "{} of {} cannot hit anything, the first is {}: a ray needs a direction that is not 0, tmin < tmax, and no NaN",
-      chunks.idle_count, count_of(chunks.reader.count(), "ray"), chunks.first_idle));
+  console.warn(
+      fmt::format("{} of {} cannot hit anything, the first of them is number {}: a ray needs a direction that is not "
+                  "0, tmin < tmax and no NaN",
+                  chunks.idle_count, count_of(chunks.reader.count(), "ray"), chunks.first_idle));
 }
 
 /// What a query makes of rays, chunk by chunk, and the files that it writes.
@@ -259,7 +260,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
 }  // namespace
 
 Command add_cast_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "cast", "Answer rays from a file with hits");
+  CLI::App& command = add_command(program, "cast", "Cast rays from a file at a scene and write their hits");
   const auto options = std::make_shared<CastOptions>();
   add_cast_options(command, *options);
   return {&command, [options, &command] { cast(*options, command); }};

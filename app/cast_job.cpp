@@ -52,10 +52,10 @@ uint64_t choose_pieces(uint64_t count, bool is_all) {
 std::vector<RayRange> cut_rays(uint64_t count, const CastOptions& options) {
   const uint64_t pieces = options.job.pieces.value_or(choose_pieces(count, options.is_all));
   if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
-    throw UsageError({fmt::format("{} pieces are more than the {}", pieces,
-                                  pieces > kMostRayPieces ? fmt::format("{} that a job has", kMostRayPieces)
+    throw UsageError({fmt::format("{} pieces are more than {}", pieces,
+                                  pieces > kMostRayPieces ? fmt::format("the {} that a job may have", kMostRayPieces)
                                                           : count_of(count, "ray")),
-                      options.rays.string(), "give another number by --pieces"});
+                      options.rays.string(), "lower --pieces"});
   }
   std::vector<RayRange> ranges;
   // The product would not fit where there are 10^13 rays and more.
@@ -93,7 +93,7 @@ std::string encode(const HitPiece& piece) {
 
 /// Reads what is told of a piece and holds its bytes against it. Throws InputError.
 HitPiece decode(const jobs::Content& content, const fs::path& file) {
-  const InputError bad({"is no piece of hits", file.string(), "remove it and run the job again"});
+  const InputError bad({"the piece does not hold hits", file.string(), "remove it and run the job again"});
   HitPiece piece;
   try {
     const Json json = Json::parse(content.description);
@@ -248,7 +248,7 @@ class HitLists {
   std::span<const Hit> of(size_t ray, const fs::path& file) const {
     const uint64_t begin = ray == 0 ? 0 : ends_[ray - 1];
     if (begin <= ends_[ray] && ends_[ray] <= hits_.size()) return hits_.subspan(begin, ends_[ray] - begin);
-    throw InputError({"is no piece of hits", file.string(), "remove it and run the job again"});
+    throw InputError({"the piece does not hold hits", file.string(), "remove it and run the job again"});
   }
 
  private:
@@ -262,7 +262,7 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
   for (const jobs::Content* content : {&there, &anew}) {
     const HitPiece told = decode(*content, file);
     if (told.query == options_.query() && told.rays.begin == range.begin && told.rays.end == range.end) continue;
-    throw InputError({"is not of the rays of the piece", file.string(), "remove it and run the job again"});
+    throw InputError({"the piece belongs to other rays", file.string(), "remove it and run the job again"});
   }
   HitComparison comparison(scene_);
   if (options_.query() == HitQuery::kCount) {
@@ -290,7 +290,7 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
 /// Of files that answers go to.
 void check_count(size_t count, const std::vector<fs::path>& files) {
   if (files.size() == count) return;
-  throw UsageError({fmt::format("the job's answers go to {}, not to {}",
+  throw UsageError({fmt::format("the job's results are written to {}, not to {}",
                                 count == 2 ? "two files, hits and offsets" : "one file", files.size()),
                     files.empty() ? "" : files.front().string(),
                     count == 2 ? "give --output and --offsets" : "give --output alone"});
@@ -375,11 +375,12 @@ void merge_hits(const jobs::Job& job, const std::vector<fs::path>& files, const 
     if (!first) first = piece;
     if (!written) written.emplace(piece.query, files, rays);
     if (piece.query != first->query || piece.rays.begin != done) {
-      throw InputError({"is not of the rays of the other pieces", file.string(), "remove it and run the job again"});
+      throw InputError({"the piece's rays do not follow those of the piece before", file.string(),
+                        "remove it and run the job again"});
     }
     if (piece.driver != first->driver && !is_mixed) {
-      throw InputError({fmt::format("it was made on {}, and other pieces on {}", piece.driver, first->driver),
-                        file.string(), "remove the ones or the others, and run the job again on one device"});
+      throw InputError({fmt::format("the piece was made on {}, other pieces on {}", piece.driver, first->driver),
+                        file.string(), "remove the pieces of one device, and run the job again on the other"});
     }
     written->add(content, piece.rays.count());
     done = piece.rays.end;

@@ -33,18 +33,25 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
                        if (w.all().size() > 1) w.refuse("--output takes one file here");
                        options.output = w.text();
                      });
-  table.add_flag("--any", "Ask only whether anything is hit: t is 0 then, and infinite on a miss", options.is_any);
-  table.add_flag("--count", "Write how often each ray crosses a surface instead, as int32", options.is_count);
-  table.add_flag("--all", "Write all hits of each ray instead, ray after ray, by t; needs --offsets", options.is_all);
-  table.add("--offsets", "OFFSETS.npy",
-            "With --all: N + 1 uint64, where in HITS.npy each ray's hits begin and the last one's end",
-            [&](const OptionValues& w) { options.offsets = w.text(); });
-  add_job_options(table, options.job,
-                  fmt::format("Of a job: parts of the rays, saved one by one; a kill loses at most one, 1 to {} [{}, "
-                              "fewer of less than {} rays, and more of more than {}, with --all {}]",
-                              kMostRayPieces, kUsualPieces, kUsualPieces * kLeastPieceRays, kUsualPieces * kPieceRays,
-                              kUsualPieces * kPieceRaysOfAll),
-                  kMostRayPieces);
+  table.add_flag("--any", "Report only whether a ray hits anything: t is 0 on a hit and infinite on a miss",
+                 options.is_any);
+  table.add_flag("--count", "Write the number of surfaces that each ray crosses, as int32, in place of hits",
+                 options.is_count);
+  table.add_flag("--all",
+                 "Write all hits of each ray, ray by ray and sorted by t, in place of the nearest; needs --offsets",
+                 options.is_all);
+  table.add(
+      "--offsets", "OFFSETS.npy",
+      "With --all: N + 1 uint64 indices into HITS.npy, where the hits of each ray begin and those of the last ray end",
+      [&](const OptionValues& w) { options.offsets = w.text(); });
+  add_job_options(
+      table, options.job,
+      fmt::format(
+          "With --job: number of pieces that the rays are divided into, 1 to {}; each piece is saved when it is done, "
+          "so a kill loses at most one [{}; fewer for less than {} rays in all, more for over {}, with --all over {}]",
+          kMostRayPieces, kUsualPieces, kUsualPieces * kLeastPieceRays, kUsualPieces * kPieceRays,
+          kUsualPieces * kPieceRaysOfAll),
+      kMostRayPieces);
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);
 }
@@ -58,14 +65,14 @@ void check_query(const CastOptions& options) {
   if (options.is_all) asked.emplace_back("--all");
   if (asked.size() > 1) {
     throw UsageError(
-        {asked[0] + " and " + asked[1] + " ask for different things", "on the command line", "give one of them"});
+        {asked[0] + " and " + asked[1] + " contradict each other", "on the command line", "give one of them"});
   }
   if (options.is_all && !options.offsets && !options.job.share) {
     throw UsageError({"--all is given without --offsets", "on the command line",
-                      "add --offsets OFFSETS.npy, which tells the hits of each ray apart"});
+                      "add --offsets OFFSETS.npy, which says where the hits of each ray begin"});
   }
   if (options.offsets && !options.is_all) {
-    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or take it away"});
+    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or leave --offsets out"});
   }
 }
 
@@ -82,8 +89,8 @@ void check_job_options(const CastOptions& options) {
     throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
   }
   if (options.job.share && !options.outputs().empty()) {
-    throw UsageError({"--piece and --output contradict each other: a share makes no file", "on the command line",
-                      "leave one out; promin merge writes the file"});
+    throw UsageError({"--piece and --output contradict each other: a share writes no file", "on the command line",
+                      "leave one out; promin merge writes the file when all pieces are made"});
   }
 }
 

@@ -40,8 +40,8 @@ void parse(CLI::App& program, const CLI::App& command, const std::vector<std::st
 void check_driver(const jobs::Job& job, const std::string& driver) {
   const std::string of_pieces = find_driver(job);
   if (of_pieces.empty() || of_pieces == driver) return;
-  throw UsageError({fmt::format("the job's pieces were made on {}, and this is {}", of_pieces, driver),
-                    job.folder().string(), "go on with that device by --device, or take another folder"});
+  throw UsageError({fmt::format("the job's pieces were made on {}, and the chosen device is {}", of_pieces, driver),
+                    job.folder().string(), "choose the first one by --device, or name another folder"});
 }
 
 /// Makes what is missing of a share. Returns how many pieces it has made, nothing where a signal has ended it before.
@@ -55,7 +55,8 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
   const std::string driver = driver_of(gpu::info_of(*device));
   check_driver(job, driver);
   const auto tell_stopped = [&](size_t piece) {
-    console.note(fmt::format("stopped before piece {} of {}; the same command goes on", piece, job.piece_count()));
+    console.note(
+        fmt::format("stopped before piece {} of {}; the same command continues the job", piece, job.piece_count()));
   };
   std::unique_ptr<PieceMaker> maker;
   try {
@@ -74,7 +75,7 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
       return false;
     }
     if (!next.why.empty()) {
-      console.warn(fmt::format("{} {}; it is made anew", job.file_of(next.number).string(), next.why));
+      console.warn(fmt::format("{}: {}; it is made again", job.file_of(next.number).string(), next.why));
     }
     at_hand = next;
     return true;
@@ -86,13 +87,14 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
     });
   };
   const size_t made = jobs::run_share(job, share, {driver, ""}, before, make);
-  if (is_whole && while_working.is_pending()) console.note("stopped with the last piece; the same command goes on");
+  if (is_whole && while_working.is_pending())
+    console.note("stopped after the last piece; the same command continues the job");
   return is_whole ? std::optional(made) : std::nullopt;
 }
 
 std::string describe_made(size_t made, size_t all) {
-  if (made == 0) return fmt::format("nothing was left to make of {}", count_of(all, "piece"));
-  return fmt::format("{} of {} made now", made, count_of(all, "piece"));
+  if (made == 0) return fmt::format("all {} were made before", count_of(all, "piece"));
+  return fmt::format("made {} of {} now", made, count_of(all, "piece"));
 }
 
 }  // namespace
@@ -111,7 +113,7 @@ std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<
     return command;
   };
   if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave them out"});
+    if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave the rays out"});
     RenderOptions options;
     const CLI::App& command = parse_to(options, add_render_options);
     check_render_options(options);
@@ -123,7 +125,7 @@ std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<
     check_cast_options(options);
     return plan_rays(options, command, console, std::move(rays));
   }
-  throw UsageError({fmt::format("no command \"{}\" makes jobs", kind), "", "name render or cast"});
+  throw UsageError({fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
 }
 
 jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
@@ -136,8 +138,8 @@ jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
 std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& console, std::shared_ptr<RaySource> rays) {
   const std::optional<std::vector<std::string>> arguments = read_arguments(job);
   if (!arguments) {
-    throw InputError({"does not say by what command the job's pieces are made, or is damaged",
-                      arguments_file(job).string(), "give the job's command once more"});
+    throw InputError({"the file does not name the command that makes the job's pieces, or it is damaged",
+                      arguments_file(job).string(), "run the job's command once more"});
   }
   std::unique_ptr<PlannedJob> planned =
       plan_job(job.manifest().kind, *arguments, job.folder(), console, std::move(rays));

@@ -46,7 +46,7 @@ struct CompareOptions {
 PictureEncoding common_encoding(const CompareOptions& options) {
   const PictureEncoding encoding = encoding_of(options.first);
   if (encoding == encoding_of(options.second)) return encoding;
-  throw InputError({"one picture holds linear light and the other codes of sRGB",
+  throw InputError({"one picture holds linear light, the other holds sRGB values",
                     fmt::format("{} and {}", options.first.string(), options.second.string()),
                     "give two .exr or two .png files"});
 }
@@ -133,7 +133,7 @@ void print_channels(const std::vector<ChannelDifference>& others, double fail) {
     lines.push_back(
         fmt::format("{}: largest {}; {}", other.name, describe_largest(other), describe_different(other, fail)));
   }
-  if (equal > 0) lines.push_back(fmt::format("{} beside R, G and B are equal", equal));
+  if (equal > 0) lines.push_back(fmt::format("{} in addition to R, G and B are equal", equal));
   promin::app::print_rows("channels", lines);
 }
 
@@ -176,8 +176,7 @@ void check_limit(const Difference& difference, const std::string& in, const Comp
 
 void compare(const CompareOptions& options) {
   if (options.fail_percent && !options.fail) {
-    throw UsageError(
-        {"--fail-percent needs a limit for pixels to exceed", "on the command line", "give --fail as well"});
+    throw UsageError({"--fail-percent needs the limit of --fail", "on the command line", "give --fail as well"});
   }
   if (options.difference) {
     check_pictures({*options.difference});
@@ -207,34 +206,37 @@ void compare(const CompareOptions& options) {
 }  // namespace
 
 Command add_compare_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "compare", "Tell how far two pictures are apart");
+  CLI::App& command = add_command(program, "compare", "Measure how much two pictures differ");
   const auto options = std::make_shared<CompareOptions>();
   OptionTable table(command);
   table.add_required("FIRST", "", "A picture: .exr of linear light, .png and others of sRGB",
                      [=](const OptionValues& words) { options->first = words.text(); });
-  table.add_required("SECOND", "",
-                     "Another of the same size and channels; all of them are compared, those of all parts of an EXR",
-                     [=](const OptionValues& words) { options->second = words.text(); });
+  table.add_required(
+      "SECOND", "",
+      "A second picture of the same size and channels; all channels are compared, in an EXR those of all parts",
+      [=](const OptionValues& words) { options->second = words.text(); });
   table.add("-o,--output", "FILE",
-            "Write where they differ: .png what a viewer sees (FLIP) in colours from black to white, .exr the absolute "
-            "differences with FLIP as a channel",
+            "Write a picture of the differences: a .png shows how visible they are (FLIP), from black to white; an "
+            ".exr holds the absolute differences and FLIP as a channel",
             [=](const OptionValues& words) { options->difference = words.text(); });
-  table.add("--fail", "X", "Exit with 5 if any pixel differs by more than X (PNG: 0 to 1, so 2/255 is 0.0078)",
+  table.add("--fail", "X",
+            "Exit with code 5 if any pixel differs by more than X; values of a PNG are 0 to 1, so X may be 2/255",
             [=](const OptionValues& words) {
               const std::optional<double> quotient = words.fraction();
               options->fail = quotient ? *quotient : words.real(0, 0.0, kMostDifference);
             });
-  table.add("--fail-percent", "P", "With --fail: percent of pixels allowed to differ by more [0]",
+  table.add("--fail-percent", "P", "With --fail: percentage of pixels that may differ by more [0]",
             [=](const OptionValues& words) { options->fail_percent = words.real(0, 0.0, 100.0); });
   table.add("--pixels-per-degree", "N",
-            fmt::format("Of the viewer's sight, for FLIP [{:.4g}: a screen of 3840 pixels, as wide as it is away]",
+            fmt::format("Pixels per degree of the viewer's field of view, for FLIP [{:.4g}: a screen 3840 pixels wide, "
+                        "seen from a distance of its width]",
                         options->pixels_per_degree),
             [=](const OptionValues& words) { options->pixels_per_degree = words.real(0, 1.0, 1000.0); });
   table.add_flag("--json", "Print JSON", options->prints_json);
-  add_examples(command, {{"promin compare before.png after.png", "prints how far they are apart"},
+  add_examples(command, {{"promin compare before.png after.png", "prints how much they differ"},
                          {"promin compare before.png after.png -o where.png", "shows where they differ"},
                          {"promin compare before.png after.png --fail 2/255 --fail-percent 0.1",
-                          "fails where more than a thousandth of the pixels is off by more than 2 of 255"}});
+                          "fails if more than 0.1 % of the pixels differ by more than 2/255"}});
   return {&command, [options] { compare(*options); }};
 }
 

@@ -81,9 +81,9 @@ void print_devices(bool is_json) {
 }  // namespace
 
 Command add_devices_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "devices", "Print the Vulkan devices and which one is picked");
+  CLI::App& command = add_command(program, "devices", "List the Vulkan devices and mark the default");
   const auto is_json = std::make_shared<bool>(false);
-  OptionTable(command).add_flag("--json", "Print JSON, with the UUIDs that --device takes", *is_json);
+  OptionTable(command).add_flag("--json", "Print JSON, including the UUIDs that --device takes", *is_json);
   return {&command, [is_json] { print_devices(*is_json); }};
 }
 

@@ -16,12 +16,13 @@ constexpr double kMaxIntensity = 1e15;
 }  // namespace
 
 void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
-  table.add("--environment", "FILE",
-            "Equirectangular panorama around the scene, .hdr or .exr, its middle at -Z [the scene's own sky]",
-            [&](const OptionValues& w) { options.panorama = w.text(); });
+  table.add(
+      "--environment", "FILE",
+      "Equirectangular panorama that surrounds the scene, .hdr or .exr; its middle lies at -Z [the scene's own sky]",
+      [&](const OptionValues& w) { options.panorama = w.text(); });
   table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, in degrees [0]",
             [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
-  table.add("--environment-intensity", "X", "Factor of the sky's radiance [1]",
+  table.add("--environment-intensity", "X", "Multiply the sky's radiance by this factor [1]",
             [&](const OptionValues& w) { options.intensity = w.real(0, 0.0, kMaxIntensity); });
   table.add("--light-rotation", "DEG",
             "Turn the sky and directional lights about +Y, from +Z towards +X, in degrees [0]",

@@ -42,7 +42,7 @@ std::string describe_objects(const SceneCounts& counts, const Scene& scene) {
   if (kinds.empty()) return "0";
   std::string text = fmt::format("{} ({})", scene.objects.size(), fmt::join(kinds, ", "));
   // Numbers ascend.
-  if (!scene.object_numbers.empty()) text += fmt::format("; of the file: {}", scene.object_numbers.back() + 1);
+  if (!scene.object_numbers.empty()) text += fmt::format("; the file's own: {}", scene.object_numbers.back() + 1);
   return text;
 }
 
@@ -261,7 +261,7 @@ void print_info(const InfoOptions& options) {
 }  // namespace
 
 Command add_info_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "info", "Print what a scene holds and what is modelled of it");
+  CLI::App& command = add_command(program, "info", "Print the contents of a scene and which parts of it are modelled");
   const auto options = std::make_shared<InfoOptions>();
   OptionTable table(command);
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
@@ -271,7 +271,7 @@ Command add_info_command(CLI::App& program) {
   add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
   table.add_flag("--json", "Print JSON (docs/usage.md, \"Scenes as JSON\")", options->is_json);
-  table.add_flag("--no-texels", "Read the sizes of images alone: faster, and faults of their texels are not found",
+  table.add_flag("--no-texels", "Read only the sizes of images: faster, but damaged images are not found",
                  options->skips_texels);
   return {&command, [options] { print_info(*options); }};
 }

@@ -25,12 +25,14 @@ jobs::Share read_share(const OptionValues& words) {
 }  // namespace
 
 void add_job_options(OptionTable& table, JobOptions& job, const std::string& pieces_help, uint32_t most_pieces) {
-  table.add("--job", "DIR", "Keep the work in this folder, piece by piece: the same command goes on where it was ended",
+  table.add("--job", "DIR",
+            "Save the work in this folder, piece by piece; if it is interrupted, the same command continues it",
             [&](const OptionValues& w) { job.folder = w.text(); });
   table.add("--pieces", "N", pieces_help,
             [&job, most_pieces](const OptionValues& w) { job.pieces = w.whole(0, 1, most_pieces); });
   table.add("--piece", "I/N",
-            "With --job: make only every N-th piece, from I on, and no file; promin merge makes the file of all pieces",
+            "With --job: make only every N-th piece, starting with piece I, and write no file; promin merge writes the "
+            "file when all pieces are made",
             [&](const OptionValues& w) { job.share = read_share(w); });
 }
 
@@ -38,7 +40,7 @@ void check_has_job(const JobOptions& job) {
   if (job.folder) return;
   const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.pieces ? "--pieces" : "";
   if (name.empty()) return;
-  throw UsageError({fmt::format("{} has no job to cut", name), "on the command line", "give --job as well"});
+  throw UsageError({fmt::format("{} needs a job to divide", name), "on the command line", "give --job as well"});
 }
 
 std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder) {

@@ -40,7 +40,7 @@ struct OptionOfJobs {
   /// Who says it instead, where a job's arguments have no place for it.
   const char* said_elsewhere = nullptr;
 };
-constexpr const char* kMergeSays = "what the files are called is said when pieces are merged";
+constexpr const char* kMergeSays = "the files are named when the pieces are merged";
 constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "SCENE", .is_in_manifest = false, .names_file = true},
     {.name = "RAYS.npy", .is_in_manifest = false, .names_file = true},
@@ -57,15 +57,15 @@ constexpr OptionOfJobs kOptionsOfJobs[] = {
     {.name = "--path", .names_file = true},
     {.name = "--output", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
     {.name = "--offsets", .is_in_manifest = false, .is_kept = false, .said_elsewhere = kMergeSays},
-    {.name = "--job", .is_in_manifest = false, .is_kept = false, .said_elsewhere = "the folder is said beside them"},
+    {.name = "--job", .is_in_manifest = false, .is_kept = false, .said_elsewhere = "the folder is given separately"},
     {.name = "--piece",
      .is_in_manifest = false,
      .is_kept = false,
-     .said_elsewhere = "who makes the pieces chooses them"},
+     .said_elsewhere = "they are chosen when pieces are made"},
     {.name = "--device",
      .is_in_manifest = false,
      .is_kept = false,
-     .said_elsewhere = "who makes the pieces chooses it"},
+     .said_elsewhere = "it is chosen when pieces are made"},
     {.name = "--threads", .is_in_manifest = false, .is_kept = false},
     {.name = "--stats", .is_in_manifest = false, .is_kept = false},
     {.name = "--quiet", .is_in_manifest = false, .is_kept = false},
@@ -110,7 +110,7 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
     if (!source.stamp) continue;
     manifest.files.push_back(jobs::describe_input(source.file));
     if (stamp_of(source.file) == source.stamp) continue;
-    throw InputError({"the file has changed while it was read", source.file.string(), "try again"});
+    throw InputError({"the file changed while it was read", source.file.string(), "try again"});
   }
 }
 
@@ -150,7 +150,7 @@ std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job) {
 void check_asks_for_work(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word != "-h" && word != "--help" && word != "--version") continue;
-    throw UsageError({word + " makes no job", "in its arguments", "leave it out"});
+    throw UsageError({word + " cannot run as a job", "in its arguments", "leave it out"});
   }
 }
 
@@ -159,7 +159,7 @@ void check_is_kept(const GivenOptions& given) {
     const char* const why = option_of_jobs(option).said_elsewhere;
     if (why == nullptr) continue;
     throw UsageError(
-        {option + " is none of a job's arguments", "in its arguments", std::string("leave it out; ") + why});
+        {option + " is not an argument of a job", "in its arguments", std::string("leave it out; ") + why});
   }
 }
 

@@ -7,13 +7,13 @@
 namespace promin::app {
 
 void add_strict_option(OptionTable& table, LoadOptions& options) {
-  table.add_flag("--strict",
-                 "Refuse a scene for anything that its format forbids, and for required extensions that are not known",
+  table.add_flag("--strict", "Refuse a scene that breaks any rule of its format, or that requires an unknown extension",
                  options.is_strict);
 }
 
 void add_root_option(OptionTable& table, LoadOptions& options) {
-  table.add("--root", "DIR", "Let the scene name files in this folder, links resolved [its own folder]",
+  table.add("--root", "DIR",
+            "Allow the scene to refer to any file below this folder; links are resolved first [the scene's own folder]",
             [&](const OptionValues& w) {
               if (w.text().empty()) w.refuse("--root takes a folder, not \"\"");
               options.root = w.text();
@@ -22,7 +22,7 @@ void add_root_option(OptionTable& table, LoadOptions& options) {
 
 void add_variant_option(OptionTable& table, LoadOptions& options) {
   table.add("--variant", "NAME",
-            "Variant of the scene's materials; `promin info` lists them [the file's own materials]",
+            "Use this variant of the scene's materials; `promin info` lists the variants [the file's own materials]",
             [&](const OptionValues& w) {
               if (w.text().empty()) w.refuse("--variant takes the name of a variant, not \"\"");
               options.material_variant = w.text();

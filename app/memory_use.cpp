@@ -18,8 +18,8 @@ std::string describe_memory() {
   std::ifstream statm("/proc/self/statm");
   double total_pages = 0.0;
   double resident_pages = 0.0;
-  if (!(statm >> total_pages >> resident_pages)) return "holds an unknown amount of memory";
-  return fmt::format("holds {:.0f} MB", 1e-6 * resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
+  if (!(statm >> total_pages >> resident_pages)) return "uses an unknown amount of memory";
+  return fmt::format("uses {:.0f} MB", 1e-6 * resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
 }
 
 double peak_memory_mb() {

@@ -32,8 +32,8 @@ void merge(const MergeOptions& options) {
   if (options.offsets) files.push_back(*options.offsets);
   const jobs::Job job = jobs::Job::open(options.folder);
   if (options.offsets && job.manifest().kind == kPictureJob) {
-    throw UsageError(
-        {"--offsets is of answers to rays, and the job is of pictures", job.folder().string(), "leave --offsets out"});
+    throw UsageError({"--offsets needs a job of rays, and this job is one of pictures", job.folder().string(),
+                      "leave --offsets out"});
   }
   check_job_files(job, files);
   check_outputs({}, files, {});
@@ -44,19 +44,19 @@ void merge(const MergeOptions& options) {
 }  // namespace
 
 Command add_merge_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "merge", "Make the files of a job from its pieces");
+  CLI::App& command = add_command(program, "merge", "Put the pieces of a job together and write its files");
   const auto options = std::make_shared<MergeOptions>();
   OptionTable table(command);
   table.add_required("DIR", "", "Folder of promin render --job or promin cast --job",
                      [=](const OptionValues& w) { options->folder = w.text(); });
-  table.add_required_repeated(
-      "-o,--output", "FILE",
-      "File to write. Pictures: .exr (linear float) or .png (sRGB, 8 bit), of frames with #### in place of their "
-      "number; repeatable. Answers to rays: .npy",
-      [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
-  table.add("--offsets", "OFFSETS.npy", "Of a job of promin cast --all: where the hits of each ray begin",
+  table.add_required_repeated("-o,--output", "FILE",
+                              "File to write, repeatable: .exr (linear float) or .png (sRGB, 8 bit) for pictures, with "
+                              "#### for the number of a frame; .npy for rays",
+                              [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
+  table.add("--offsets", "OFFSETS.npy",
+            "For a job of promin cast --all: the file of the indices where the hits of each ray begin",
             [=](const OptionValues& w) { options->offsets = w.text(); });
-  table.add_flag("--quiet", "Print nothing but errors", options->is_quiet);
+  table.add_flag("--quiet", "Print only errors", options->is_quiet);
   return {&command, [options] { merge(*options); }};
 }
 

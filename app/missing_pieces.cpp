@@ -24,13 +24,12 @@ void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, si
   for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) {
     std::string why;
     static_cast<void>(job.state_of(missing[i], &why));
-    names.push_back(job.manifest().pieces[missing[i]] + (why.empty() ? "" : " " + why));
+    names.push_back(job.manifest().pieces[missing[i]] + (why.empty() ? "" : " (" + why + ")"));
   }
   throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(count, "piece"),
                               verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
                               missing.size() > kMostNamed ? ", …" : ""),
-                  job.file_of(missing.front()).parent_path().string(),
-                  "run the job again, which makes what is missing"});
+                  job.file_of(missing.front()).parent_path().string(), "run the job again to make the missing pieces"});
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ void check_writable(const fs::path& file) {
   const AtomicFile probe(file);
   const bool is_new = access(file.c_str(), F_OK) != 0;
   if (!std::ofstream(probe.temporary()) || !(is_new || access(file.c_str(), W_OK) == 0)) {
-    throw RunError({"cannot write the output file", file.string(), "check the permissions or name another place"});
+    throw RunError(
+        {"the output file cannot be written", file.string(), "check the permissions or name another folder"});
   }
 }
 

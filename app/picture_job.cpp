@@ -128,16 +128,19 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
   const bool is_same = part.full_size == first.full_size && part.window.lo == first.window.lo &&
                        part.window.hi == first.window.hi && part.error.has_value() == first.error.has_value() &&
                        std::ranges::equal(part.channels, first.channels, is_same_channel);
-  if (!is_same) throw InputError({"is not of the picture of the other pieces", file.string(), "remove it"});
+  if (!is_same)
+    throw InputError({"the piece is part of another picture than the other pieces", file.string(),
+                      "remove it and run the job again"});
   if (part.metadata.size() != first.metadata.size()) {
-    throw InputError({"tells other things than the other pieces", file.string(), "remove it and run the job again"});
+    throw InputError(
+        {"the piece has other metadata than the other pieces", file.string(), "remove it and run the job again"});
   }
   for (size_t i = 0; i < part.metadata.size(); ++i) {
     const auto& [name, value] = part.metadata[i];
     if (part.metadata[i] == first.metadata[i] || is_error_metadata(name)) continue;
     throw InputError(
-        {fmt::format("its {} is \"{}\", and of other pieces \"{}\"", name, value, first.metadata[i].second),
-         file.string(), "remove the ones or the others, and run the job again on one device"});
+        {fmt::format("the piece's {} is \"{}\", that of other pieces is \"{}\"", name, value, first.metadata[i].second),
+         file.string(), "remove the pieces of one device, and run the job again on the other"});
   }
 }
 
@@ -234,7 +237,8 @@ std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
   for (const uint32_t frame : *frames) {
     pictures.push_back(find_pieces_of(job, frame));
     if (!pictures.back().empty()) continue;
-    throw UsageError({fmt::format("there is no frame {}", frame), job.folder().string(), "name frames of the job"});
+    throw UsageError(
+        {fmt::format("the job has no frame {}", frame), job.folder().string(), "name frames that the job has"});
   }
   return pictures;
 }
@@ -245,7 +249,8 @@ void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   if (!pieces.front().starts_with(kOfFrame) || frame_of(pieces.front()) == frame_of(pieces.back())) return;
   for (const fs::path& file : files) {
     if (number_file(file, 0) != file) continue;
-    throw UsageError({"several frames would go to one file", file.string(), "put #### where their numbers go"});
+    throw UsageError({"several frames would be written to one file", file.string(),
+                      "write #### in its name for the number of a frame"});
   }
 }
 
@@ -263,8 +268,8 @@ std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions
   const uvec2 size = size_of(window);
   const uvec2 tiles = options.tiles.value_or(uvec2(1, options.pieces.value_or(choose_bands(window, pictures))));
   if (tiles.x > size.x || tiles.y > size.y) {
-    throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the {}x{} pixels have", tiles.x,
-                                  tiles.y, size.x, size.y),
+    throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the picture of {}x{} pixels has",
+                                  tiles.x, tiles.y, size.x, size.y),
                       "on the command line", "give fewer by --pieces or --tiles"});
   }
   if (uint64_t{tiles.x} * tiles.y > kMostParts) {
@@ -324,7 +329,7 @@ jobs::Content encode_part(const PicturePart& part) {
 }
 
 PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
-  const InputError bad({"is no part of a picture", file.string(), "remove it and run the job again"});
+  const InputError bad({"the piece is not part of a picture", file.string(), "remove it and run the job again"});
   PicturePart part;
   try {
     const Json json = Json::parse(content.description);

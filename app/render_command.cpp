@@ -79,7 +79,7 @@ std::string describe_reached(const RunStats& stats) {
 void tell_reached(const RunStats& stats, double limit_s, double taken_s, const Console& console) {
   if (taken_s > kLateShare * limit_s) {
     const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
-    console.note(fmt::format("the picture took {:.1f} s, not {:g} s{}", taken_s, limit_s,
+    console.note(fmt::format("the picture took {:.1f} s, longer than the limit of {:g} s{}", taken_s, limit_s,
                              is_least ? ": even one sample a pixel takes longer" : ""));
   }
   console.note(describe_reached(stats));
@@ -321,8 +321,8 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
   const auto found = std::ranges::find_if(
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
-  throw UsageError(
-      {found->string() + " exists and promin did not make it from " + scene, "", "say by -o where to write"});
+  throw UsageError({found->string() + " exists already and promin did not make it from " + scene, "",
+                    "name the file to write by -o"});
 }
 
 /// Throws UsageError where a picture on the standard output would not be the only one there.
@@ -364,11 +364,12 @@ void render(const RenderOptions& given, const CLI::App& command) {
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
   const Console console(tracing.verbosity());
   if (skipped > 0) {
-    console.note(
-        fmt::format("skipped {} of {}, whose pictures are there", skipped, count_of(skipped + frames.size(), "frame")));
+    console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
+                             count_of(skipped + frames.size(), "frame")));
   }
   if (frames.empty()) {
-    if (tracing.stats) console.note(fmt::format("{} is not written, as nothing was traced", tracing.stats->string()));
+    if (tracing.stats)
+      console.note(fmt::format("{} is not written, because nothing was traced", tracing.stats->string()));
     return;
   }
 

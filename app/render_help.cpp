@@ -11,8 +11,8 @@ void arrange_help(CLI::App& program, CLI::App& render) {
                          {"promin model.glb -o poster.jpg --size 4k", "writes one picture of 3840x2160 pixels"},
                          {"promin model.glb -o cut.png --alpha", "leaves the background out"},
                          {"promin model.glb -o layers.exr --aov depth,normal", "adds distances and normals"},
-                         {"promin compare before.png after.png", "says how far two pictures are apart"},
-                         {"promin info model.glb", "lists what a file holds: cameras, lights, materials"}});
+                         {"promin compare before.png after.png", "prints how much two pictures differ"},
+                         {"promin info model.glb", "lists the contents of a file: cameras, lights, materials"}});
   group_options(
       render,
       {{"Output", {"output", "size", "crop", "alpha", "aov", "depth", "half", "compression", "multipart", "explain"}},
@@ -27,10 +27,12 @@ void arrange_help(CLI::App& program, CLI::App& render) {
          "exposure", "tone-mapping", "dither", "no-shadows", "lights-off", "variant", "shading"}},
        {"Jobs", {"job", "pieces", "tiles", "piece"}},
        {"Expert", {}}});
-  add_examples(render, {{"promin render model.glb -o picture.png --size hd --spp 16", "16 samples a pixel, 1280x720"},
-                        {"promin render model.glb -o best.png --time-limit 20", "the best picture of about 20 seconds"},
-                        {"promin render model.glb -o big.exr --job work",
-                         "continues where it was ended, with the same command"}});
+  add_examples(
+      render,
+      {{"promin render model.glb -o picture.png --size hd --spp 16", "takes 16 samples per pixel at 1280x720"},
+       {"promin render model.glb -o best.png --time-limit 20", "makes the best picture that takes about 20 seconds"},
+       {"promin render model.glb -o big.exr --job work",
+        "saves its work; the same command continues it after an interruption"}});
 }
 
 }  // namespace promin::app

@@ -61,8 +61,9 @@ AovSet read_aovs(const OptionValues& words) {
     if (is_known) continue;
     std::vector<std::string_view> known(aov_names().begin(), aov_names().end());
     known.push_back(kCryptomatte);
-    words.refuse(fmt::format("--aov takes names of {} with commas between, not \"{}\"", fmt::join(known, ", "), name),
-                 nearest_name(name, known));
+    words.refuse(
+        fmt::format("--aov takes names from {}, separated by commas, not \"{}\"", fmt::join(known, ", "), name),
+        nearest_name(name, known));
   }
   return choice;
 }
@@ -164,7 +165,7 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
     const char* end = number.data() + number.size();
     const auto parsed = std::from_chars(number.data(), end, value);
     if (parsed.ec != std::errc() || parsed.ptr != end) {
-      words.refuse(fmt::format("--lights-off takes numbers from 0 with commas between, not \"{}\"", words.text()));
+      words.refuse(fmt::format("--lights-off takes numbers from 0, separated by commas, not \"{}\"", words.text()));
     }
     numbers.push_back(value);
   }
@@ -182,16 +183,16 @@ DebugView read_shading(const OptionValues& words) {
 void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
-            "What stands in for light that the scene lacks [studio; classic scenes: headlight]",
+            "Light to add to a scene that has none or too little [studio; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
   table.add("--background", fmt::format("R G B|COLOR|{}", kEnvironment),
-            "What lies behind all, as it is shown: white, '#336699', three numbers from 0 to 1; linear:R,G,B is light "
-            "that is exposed; environment shows what lights the scene [the scene's, or a grey gradient; classic "
-            "scenes: the scene's]",
+            "Background colour as it is displayed: white, '#336699' or three numbers from 0 to 1. linear:R,G,B is "
+            "linear light, which exposure and tone mapping change. environment shows the surroundings that light the "
+            "scene [the scene's own background, else a grey gradient; classic scenes: the scene's own]",
             [&](const OptionValues& w) { look.background = read_background(w); });
   table.add("--exposure", fmt::format("EV|{}|{}", kAuto, kAverage),
-            "Stops by which PNG files and the window are brighter than the scene's light; average: as the picture "
-            "itself needs, a path's first [auto: from the scene's lights; classic scenes: 0]",
+            "Exposure of PNG files and the window in stops; +1 doubles the brightness. auto is computed from the "
+            "scene's lights, average from the picture itself, on a path from its first one [auto; classic scenes: 0]",
             [&](const OptionValues& w) {
               look.exposure_ev.reset();
               look.averages_exposure = w.text() == kAverage;
@@ -200,59 +201,62 @@ void add_look_options(OptionTable& table, LookOptions& look) {
               look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv, kWords));
             });
   table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
-            "How PNG files and the window show what is brighter than they can [neutral; classic scenes: none]",
+            "How PNG files and the window compress light that is too bright to display [neutral; classic scenes: none]",
             [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
-  table.add_flag("--dither", "Add noise below a step to the 8 bits of PNG files and the window, against bands",
+  table.add_flag("--dither", "Add noise of less than one 8-bit step to PNG files and the window, which hides banding",
                  look.dithers);
-  table.add("--texture-memory", "MIB",
-            fmt::format("Device memory for textures in MiB, 1 to {}; beyond it the largest are halved [{}]",
-                        kMaxTextureMib, look.texture_memory_mib),
-            [&](const OptionValues& w) { look.texture_memory_mib = w.whole(0, 1, kMaxTextureMib); });
+  table.add(
+      "--texture-memory", "MIB",
+      fmt::format(
+          "Device memory for textures in MiB, 1 to {}; the largest textures are halved until all of them fit [{}]",
+          kMaxTextureMib, look.texture_memory_mib),
+      [&](const OptionValues& w) { look.texture_memory_mib = w.whole(0, 1, kMaxTextureMib); });
 }
 
 }  // namespace
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--size", fmt::format("WxH|{}", fmt::join(size_names(), "|")),
-            "Picture size in pixels; 640 is a width, whose height follows from the camera's aspect ratio [what the "
-            "file asks for, or height 720]",
+            "Picture size in pixels; 640 alone is a width, and the height follows from the camera's aspect ratio [the "
+            "size that the scene file requests, else height 720]",
             [&](const OptionValues& w) { view.size = read_size(w); });
   table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
-            "How samples are weighed by their distance from the pixel's centre [box]",
+            "Filter that weights samples by their distance from the pixel's centre [box]",
             [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
   table.add("--filter-width", "PIXELS",
-            fmt::format("From end to end of what the filter weighs, {} to {} [box 1, tent 2, others 3]",
-                        kMinFilterWidth, kMaxFilterWidth),
+            fmt::format("Full width of the filter in pixels, {} to {} [box 1, tent 2, others 3]", kMinFilterWidth,
+                        kMaxFilterWidth),
             [&](const OptionValues& w) {
               view.filter_width = static_cast<float>(
                   w.real(0, static_cast<double>(kMinFilterWidth), static_cast<double>(kMaxFilterWidth)));
             });
-  table.add("--max-depth", "N",
-            fmt::format("Bounces, 0 to {}; 0 traces neither mirror nor refracted rays [{}, with glass {}]", kMaxDepth,
-                        View{}.max_depth, kMaxDepthOfGlass),
-            [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
-  table.add("--shading", "NAME", fmt::format("What is shown: {} [full]", fmt::join(debug_view_names(), ", ")),
+  table.add(
+      "--max-depth", "N",
+      fmt::format("Largest number of bounces, 0 to {}; 0 traces neither mirror nor refracted rays [{}, with glass {}]",
+                  kMaxDepth, View{}.max_depth, kMaxDepthOfGlass),
+      [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
+  table.add("--shading", "NAME", fmt::format("What the picture shows: {} [full]", fmt::join(debug_view_names(), ", ")),
             [&](const OptionValues& w) { view.debug_view = read_shading(w); });
-  table.add_flag("--no-shadows", "Nothing throws a shadow", view.has_no_shadows);
-  table.add("--lights-off", "INDICES", "Lights to leave out, by their numbers from 0 with commas between",
+  table.add_flag("--no-shadows", "Trace no shadow rays: nothing casts a shadow", view.has_no_shadows);
+  table.add("--lights-off", "INDICES", "Lights to switch off: their indices from 0, separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
   add_look_options(table, view.look);
-  table.add("--camera", "NAME|INDEX", "Camera of the scene by its name or its number from 0 [0]",
+  table.add("--camera", "NAME|INDEX", "Camera of the scene: its name or its index from 0 [0]",
             [&](const OptionValues& w) { view.camera = w.text(); });
   add_pose_options(table, view.pose);
   add_environment_options(table, view.environment);
 }
 
 void add_fps_option(OptionTable& table, std::optional<double>& fps) {
-  table.add(
-      "--fps", "N|stored",
-      fmt::format("Pictures a second of the path, {} to {}, or its frames as stored [as the path says, else stored]",
-                  PathPictures::kMinFps, PathPictures::kMaxFps),
-      [&](const OptionValues& w) {
-        constexpr std::array<std::string_view, 1> kWords = {"stored"};
-        const bool is_stored = w.text() == kWords[0];
-        fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps, kWords);
-      });
+  table.add("--fps", "N|stored",
+            fmt::format("Pictures per second of the path, {} to {}; stored renders exactly the frames that are stored "
+                        "[the path's own fps, else stored]",
+                        PathPictures::kMinFps, PathPictures::kMaxFps),
+            [&](const OptionValues& w) {
+              constexpr std::array<std::string_view, 1> kWords = {"stored"};
+              const bool is_stored = w.text() == kWords[0];
+              fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps, kWords);
+            });
 }
 
 namespace {
@@ -274,11 +278,10 @@ double read_seconds(const OptionValues& words) {
 }
 
 void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
-  table.add(
-      "--time-limit", "SECONDS",
-      "Instead of --spp: the best picture that is finished in this time, as 20, 20s or 2min, and the options that "
-      "give it again",
-      [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
+  table.add("--time-limit", "SECONDS",
+            "In place of --spp: make the best picture that can be finished in this time, given as 20, 20s or 2min, and "
+            "print the options that make it again",
+            [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
 }
 
 }  // namespace
@@ -295,15 +298,14 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   };
   table.add("--target-error", "E", std::string(target_help),
             [&](const OptionValues& w) { error.target = read_error(w); });
-  table.add(
-      "--min-spp", "N",
-      fmt::format("Least samples per pixel, with --target-error, a power of two from {} [{}, for a --target-error "
-                  "from 1/{:g} on {}]",
-                  kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
-      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
+  table.add("--min-spp", "N",
+            fmt::format("With --target-error: smallest number of samples per pixel, a power of two from {} [{}; for a "
+                        "--target-error of 1/{:g} or more {}]",
+                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
+            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
-            fmt::format("Most samples per pixel, with --target-error, a power of two to {} [{}]", kMaxRefinedSamples,
-                        ErrorTarget{}.max_samples),
+            fmt::format("With --target-error: largest number of samples per pixel, a power of two up to {} [{}]",
+                        kMaxRefinedSamples, ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
   table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
             "With --target-error: measure the error in linear light or as displayed [linear]",
@@ -392,11 +394,11 @@ void apply_quality(RenderOptions& options) {
 }
 
 void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual) {
-  table.add("-s,--spp", "N", fmt::format("Samples a pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
+  table.add("-s,--spp", "N", fmt::format("Samples per pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
             [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
-            fmt::format("Instead of --spp: {} samples, {}, {}, or until the shown colours are off by one code at most "
-                        "[normal]",
+            fmt::format("In place of --spp: {}, {} or {} samples per pixel, or as many as it takes until displayed "
+                        "colours are off by at most one 8-bit step [normal]",
                         1, kDefaultSamples, kHighSamples),
             [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
 }
@@ -411,55 +413,66 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit), or - for a PNG on "
       "the standard output; repeatable [the scene's name with .exr and .png, here]",
       [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
-  table.add("--explain", "X Y", "Instead of -o, print all rays of a pixel as JSON; 0 0 is the top left",
+  table.add("--explain", "X Y", "In place of -o: print all rays of this pixel as JSON; 0 0 is the top left pixel",
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
   add_sample_options(table, options, fmt::format("{}, with --explain 1", kDefaultSamples));
   add_error_options(
       table, options.error,
-      fmt::format("Instead of --spp: take samples until each pixel is off by at most E, {} to 1, where 1 is white",
+      fmt::format("In place of --spp: take samples until each pixel is off by at most E, {} to 1; white is 1",
                   least_error()));
   add_time_limit_option(table, options.error);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
-  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels X0 <= x < X1, Y0 <= y < Y1; row 0 is the top",
+  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels with X0 <= x < X1 and Y0 <= y < Y1; row 0 is at the top",
             [&](const OptionValues& w) { view.crop = read_window(w); });
 
-  table.add("--path", "FILE.json", "Render the frames of a camera path, each to -o with its number in place of ####",
+  table.add("--path", "FILE.json",
+            "Render the frames of a camera path; -o names a file with ####, which stands for the frame number",
             [&](const OptionValues& w) { options.path = w.text(); });
-  table.add("--frames", "A-B", "Of the path, the frames A to B, both included; the first is 0 [all]",
+  table.add("--frames", "A-B", "With --path: render only frames A to B, both included; the first frame is 0 [all]",
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
-  table.add_flag("--skip-existing", "Leave out frames whose pictures are there", options.skips_existing);
+  table.add_flag("--skip-existing", "With --path: skip frames whose pictures exist already", options.skips_existing);
 
   add_job_options(
       table, options.job,
-      fmt::format("Of a job: parts of each picture, bands of rows, saved one by one; a kill loses at most one, 1 to {} "
-                  "[{} or more, of a path so many in all or 1 a frame]",
-                  kMaxSide, kUsualPieces),
+      fmt::format(
+          "With --job: number of bands of rows that each picture is divided into, 1 to {}; each band is saved when it "
+          "is done, so a kill loses at most one [at least {} pieces in all; on a path at least one per frame]",
+          kMaxSide, kUsualPieces),
       kMaxSide);
   table.add(
-      "--tiles", "C R", "Of a job, in place of --pieces: columns and rows of tiles of each picture",
+      "--tiles", "C R",
+      "With --job, in place of --pieces: number of columns and rows of tiles that each picture is divided into",
       [&](const OptionValues& w) { options.job.tiles = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--aov", "NAMES",
-            fmt::format("Channels of an EXR beside R, G, B, of {},{}", fmt::join(aov_names(), ","), kCryptomatte),
+            fmt::format("Further channels of an EXR, separated by commas, from {},{}", fmt::join(aov_names(), ","),
+                        kCryptomatte),
             [&](const OptionValues& w) { options.aovs = options.aovs | read_aovs(w); });
-  table.add_flag("--alpha", "Tell how much of each pixel the scene covers, and leave the background out",
+  table.add_flag("--alpha",
+                 "Write an alpha channel, the part of each pixel that the scene covers, and leave the background out",
                  options.aovs.alpha);
   table.add("--depth", fmt::format("{}", fmt::join(depth_kind_names(), "|")),
-            "The AOV depth: distance from the eye, or from the plane through it across the view [ray]",
+            "What --aov depth measures: ray is the distance from the eye, plane the distance along the direction of "
+            "view [ray]",
             [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, depth_kind_names()); });
-  table.add_flag("--half", "Keep an EXR's colours, normals and shares as halves: off by 1/2048 of them at most",
-                 options.exr.is_half);
+  table.add_flag(
+      "--half",
+      "Store colours, normals and coverage of an EXR as 16-bit floats, with a relative error of at most 1/2048",
+      options.exr.is_half);
   table.add("--compression", fmt::format("{}", fmt::join(exr_compression_names(), "|")),
-            "How an EXR is compressed, always without loss [zip]", [&](const OptionValues& w) {
+            "Lossless compression of an EXR [zip]", [&](const OptionValues& w) {
               options.names_compression = true;
               options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
             });
-  table.add_flag("--multipart", "Give an EXR a part for each AOV, which some programs read faster and others cannot",
-                 options.exr.is_multipart);
-  table.add("--features", "scene|all", "Compile in what the scene uses, or all there is, for measuring [scene]",
+  table.add_flag(
+      "--multipart",
+      "Write each AOV as a part of its own in an EXR; some programs read such files faster, others cannot read them",
+      options.exr.is_multipart);
+  table.add("--features", "scene|all",
+            "Features to compile into the kernels: those that the scene uses, or all, for measurements [scene]",
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);
@@ -474,7 +487,7 @@ std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
 void check_error_target(const ErrorTarget& target) {
   if (target.min_samples <= target.max_samples) return;
   throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
-                    "on the command line", "take more of the one or less of the other"});
+                    "on the command line", "raise --max-spp or lower --min-spp"});
 }
 
 void check_no_camera(const ViewOptions& options, std::string_view name) {
@@ -543,19 +556,22 @@ void check_render_options(const RenderOptions& options) {
     refuse_beside(name, {{is_debug, "--shading"}});
     // Each turn might come to another target, and so to another picture.
     if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
-    refuse_if(error.space == ErrorSpace::kDisplay && averages,
-              "--error-in display and --exposure average contradict each other, which is known when all is traced",
-              "give --exposure in stops");
+    refuse_if(
+        error.space == ErrorSpace::kDisplay && averages,
+        "--error-in display and --exposure average contradict each other: the average is known only after tracing",
+        "give --exposure in stops");
     check_error_target(*error.error_target());
   } else {
     refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
-              "--aov of light and --shading contradict each other: a debug shading has no light", "leave one out");
+              "--shading and an --aov of light contradict each other: a debug shading computes no light",
+              "leave one out");
     refuse_if(options.aovs.error && is_debug,
-              "--aov error and --shading contradict each other: a debug shading has no error", "leave one out");
+              "--shading and --aov error contradict each other: a debug shading has no error estimate",
+              "leave one out");
     for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
                                          {error.max_samples.has_value(), "--max-spp"},
                                          {error.space.has_value(), "--error-in"}}) {
-      refuse_if(is_given, fmt::format("{} needs an error to aim at", name), "give --target-error as well");
+      refuse_if(is_given, fmt::format("{} needs a target error", name), "give --target-error as well");
     }
   }
 
@@ -570,18 +586,18 @@ void check_render_options(const RenderOptions& options) {
                             {options.tracing.repeat_count > 1, "--repeat"}});
     if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
     refuse_if(job.share && !options.pictures.empty(),
-              "--piece and --output contradict each other: a share makes no picture",
-              "leave one out; promin merge writes the picture");
+              "--piece and --output contradict each other: a share writes no picture",
+              "leave one out; promin merge writes the picture when all pieces are made");
   }
 
   // Frames.
-  refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing has no pictures to look for",
+  refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing needs the names of the pictures",
             "give -o as well");
   refuse_if(options.skips_existing && averages,
-            "--skip-existing and --exposure average contradict each other, which takes the first frame's",
+            "--skip-existing and --exposure average contradict each other: the average is that of the first frame",
             "give --exposure in stops");
-  refuse_if(options.frames && !options.path, "--frames has no path to choose from", "give --path as well");
-  refuse_if(options.fps && !options.path, "--fps has no path to play", "give --path as well");
+  refuse_if(options.frames && !options.path, "--frames needs a camera path", "give --path as well");
+  refuse_if(options.fps && !options.path, "--fps needs a camera path", "give --path as well");
 
   // What only an EXR holds; PNG files take alpha alone.
   const auto& pictures = options.pictures;
@@ -594,13 +610,15 @@ void check_render_options(const RenderOptions& options) {
                                        {options.exr.is_multipart, "--multipart"}}) {
     refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
   }
-  refuse_if(has_depth_kind && !options.aovs.depth, "--depth has no AOV to measure", "give --aov depth as well");
+  refuse_if(has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth", "give --aov depth as well");
   if (options.aovs.alpha) {
     refuse_beside("--alpha", {{is_debug, "--shading"}});
     refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
                   "leave one out: --alpha makes the background transparent");
-    refuse_if(std::ranges::any_of(pictures, is_jpeg), "--alpha has no place in a JPEG", "write a .png or .exr");
-    refuse_if(std::ranges::any_of(pictures, is_radiance), "--alpha has no place in a .hdr", "write a .png or .exr");
+    refuse_if(std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
+              "write a .png or .exr");
+    refuse_if(std::ranges::any_of(pictures, is_radiance), "a .hdr cannot store the channel of --alpha",
+              "write a .png or .exr");
   }
 
   // What only a PNG shows.

@@ -34,11 +34,11 @@ struct Wording {
   std::string_view with_option;
 };
 
-constexpr Wording kWordings[] = {{Setting::kDepth, "take a smaller depth", "lower --max-depth"},
-                                 {Setting::kDevice, "asked for as the device", "asked for by --device"},
+constexpr Wording kWordings[] = {{Setting::kDepth, "use a smaller depth", "lower --max-depth"},
+                                 {Setting::kDevice, "requested as the device", "requested by --device"},
                                  {Setting::kDevice, "another device", "another --device"},
                                  {Setting::kBuilder, "the builder", "--builder"},
-                                 {Setting::kTextureMemory, "the memory of textures", "--texture-memory"}};
+                                 {Setting::kTextureMemory, "the memory for textures", "--texture-memory"}};
 
 std::string_view option_of(Setting setting) {
   switch (setting) {
@@ -78,12 +78,12 @@ Problem explain(const std::system_error& error) {
   std::error_code no_folder;
   static_cast<void>(std::filesystem::current_path(no_folder));
   if (no_folder == std::errc::no_such_file_or_directory) {
-    return {"the current folder is gone", "", "change to a folder that exists"};
+    return {"the current folder no longer exists", "", "change to a folder that exists"};
   }
   if (error.code() == std::errc::resource_unavailable_try_again) return explain_no_threads();
   const auto* file_error = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   const std::string where = file_error == nullptr ? "" : file_error->path1().string();
-  return {fmt::format("the system refuses what is asked for ({})", error.code().message()), where,
+  return {fmt::format("the system refused a request ({})", error.code().message()), where,
           "check its limits and permissions"};
 }
 
@@ -94,7 +94,7 @@ void share_heap() {
 #endif
 }
 
-const Problem kDeafOutput{"cannot write", "the standard output", "check where it leads"};
+const Problem kDeafOutput{"cannot write", "the standard output", "check where it is redirected"};
 
 /// For the build alone, which installs what this prints (app/CMakeLists.txt).
 constexpr std::string_view kMakeManual = "--make-manual";
@@ -126,7 +126,7 @@ void run_command(const std::string& name, const std::string& help,
   for (const Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
-  throw UsageError({"no command given", "on the command line", "see " + name + " --help"});
+  throw UsageError({"no command is given", "on the command line", "see " + name + " --help"});
 }
 
 }  // namespace
@@ -170,15 +170,16 @@ int run_program(const std::string& name, const std::string& help,
   } catch (const Error& error) {
     return report(kRunFailed, message_of(error));
   } catch (const std::bad_alloc&) {
-    return report(kRunFailed,
-                  fmt::format("out of memory, in {}; {}", name, cure_short_memory("use a smaller picture or scene")));
+    return report(kRunFailed, fmt::format("there is not enough memory, in {}; {}", name,
+                                          cure_short_memory("use a smaller picture or scene")));
   } catch (const std::exception& error) {
     // What a command prints may fail at any line, by an exception of fmt's.
     if (std::ferror(stdout) != 0) return report(kRunFailed, message_of(kDeafOutput));
     if (const auto* refusal = dynamic_cast<const std::system_error*>(&error)) {
       return report(kRunFailed, message_of(explain(*refusal)));
     }
-    return report(kRunFailed, fmt::format("unexpected failure ({}), in {}; report it as a bug", error.what(), name));
+    return report(kRunFailed,
+                  fmt::format("an unexpected failure occurred ({}), in {}; report it as a bug", error.what(), name));
   }
 }
 

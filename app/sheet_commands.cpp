@@ -150,7 +150,7 @@ void make_sheet(const SheetOptions& options) {
   Image sheet{layout.size(), std::vector<vec3>(size_t{layout.size().x} * layout.size().y, kPaper)};
   const Console console(options.each.tracing.verbosity());
   const std::optional<fs::path> font = find_font();
-  if (!font) console.warn("no font is found, so the sheet has no names; install DejaVu Sans");
+  if (!font) console.warn("the sheet has no names because no font was found; install DejaVu Sans");
   const gpu::DeviceHandle device = open_device_of(options.each.tracing, console);
   Progress progress(console.is_quiet());
   size_t missing = 0;
@@ -179,13 +179,13 @@ void make_sheet(const SheetOptions& options) {
 }  // namespace
 
 Command add_thumbnail_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "thumbnail", "Write a small picture of a scene, as file managers show it");
+  CLI::App& command = add_command(program, "thumbnail", "Write a thumbnail of a scene, as file managers show it");
   const auto options = std::make_shared<RenderOptions>();
   options->view.size = uvec2(kThumbnailSide);
   options->view.frames_scene = true;
   OptionTable table(command);
   add_scene_argument(table, options->tracing);
-  table.add_required("OUTPUT", "", "Picture to write; a PNG where its name has no ending",
+  table.add_required("OUTPUT", "", "Picture to write; a name without an ending gives a PNG",
                      [=](const OptionValues& w) { options->pictures = {w.text()}; });
   table.add("SIZE", "", fmt::format("Pixels on a side, 1 to {} [{}]", kMaxThumbnailSide, kThumbnailSide),
             [=](const OptionValues& w) { options->view.size = uvec2(w.whole(0, 1, kMaxThumbnailSide)); });
@@ -193,24 +193,25 @@ Command add_thumbnail_command(CLI::App& program) {
 }
 
 Command add_contact_sheet_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "contact-sheet", "Write one picture of many scenes, each with its name");
+  CLI::App& command =
+      add_command(program, "contact-sheet", "Write one picture that shows many scenes, each with its name");
   const auto options = std::make_shared<SheetOptions>();
   options->each.view.frames_scene = true;
   OptionTable table(command);
-  table.add_required_repeated("SCENES", "", "Scene files, in the order of the sheet",
+  table.add_required_repeated("SCENES", "", "Scene files, in their order on the sheet",
                               [=](const OptionValues& w) { options->scenes.assign(w.all().begin(), w.all().end()); });
   table.add_required("-o,--output", "FILE", "Picture to write: .png, .jpg, .webp or .tif",
                      [=](const OptionValues& w) { options->each.pictures = {w.text()}; });
-  table.add("--columns", "N", "Pictures side by side [as many as make the sheet about square]",
+  table.add("--columns", "N", "Number of pictures per row [the number that makes the sheet about square]",
             [=](const OptionValues& w) { options->columns = w.whole(0, 1, kMaxColumns); });
   add_sample_options(table, options->each, fmt::to_string(kDefaultSamples));
   add_view_options(table, options->each.view);
   command.get_option("--size")->description(
-      fmt::format("Size of each picture in pixels; 640 is a width [{}x{}]", kSheetPicture.x, kSheetPicture.y));
+      fmt::format("Size of each picture in pixels; 640 alone is a width [{}x{}]", kSheetPicture.x, kSheetPicture.y));
   add_tracing_options(table, options->each.tracing);
-  add_examples(command, {{"promin contact-sheet *.glb -o sheet.png", "all models of the folder"},
+  add_examples(command, {{"promin contact-sheet *.glb -o sheet.png", "shows all models of the folder"},
                          {"promin contact-sheet a.glb b.obj -o sheet.png --columns 2 --size 640x480",
-                          "two models side by side, larger"}});
+                          "shows two larger models side by side"}});
   return {&command, [options] { make_sheet(*options); }};
 }
 

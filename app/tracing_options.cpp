@@ -22,30 +22,30 @@ void add_scene_argument(OptionTable& table, TracingOptions& options) {
 }
 
 void add_device_option(OptionTable& table, std::optional<std::string>& device) {
-  table.add("--device", "NAME|INDEX",
-            "Vulkan device by a part of its name, its index or uuid: and its UUID in `promin devices --json`",
-            [&](const OptionValues& w) {
-              if (w.text().empty())
-                w.refuse("--device takes a part of a device's name, its index or uuid: and its UUID, not \"\"");
-              device = w.text();
-            });
+  table.add(
+      "--device", "NAME|INDEX",
+      "Vulkan device: a part of its name, its index, or uuid: with its UUID, as `promin devices --json` prints it",
+      [&](const OptionValues& w) {
+        if (w.text().empty())
+          w.refuse("--device takes a part of a device's name, its index or uuid: and its UUID, not \"\"");
+        device = w.text();
+      });
 }
 
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   add_device_option(table, options.device);
   table.add("--threads", "N",
-            fmt::format("Threads that work at a time, here and in a CPU device, 1 to {} [as many as there are cores]",
-                        kMaxThreads),
+            fmt::format("Number of threads on the host and in a CPU device, 1 to {} [one per core]", kMaxThreads),
             [&](const OptionValues& w) { options.threads = w.whole(0, 1, kMaxThreads); });
   table.add("--builder", "NAME",
             fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),
             [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });
-  table.add("--bvh", "FILE.pbvh", "Take the BVH from a file of promin-bvh build",
+  table.add("--bvh", "FILE.pbvh", "Read the BVH from a file that `promin-bvh build` wrote",
             [&](const OptionValues& w) { options.bvh = w.text(); });
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
-  table.add_flag("--quiet", "Print nothing but errors", options.is_quiet);
-  table.add_flag("-v,--verbose", "Say what is done and how long it takes", options.is_verbose);
+  table.add_flag("--quiet", "Print only errors", options.is_quiet);
+  table.add_flag("-v,--verbose", "Print each step and how long it takes", options.is_verbose);
 }
 
 void add_measuring_options(OptionTable& table, TracingOptions& options) {

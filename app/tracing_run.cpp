@@ -66,18 +66,18 @@ void take_setup(const SetupStats& setup, RunStats& stats, const Console& console
 }
 
 void tell_end(const RunStats& stats, const Console& console) {
-  console.detail(
-      fmt::format("traced {:.4g} Mrays in {:.1f} ms, wrote in {:.1f} ms, {:.1f} ms in all; held {:.0f} MB at most",
-                  1e-6 * static_cast<double>(stats.rays.total()),
-                  std::accumulate(stats.trace_ms.begin(), stats.trace_ms.end(), 0.0), stats.write_ms, stats.total_ms,
-                  peak_memory_mb()));
+  console.detail(fmt::format(
+      "traced {:.4g} Mrays in {:.1f} ms, wrote files in {:.1f} ms, {:.1f} ms in all; at most {:.0f} MB of memory",
+      1e-6 * static_cast<double>(stats.rays.total()),
+      std::accumulate(stats.trace_ms.begin(), stats.trace_ms.end(), 0.0), stats.write_ms, stats.total_ms,
+      peak_memory_mb()));
 }
 
 void check_validation(const gpu::Device& device, const RunStats& stats) {
   const uint64_t count = gpu::validation_message_count(device);
   if (count == 0) return;
   throw RunError({fmt::format("the Vulkan validation layers reported {} problems", count), stats.device.name,
-                  "report them as a bug of promin"});
+                  "report them as a bug in promin"});
 }
 
 }  // namespace promin::app

@@ -64,8 +64,8 @@ View make_view(const Scene& scene, const ViewOptions& options, const Console& co
   if (own != nullptr) view.camera = pose_camera(scene, *own, options.pose, view.size, console);
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
-    throw UsageError({fmt::format("--crop reaches beyond the picture of {}x{}", view.size.x, view.size.y),
-                      "on the command line", "stay within it or give a larger --size"});
+    throw UsageError({fmt::format("--crop extends beyond the picture of {}x{}", view.size.x, view.size.y),
+                      "on the command line", "choose pixels inside, or give a larger --size"});
   }
   view.samples_per_pixel = options.samples_per_pixel.value_or(View{}.samples_per_pixel);
   view.filter = options.filter;
@@ -123,7 +123,7 @@ std::string describe_framing(Framing framing) {
 
 std::string describe_light(const AssumedLight& light) {
   if (light.has_studio_light) return "the light of a studio";
-  if (light.has_studio) return "a studio's weaker light around the scene's own";
+  if (light.has_studio) return "weak studio light in addition to the scene's own";
   if (light.has_ambient) return fmt::format("a headlight along the view and ambient light of {}", kDefaultAmbient);
   return light.has_headlight ? "a headlight along the view" : "";
 }
@@ -153,8 +153,8 @@ std::string describe_assumptions(const Scene& scene, const ViewOptions& options,
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
   for (const uint32_t index : indices) {
     if (index < scene.lights.size()) continue;
-    throw UsageError({fmt::format("no light {} to leave out", index), scene.file.string(),
-                      fmt::format("it has {}, and the first is 0", scene.lights.size())});
+    throw UsageError({fmt::format("the scene has no light {} to switch off", index), scene.file.string(),
+                      fmt::format("it has {}; the first is number 0", scene.lights.size())});
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Highlights that a grain stretches (KHR_materials_anisotropy; docs/model.md, "Metallic-roughness").
+// Highlights that are stretched along a grain (KHR_materials_anisotropy; docs/model.md, "Metallic-roughness").
 
-// Gives the point with a grain its two alphas, and the roughness and normal at which it sees the environment.
+// Sets the two alphas of a point with a grain, and the roughness and normal at which it sees the environment.
 void stretch(inout ShadingPoint point, vec3 direction) {
   Anisotropy grain = point.anisotropy;
   grain.bent_normal = point.normal;
@@ -27,7 +27,8 @@ void stretch(inout ShadingPoint point, vec3 direction) {
   point.anisotropy = grain;
 }
 
-// As facet_scale, for a positive cosine to the light. The half vector less the normal keeps the digits that its cosine loses.
+// As facet_scale, for a positive cosine to the light. The difference of half vector and normal keeps digits that the
+// cosine loses.
 float anisotropic_scale(vec3 normal, Anisotropy grain, vec3 h, vec3 to_eye, vec3 to_light, float cosine) {
   vec3 across = cross3(normal, grain.along);
   vec2 a = grain.alphas;

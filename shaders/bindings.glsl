@@ -1,31 +1,31 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What every pipeline is bound to. An entry point adds its own buffers, one of them with a Dispatch `dispatch` at its
-// head, before it includes the rest.
+// The bindings of every pipeline. An entry point adds its own buffers, one of them with a Dispatch `dispatch` at its
+// head, before it includes the other files.
 
 layout(constant_id = CONSTANT_FEATURES) const uint FEATURES = 0xFFFFFFFFu;
 layout(constant_id = CONSTANT_MORE_FEATURES) const uint MORE_FEATURES = 0xFFFFFFFFu;
-// The number of entries that the traversal stack needs is one for each node above the deepest, and is known when the
-// tree is built.
+// The number of entries of the traversal stack: one for each node above the deepest. It is known when the tree is
+// built.
 layout(constant_id = CONSTANT_STACK_SIZE) const uint STACK_SIZE = 96u;
 // Rays that an invocation traces together (packet.glsl).
 layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
-// Forms of traversal that suit a driver (DeviceProfile); none changes a bit of a hit. How many steps from node to node
-// all lanes take together before those that are at leaves look into them; 0: each steps on until it is at one.
+// Forms of traversal for different drivers (DeviceProfile); hits have the same bits for each. This is the number of
+// node steps that all lanes take together before those at leaves test them; 0 lets each lane step until it reaches a
+// leaf.
 layout(constant_id = CONSTANT_STEPS_TOGETHER) const uint STEPS_TOGETHER = 0u;
-// Whether solids wait until no lane can go on without them.
+// Whether solids wait until no lane can continue without them.
 layout(constant_id = CONSTANT_WAITS_WITH_SOLIDS) const uint WAITS_WITH_SOLIDS = 0u;
-// All of the kernel's rays ask for any hit.
+// Whether all of the kernel's rays are any-hit rays.
 layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 
-// This is 1 where the pipeline has the feature FEATURE_*, else 0. It is a constant.
+// A constant: 1 if the pipeline has the feature FEATURE_*, else 0.
 #define FEATURE_BIT(FEATURE) ((((FEATURE) < 32u ? FEATURES : MORE_FEATURES) >> ((FEATURE) & 31u)) & 1u)
 
-// A macro, so that what hangs on it is known before functions are put into one another (engine/device/spirv.h).
+// A macro, so that code that depends on it is known before functions are inlined (engine/device/spirv.h).
 #define has(FEATURE) (FEATURE_BIT(FEATURE) != 0u)
 
-// The numbers of kinds of primitive in the tree and behind it, and the numbers of kinds of lights and of models of
-// materials.
+// The number of kinds of primitives in the tree, of unbounded ones, of lights, and of material models.
 const uint TREE_KIND_COUNT = 0u
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/primitives.def"
@@ -42,20 +42,20 @@ const uint MATERIAL_KIND_COUNT = 0u
 #define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/materials.def"
     ;
-// Whether mirror rays that leave the scene may see something else than the background.
+// Whether mirror rays that leave the scene may see anything other than the background.
 const bool SEES_ENVIRONMENT = (FEATURE_BIT(FEATURE_METALLIC_ROUGHNESS) | FEATURE_BIT(FEATURE_SKY)) != 0u;
 
-// VIEW is what a view's dispatches share, and CAMERA the same for what tells of the camera. A dispatch has one
-// workgroup in z, so both are element 0. But where a branch hangs on uniforms alone, lavapipe makes constants of them
-// and compiles the kernel anew for their values (lvp_inline_uniforms.c). Rays that all start at the eye or all go along
-// the view make such branches, so the camera is read at a place that hangs on the workgroup, which lavapipe leaves
-// alone. For all of the block that takes 2 % more instructions.
+// VIEW holds the constants that a view's dispatches share; CAMERA is the same block, for reading the camera. A dispatch
+// has one workgroup in z, so both are element 0. If a branch depends only on uniforms, lavapipe turns them into
+// constants and compiles the kernel again for each of their values (lvp_inline_uniforms.c). Rays that all start at the
+// eye or all have the direction of view cause such branches. The camera is therefore read at an index that depends on
+// the workgroup, which lavapipe does not inline. Reading the whole block this way would take 2 % more instructions.
 layout(std140, set = 0, binding = BINDING_VIEW) uniform ViewBlock { ViewConstants views[1]; };
 #define VIEW views[0]
 #define CAMERA views[gl_WorkGroupID.z]
 
-// Nodes and primitives are bound as storage buffers, which every device has for any scene, and as texel buffers of the
-// same memory, because lavapipe gathers a load from a storage buffer word by word and a texel at once.
+// Nodes and primitives are bound as storage buffers, which work on every device for any scene, and as texel buffers of
+// the same memory, because lavapipe loads storage buffers word by word, but a texel in one step.
 layout(constant_id = CONSTANT_FETCHES_TEXELS) const uint FETCHES_TEXELS = 0u;
 layout(std430, set = 0, binding = BINDING_NODES) readonly buffer Nodes { Node nodes[]; };
 layout(std430, set = 0, binding = BINDING_PRIMITIVES) readonly buffer Primitives { Primitive primitives[]; };
@@ -80,7 +80,7 @@ uint order_of(Primitive p) { return p.c.y; }
 uint object_hash_of(Primitive p) { return p.c.w & 0xFFFFu; }
 uint primitive_hash_of(Primitive p) { return p.c.w >> 16; }
 
-// What the words of a child are.
+// Accessors for the word of a child.
 bool is_inner(uint child) { return (child & CHILD_IS_LEAF) == 0u; }
 uint first_of_leaf(uint child) { return child & CHILD_FIRST_MASK; }
 uint count_of_leaf(uint child) { return ((child >> CHILD_COUNT_SHIFT) & CHILD_COUNT_MASK) + 1u; }

@@ -10,8 +10,8 @@ uvec2 pixel_in_block(uint lane) {
   return uvec2(x, y);
 }
 
-// The direction is D = V - O with V on the viewport at distance 1 along `look`. So t counts in viewport distances, and
-// t > near is what lies beyond the near plane. D is not normalised.
+// The direction is D = V - O with V on the viewport at distance 1 along `look`. t is therefore in viewport distances,
+// and points beyond the near plane have t > near. D is not normalised.
 Ray ray_through(uvec2 pixel, vec2 place) {
   precise vec2 from_center = (vec2(pixel) - CAMERA.film_center.xy) + place;
   precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;
@@ -25,7 +25,8 @@ Ray ray_through(uvec2 pixel, vec2 place) {
 
 Ray camera_ray(uvec2 window_pixel) { return ray_through(window_corner() + window_pixel, sample_point()); }
 
-// With FEATURE_LISTED_SAMPLES, of a record of the film as the host has put it there (engine/trace/film.h).
+// Returns the ray for a record of the film that the host has written, with FEATURE_LISTED_SAMPLES
+// (engine/trace/film.h).
 Ray listed_ray(uint record) {
   uvec4 listed = pixels[record];
   return ray_through(uvec2(listed.z & 0xFFFFu, listed.z >> 16), uintBitsToFloat(listed.xy));

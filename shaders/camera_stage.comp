@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The first stage of a picture: a sample of each pixel, with its camera ray and the shadow rays of its hit. A lane
-// takes PACKET_SIZE pixels that lie side by side; paths that a mirror leads on go to the stream (stream.glsl).
+// The first stage of a picture: one sample of each pixel, with its camera ray and the shadow rays of its hit. A lane
+// traces PACKET_SIZE neighbouring pixels. Paths that continue at a mirror go to the stream (stream.glsl).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -41,7 +41,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "loop_check.glsl"
 #include "pixel_packet.glsl"
 
-// Keeps what the sample shows, of a list its film's only one.
+// Stores the id that the sample shows; on the film of a list it is the only one.
 void put_sample_id(uint pixel, uint order) {
   if (has(FEATURE_LISTED_SAMPLES)) {
     pixels[pixel].w = order;
@@ -64,7 +64,7 @@ void put_record(Path path, Hit hit) {
   if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 
-// Debug views show no light, but their AOVs need what is lit.
+// Debug views show no light, but their AOVs need shading points.
 const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | uint(DEBUG_VIEW == DEBUG_VIEW_NONE);
 
 // The texture coordinates of a hit, of the first set; 0 where the surface shows no texture.
@@ -84,7 +84,7 @@ uvec4 normal_and_depth(Ray ray, Hit hit) {
   return floatBitsToUint(vec4(surface.normal, depth));
 }
 
-// Keeps what the middle sample has met.
+// Stores the AOVs of the middle sample's hit.
 void put_aovs(uint pixel, Ray ray, Hit hit, ShadingPoint point) {
   if (!is_middle_sample()) return;
   uint count = window_pixel_count();
@@ -108,7 +108,7 @@ void put_aovs(uint pixel, Ray ray, Hit hit, ShadingPoint point) {
   pixels[AOV_MEASURES * count + pixel] = uvec4(floatBitsToUint(measures), step_counts.x + step_counts.y);
 }
 
-// Shades what a pixel's camera ray hit, without any source. Returns what is seen of it so far.
+// Shades the hit of a pixel's camera ray without light sources. Returns its radiance so far.
 vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   put_record(path, hit);
   bool is_hit = hit.primitive != NO_PRIMITIVE;
@@ -132,8 +132,8 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   return light;
 }
 
-// One pixel after the other. It is copied out of the packet and back, because CPU drivers are slow at arrays whose place
-// is not constant, and drivers unroll no loop with a loop within, such as textures have.
+// One pixel after the other. Each is copied out of the packet and back, because CPU drivers are slow with arrays at
+// variable indices, and drivers do not unroll loops with inner loops, such as those of textures.
 void arrive() {
   uint at = 0u;
   do {
@@ -163,7 +163,7 @@ void arrive() {
   } while (at < PACKET_SIZE);
 }
 
-// One source's contributions, and a packet of the shadow rays that they need.
+// Computes one light source's contributions, and a packet of the shadow rays that they need.
 void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     contributions[i] = vec3(0.0);
@@ -184,10 +184,10 @@ void aim_at_source(LightRecord light) {
   }
 }
 
-// Sends a shadow ray that has met a surface that blends on behind it. Whether there is one.
+// Continues a shadow ray behind a surface that blends. Returns whether it continues.
 bool goes_through_layer(uint i, uint layers) {
   Hit hit = found[i];
-  // Rays that are through, or blocked, take no part any more.
+  // Rays that have arrived or are blocked take no further part.
   packet[i].tmin = INFINITY;
   if (hit.primitive == NO_PRIMITIVE) return false;
   blockers[i] = hit;
@@ -200,7 +200,7 @@ bool goes_through_layer(uint i, uint layers) {
   return true;
 }
 
-// Written out, as arrive.
+// Written out like arrive.
 bool go_through_layers(uint layers) {
   bool is_any_left = goes_through_layer(0u, layers);
   if (PACKET_SIZE > 1u && goes_through_layer(1u, layers)) is_any_left = true;
@@ -230,7 +230,7 @@ void add_contributions(uint source) {
   }
 }
 
-// Hands a path over to the stream, as one of its turn -1. Returns its number.
+// Adds a path to the stream, to its turn -1. Returns its number.
 uint put_path(Path path) {
   begin_stream();
   uint number = atomicAdd(stream.turn.z, 1u);
@@ -251,7 +251,7 @@ uint put_path(Path path) {
   return number;
 }
 
-// Puts the path that leads on from a surface of glass, and lets another of its rays wait.
+// Adds the path that continues at a surface of glass, and lets another of its rays wait.
 void leave_glass(Path path, ShadingPoint point) {
   Children children;
   part_path(path, point, false, children);
@@ -273,7 +273,7 @@ Ray ray_of(uint index) {
   return camera_ray(uvec2(index % window_size().x, index / window_size().x));
 }
 
-// Adds what is seen of a pixel to the parts of its light.
+// Adds the radiance of a pixel to the parts of its light.
 void add_parts(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_surface, float coverage) {
   if (!is_on_surface) {
     add_beyond(path, light);
@@ -284,7 +284,7 @@ void add_parts(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_s
   add_seen_part(path.pixel, path.part, weight, own, light);
 }
 
-// Adds what is seen of a pixel to its path, and sends that on.
+// Adds the radiance of a pixel to its path, and continues the path.
 void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_surface) {
   float coverage = is_on_surface ? coverage_of(path, point) : 1.0;
   add_radiance(path, light, coverage);
@@ -316,7 +316,7 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on
   }
 }
 
-// One pixel after the other where there is much to do for each, as in arrive.
+// One pixel after the other if each takes much work, as in arrive.
 void leave_one_by_one() {
   uint at = 0u;
   do {
@@ -353,9 +353,9 @@ void leave() {
   }
 }
 
-// The first turn traces camera rays, each of the others shadow rays to one source. So there is one copy of the
-// traversal for both, which halves what drivers compile. Shading is in the loop around that of the turns, as CPU drivers
-// execute all of a loop's body in each of its turns: so it is twice what it has to be, instead of once a source.
+// The first turn traces camera rays, each other turn shadow rays to one light source. A single copy of the traversal
+// serves both, which halves the code to compile. CPU drivers execute the whole body of a loop in each of its turns.
+// Shading is therefore in the loop around that of the turns, where it is executed twice and not once per source.
 void trace_pixels() {
   uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
   uint source = 0u;
@@ -366,7 +366,7 @@ void trace_pixels() {
     do {
       if (aims) aim_at_source(load_light(VIEW.first_index.y + source));
       aims = false;
-      // Of what blends the nearest comes first.
+      // The nearest of surfaces that blend comes first.
       trace_packet(!is_first_turn && PASSES == 0u);
       passes_backs = false;
       sight_width = 0.0;

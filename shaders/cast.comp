@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Answers rays: the nearest hit, or where ALL_ASK_FOR_ANY whether there is one.
+// Casts rays: finds the nearest hit or, with ALL_ASK_FOR_ANY, whether there is any hit.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Takes rays and writes records; a lane takes PACKET_SIZE rays in a row. This is the body of cast.comp, which differs
-// from a variant only in what it includes before this.
+// Casts rays and writes records; a lane casts PACKET_SIZE consecutive rays. This is the body of cast.comp; variants
+// differ only in the files that they include before it.
 
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;
@@ -13,7 +13,7 @@ HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
   HitRecord miss = HitRecord(uvec4(floatBitsToUint(INFINITY), NO_ORDER, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   if (hit.primitive == NO_PRIMITIVE) return miss;
-  // Who asks for any hit is not told where.
+  // An any-hit ray gets no position.
   if (ALL_ASK_FOR_ANY != 0u) return HitRecord(uvec4(0u, hit.order, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   precise float t = hit.t * units_of(request);
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
@@ -28,7 +28,7 @@ void main() {
   RayRecord requests[PACKET_SIZE];
   uint indices[PACKET_SIZE];
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    // A lane whose rays end before the packet does casts the last ray once more.
+    // A lane with fewer rays than the packet casts the last ray again.
     indices[i] = min(first + i, end_ray() - 1u);
     requests[i] = load_ray(indices[i]);
     packet[i] = make_ray(requests[i].origin_tmin.xyz, requests[i].direction_tmax.xyz, requests[i].origin_tmin.w,

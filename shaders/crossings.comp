@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Counts each ray's crossings with all primitives, or where LISTS_CROSSINGS lists them (layout.h, HitRecord); a lane
-// takes PACKET_SIZE rays in a row. Both visit all that a ray meets, so ALL_ASK_FOR_ANY suits them: in any order.
+// Counts each ray's crossings with all primitives or, with LISTS_CROSSINGS, lists them (layout.h, HitRecord). A lane
+// traces PACKET_SIZE consecutive rays. Both visit everything that a ray hits, in any order, so ALL_ASK_FOR_ANY suits
+// them.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -25,7 +26,7 @@
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;
 
-// What was put in a list, as the host reads it.
+// Converts a list entry to the form that the host reads.
 void finish(uint place, Ray ray, float unit) {
   HitRecord record = hits[place];
   vec2 weights = uintBitsToFloat(record.a.zw);
@@ -39,7 +40,7 @@ void main() {
   uint first = first_ray() + PACKET_SIZE * (group_number() * LANES + gl_LocalInvocationIndex);
   if (first >= end_ray()) return;
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    // A lane whose rays end before the packet does takes the last ray again, which then takes no part.
+    // A lane with fewer rays than the packet repeats the last ray, which then takes no part.
     bool is_ray = first + i < end_ray();
     uint index = is_ray ? first + i : end_ray() - 1u;
     RayRecord request = load_ray(index);

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What rays pass by: holes that alpha of textures and vertices makes, and backs that a material does not show
-// (docs/model.md, "Alpha and sides"). A hole is told where a triangle is intersected, for every ray of a picture, so
-// that which hit is the nearest depends neither on the tree nor on how often a triangle lies in it.
+// Parts of triangles that rays ignore: holes from the alpha of textures and vertices, and backs that a material does
+// not show (docs/model.md, "Alpha and sides"). Holes are tested when a triangle is intersected, for every ray of a
+// picture, so that the nearest hit depends neither on the tree nor on how often a triangle is in it.
 
 MaterialRecord material_of(SurfaceRecord surface) {
   return load_material(VIEW.first_index.x + (surface.corners_material.w & SURFACE_MATERIAL_MASK));
 }
 
-// Textures and vertices only take from alpha.
+// Textures and vertices can only reduce alpha.
 bool is_all_hole(MaterialRecord material) {
   return (flags_of(material) & MATERIAL_HAS_HOLES) != 0u && material.cover.x < material.cover.y;
 }
@@ -28,7 +28,7 @@ bool may_have_holes(uint index) {
   return has_holes(material_of(surface), surface);
 }
 
-// The material's, by the vertices' and the texture's.
+// Returns the alpha of the material times those of the vertices and the texture.
 float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3 weights, float facing,
                float cone_width) {
   precise float alpha = material.cover.x;
@@ -47,7 +47,7 @@ bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool
   SurfaceRecord surface = load_surface(index);
   MaterialRecord material = material_of(surface);
   if (PASSES != 0u && is_on_open_edge && is_seen_through(material)) return true;
-  // As shading has it.
+  // The same as in shading.
   float facing = dot3(triangle_normal(p), direction);
   if (has(FEATURE_ONE_SIDED) && passes_backs && facing > 0.0 && (flags_of(material) & MATERIAL_IS_ONE_SIDED) != 0u) {
     return true;
@@ -61,7 +61,7 @@ bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool
   return alpha_at(material, p, surface, weights, cosine, cone_width) < material.cover.y;
 }
 
-// How much of the light from behind a hit covers: 1 unless its material blends.
+// Returns the opacity of a hit: 1 unless its material blends.
 float coverage_of_hit(Hit hit, vec3 direction) {
   SurfaceRecord surface = load_surface(hit.primitive);
   MaterialRecord material = material_of(surface);
@@ -72,8 +72,8 @@ float coverage_of_hit(Hit hit, vec3 direction) {
   return clamp(alpha_at(material, p, surface, weights, 1.0, 0.0), 0.0, 1.0);
 }
 
-// What is left behind a hit of the share of a source's light that arrived at it, where the shadow ray has gone through
-// so many surfaces before.
+// Returns the part of a source's light that remains behind a hit. `arriving` is the part that arrives at it, and
+// `layers` the number of surfaces that the shadow ray has already passed.
 float share_behind(Hit hit, vec3 direction, float arriving, uint layers) {
   float coverage = layers < MOST_LAYERS ? coverage_of_hit(hit, direction) : 1.0;
   precise float left = arriving * (1.0 - coverage);

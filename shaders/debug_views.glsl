@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Debug views: what pictures show instead of light (docs/shadings.md), which is the hit of a camera ray or the cost of
-// finding it. Each view of promin/kinds/debug_views.def has a function *_color here. It takes the camera ray,
-// its hit and `normal_and_depth`, which are those of the AOVs, and is called on a miss as well.
+// Debug views, which pictures show in place of light (docs/shadings.md): properties of a camera ray's hit, or the cost
+// of finding it. Each view of promin/kinds/debug_views.def has a function *_color here. It takes the camera ray, its
+// hit and `normal_and_depth`, which are those of the AOVs, and is called on a miss as well.
 
 const uint DEBUG_VIEW = (MORE_FEATURES >> DEBUG_VIEW_SHIFT) & DEBUG_VIEW_MASK;
 
-// Makes a colour of a hash of 15 bits. It is never black.
+// Returns the colour for a hash of 15 bits, which is never black.
 vec3 color_of_hash(uint hash) {
   vec3 parts = vec3((uvec3(hash) >> uvec3(0u, 5u, 10u)) & 31u);
   precise vec3 color = 0.03 + parts * 0.03;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Names for the words of `dispatch` (layout.h, Dispatch). Whoever declares the buffer that holds it includes this file
-// afterwards.
+// Names for the words of `dispatch` (layout.h, Dispatch). Include this file after declaring the buffer that contains
+// it.
 
 // Pictures: blocks [first, end) are traced, one sample of each pixel.
 uint first_block() { return dispatch.range.x; }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Shows an encoded film (encode_film.comp) in a window of any size. Between the film's pixels it interpolates; where
-// the window has as many, each shows its own.
+// Shows an encoded film (encode_film.comp) in a window of any size. It interpolates between the film's pixels; if the
+// window has the same size, each pixel shows its own.
 #version 450
 
 // 1 for surfaces that take linear values and encode them themselves.

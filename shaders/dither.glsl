@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Noise for codes of 8 bits, as engine/image/dither.h has it for files.
+// Noise for 8-bit values, the same as in engine/image/dither.h for files.
 
 uint mix_bits(uint x) {
   x ^= x >> 16;

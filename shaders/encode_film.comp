@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Encodes a film's pixels for a window, as PNG files do: divides the sum over samples by their number, exposes it, maps
-// its tones and encodes it to sRGB in 8 bits.
+// Encodes a film's pixels for a window as for PNG files: divides the sum over samples by their number, applies exposure
+// and tone mapping, and encodes to 8-bit sRGB.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "layout.h"
@@ -24,7 +24,7 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
 #include "tone_mapping.glsl"
 #include "dither.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
-// The factor of the exposure, which the window changes without another pipeline.
+// The factor of the exposure, which the window can change without another pipeline.
 layout(std430, set = 0, binding = 1) readonly buffer Exposure { float exposure_factor; };
 
 vec3 encode_srgb(vec3 linear) {
@@ -32,7 +32,7 @@ vec3 encode_srgb(vec3 linear) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }
 
-// The light of a pixel as it is shown, of which unlit surfaces send so much and cover the share w.
+// Returns the displayed light of a pixel. `unlit` is the light of its unlit surfaces, which cover the part w.
 vec3 shown_light(vec3 radiance, vec4 unlit) {
   float exposure = exposure_factor;
   float lit = max(1.0 - unlit.w, 0.0);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What surrounds the scene (docs/model.md, "Environment"): a sky, or else the same ambient light from everywhere.
+// The environment of the scene (docs/model.md, "Environment"): a sky, or uniform ambient light.
 
-// Of rays that were never deflected by a surface with an environment: they see the background.
+// The roughness of rays that were never deflected by a surface with an environment: they see the background.
 const float NO_ENVIRONMENT = -1.0;
 
-// Where all features are compiled in, a scene may have no sky. Its levels are then of side 0, and what is fetched of
-// them is put aside: no branch may hang on a uniform.
+// If all features are compiled in, a scene may have no sky. Its levels then have side 0, and values fetched from them
+// are discarded, because no branch may depend on a uniform.
 bvec3 has_no_sky() { return bvec3(VIEW.first_lookup.z == 0u); }
 
 // One of the prefiltered levels (engine/environment/pack_sky.h): its first entry, and its side in texels.
@@ -20,7 +20,7 @@ uint side_of_sky_level(uint shift) {
   return max(side >> shift, min(side, LEAST_SKY_SIDE));
 }
 
-// Where a direction of any length lies on the map (engine/environment/octahedron.h), 0...1.
+// Returns the position of a direction of any length on the map (engine/environment/octahedron.h), 0...1.
 vec2 octahedral_place(vec3 direction) {
   precise float size = abs(direction.x) + abs(direction.y) + abs(direction.z);
   precise vec2 seen = direction.xz / size;
@@ -85,8 +85,8 @@ vec3 environment_radiance(vec3 direction, float roughness) {
   return mix(radiance, VIEW.ambient.xyz, has_no_sky());
 }
 
-// The light of all directions over pi, weighted by the cosine to the unit normal. It is 0 at least: the few coefficients
-// ring around a sun.
+// Returns the light of all directions divided by pi, weighted by the cosine to the unit normal. It is clamped to 0,
+// because the few coefficients ring around a sun.
 vec3 ambient_at(vec3 normal) {
   if (!has(FEATURE_SKY)) return VIEW.ambient.xyz;
   precise float xy = normal.x * normal.y;
@@ -101,14 +101,14 @@ vec3 ambient_at(vec3 normal) {
   return mix(max(light, vec3(0.0)), VIEW.ambient.xyz, has_no_sky());
 }
 
-// The roughness at which perfect mirrors see the sky; where there is none, they see the background.
+// Returns the roughness at which perfect mirrors see the sky; without a sky they see the background.
 float perfect_mirror_roughness() {
   if (!has(FEATURE_SKY)) return NO_ENVIRONMENT;
   return mix(0.0, NO_ENVIRONMENT, has_no_sky().x);
 }
 
-// The distance from the upper edge of the picture to where a ray shows, over the picture's height. All samples of a
-// pixel have that of its middle, so that a backdrop has no errors.
+// Returns the distance from the upper edge of the picture to a ray's position in it, relative to the picture's height.
+// All samples of a pixel use its middle, so that a backdrop has no sampling error.
 float height_on_backdrop(vec3 origin, vec3 direction) {
   vec3 rise = CAMERA.backdrop_rise.xyz;
   float rows = CAMERA.backdrop_bottom.w;
@@ -131,7 +131,8 @@ vec3 backdrop_behind(vec3 origin, vec3 direction) {
 
 bool is_backdrop_shown() { return VIEW.background.w == SHOWS_BACKDROP; }
 
-// What a ray brings that leaves the scene without any deflection. `is_of_camera`: without mirrors or glass between.
+// Returns the radiance of a ray that leaves the scene without any deflection. `is_of_camera`: without mirrors or glass
+// in between.
 vec3 radiance_behind(vec3 origin, vec3 direction, bool is_of_camera) {
   vec3 radiance = VIEW.background.xyz;
   if (has(FEATURE_SHOWN_SKY)) {
@@ -144,7 +145,7 @@ vec3 radiance_behind(vec3 origin, vec3 direction, bool is_of_camera) {
   return radiance;
 }
 
-// What a ray brings that leaves the scene behind mirrors or glass; `roughness` is the largest of those on its way, or
+// Returns the radiance of a ray that leaves the scene after mirrors or glass. `roughness` is the largest on its way, or
 // NO_ENVIRONMENT.
 vec3 radiance_beyond(vec3 origin, vec3 direction, float roughness) {
   if (!SEES_ENVIRONMENT || roughness == NO_ENVIRONMENT) return radiance_behind(origin, direction, false);

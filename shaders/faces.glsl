@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a ray meets at a face of glass, and at mirrors that hang on the angle (docs/model.md, "Glass").
+// Reflection and refraction at faces of glass, and at mirrors that depend on the angle (docs/model.md, "Glass").
 
-// The material's glass, without its texture.
+// Sets the material's glass, without its texture.
 void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media, uint object) {
   Glass glass = Glass(vec3(0.0), vec3(0.0), direction, media, 1.0, NO_ENVIRONMENT, 0.0, object);
   uint number = glass_number(point.material);
@@ -10,7 +10,7 @@ void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media, uint 
   point.glass = glass;
 }
 
-// Sends the ray on about this normal. Whether it can go on.
+// Refracts the ray about this normal. Returns false on total reflection.
 bool refract_about(vec3 normal, vec3 direction, Face face, out vec3 refracted) {
   float cosine = min(-dot3(normal, direction), 1.0);
   float k = cosine2_beyond(face, cosine);
@@ -20,8 +20,8 @@ bool refract_about(vec3 normal, vec3 direction, Face face, out vec3 refracted) {
   return k > 0.0;
 }
 
-// Sends the ray on about the point's normal, or what an interpolated one would keep on this side about the surface's own.
-// Whether it can go on.
+// Refracts the ray about the point's normal, or about the surface's own if an interpolated normal would keep the ray on
+// this side. Returns false on total reflection.
 bool refract_at(ShadingPoint point, vec3 direction, Face face, out vec3 refracted) {
   // An interpolated normal may be turned away from the eye.
   vec3 normal = dot3(point.normal, direction) < 0.0 ? point.normal : point.geometric_normal;
@@ -32,13 +32,13 @@ bool refract_at(ShadingPoint point, vec3 direction, Face face, out vec3 refracte
   return goes_on;
 }
 
-// Where the ray goes on, and what Phong's material reflects and lets through. `hangs_on_angle`: by Fresnel; `reflected` is
-// the share then.
+// Computes the refracted ray, and the parts that a Phong material reflects and transmits. `hangs_on_angle`: by Fresnel,
+// and `reflected` is then the reflected part.
 void meet_phong(inout ShadingPoint point, GlassRecord record, bool lets_through, bool is_total, float reflected) {
   Glass glass = point.glass;
   bool hangs_on_angle = has(FEATURE_FRESNEL) && (record.bits.x & GLASS_IS_FRESNEL) != 0u;
   precise vec3 mirror = (hangs_on_angle ? reflected : 1.0) * glass.mirror;
-  // Total reflection takes the share of what would go through.
+  // On total reflection the mirror gets the weight of the transmitted light.
   if (lets_through && !hangs_on_angle && is_total) mirror += record.transmission.xyz;
   precise vec3 through = (hangs_on_angle ? 1.0 - reflected : 1.0) * record.transmission.xyz;
   glass.mirror = mirror;
@@ -46,7 +46,7 @@ void meet_phong(inout ShadingPoint point, GlassRecord record, bool lets_through,
   point.glass = glass;
 }
 
-// The reflectance of a metallic-roughness material beside the medium that it is in.
+// Sets the reflectance of a metallic-roughness material in its surrounding medium.
 void meet_metallic_roughness(inout ShadingPoint point, GlassRecord record, bool is_total, Face face) {
   MaterialRecord material = point.material;
   Glass glass = point.glass;
@@ -56,7 +56,7 @@ void meet_metallic_roughness(inout ShadingPoint point, GlassRecord record, bool 
   } else if (face.from == face.to) {
     material.b = vec4(0.0);
   } else {
-    // The material has what it is beside air.
+    // The material's own values are for air.
     float in_air = normal_reflectance(Face(1.0, record.transmission.w, face.beyond));
     precise vec3 reflectance = in_air > 0.0 ? material.b.xyz * (normal_reflectance(face) / in_air)
                                             : record.reflectance.xyz * normal_reflectance(face);
@@ -111,8 +111,8 @@ float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint colo
   return face.from <= face.to ? cosine : beyond;
 }
 
-// Of metallic-roughness materials, what goes through: what is not reflected, in the base colour, half of it at each face
-// of a volume. A coat and a sheen are above it.
+// Sets the transmitted part of a metallic-roughness material: the light that is not reflected, tinted by the base
+// colour, half of it at each face of a volume. A coat and a sheen lie above it.
 void let_through(inout ShadingPoint point) {
   uint number = glass_number(point.material);
   if (model_of(point) != MATERIAL_METALLIC_ROUGHNESS || number == 0u) return;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The family of a node: those of its children that are left to visit, in a word. Its upper bits are the node's index.
-// Below are how many children are left, less one, and the places in the node of the first three of them, the nearest
-// first. Of four the last is not told: it is the one that the others are not.
-// Where ALL_ASK_FOR_ANY the lowest bits have one for each child that is left instead, and these are visited as they
-// come: rays that find no hit, as most do, visit all that they meet in any order.
+// The family of a node: the children that remain to be visited, in one word. The upper bits are the node's index. Below
+// are the number of remaining children minus one, and the places in the node of the first three of them, the nearest
+// first. The last of four is not stored, because it is the one that the others are not. With ALL_ASK_FOR_ANY the lowest
+// bits instead have one bit for each remaining child, and these are visited in the order of places: rays without a hit,
+// which are most, visit all children that they hit in any order.
 const uint FAMILY_NODE_SHIFT = 8u;
 const uint FAMILY_OTHERS_SHIFT = 6u;
 const uint FAMILY_THIRD_SHIFT = 4u;
@@ -25,13 +25,13 @@ uint component_of_lowest_bit(uvec4 v, uint mask) {
   return (mask & 1u) != 0u ? v.x : ((mask & 2u) != 0u ? v.y : ((mask & 4u) != 0u ? v.z : v.w));
 }
 
-// Of a node's children the one that is next in its family.
+// Returns the next child of a node's family.
 uint next_of_family(uint family, uvec4 children) {
   if (ALL_ASK_FOR_ANY != 0u) return component_of_lowest_bit(children, family);
   return component_of(children, family & FAMILY_PLACE_MASK);
 }
 
-// A family without the child that is next; NO_FAMILY after the last.
+// Returns a family without its next child; NO_FAMILY after the last.
 uint without_next(uint family) {
   if (ALL_ASK_FOR_ANY != 0u) {
     uint left = family & (family - 1u);
@@ -58,8 +58,8 @@ uvec4 key_where(bvec4 condition, uvec4 keys) {
                condition.w ? keys.w : NOT_MET);
 }
 
-// Which children are met: of each the bits of where a ray comes in first, which are in their order as none is negative,
-// or NOT_MET. Where ALL_ASK_FOR_ANY, x has a bit for each.
+// The children that are hit: for each the bits of the first ray's entry distance, or NOT_MET. The bits sort like the
+// distances, because none is negative. With ALL_ASK_FOR_ANY, x has a bit for each child.
 const uvec4 NONE_MET = uvec4(ALL_ASK_FOR_ANY != 0u ? 0u : NOT_MET);
 
 uvec4 add_met(uvec4 met, bvec4 are_met, vec4 entries) {
@@ -69,11 +69,11 @@ uvec4 add_met(uvec4 met, bvec4 are_met, vec4 entries) {
   if (are_met.z) mask |= 4u;
   if (are_met.w) mask |= 8u;
   uvec4 first = min(met, key_where(are_met, floatBitsToUint(entries)));
-  // No branch: glslang 12 fails over some.
+  // No branch, because glslang 12 fails on some.
   return ALL_ASK_FOR_ANY != 0u ? uvec4(mask) : first;
 }
 
-// Of the first `count` children those that are met.
+// Returns the family of those of the first `count` children that are hit.
 uint family_of(uint node, uint count, uvec4 met) {
   if (ALL_ASK_FOR_ANY != 0u) {
     uint mask = met.x & ((1u << count) - 1u);

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buffer that the stages of a picture write to.
 
-// `pixels` holds the records of pixels (layout.h, AOV_* and what follows there), and behind them the stream of paths
-// that camera_stage.comp leaves to others (stream.glsl). `ray_counts` counts rays (x = primary, y = shadow, z =
+// `pixels` holds the records of pixels (layout.h, from AOV_* on), and after them the stream of paths that
+// camera_stage.comp leaves to later stages (stream.glsl). `ray_counts` counts rays (x = primary, y = shadow, z =
 // reflection) and how often loops were cut (w), `pass_counts` how often rays passed through a surface (x), refracted
-// rays (y) and primary rays that have met something (z). Each lane of a workgroup has a counter of its own, because all
-// lanes would queue for a single one, and a sum over the group would need barriers, for which lavapipe 22.3 runs a
-// coroutine per subgroup and leaks it.
+// rays (y) and primary rays with a hit (z). Each lane of a workgroup has a counter of its own, because all lanes would
+// queue for a single one, and a sum over the group would need barriers, for which lavapipe 22.3 runs a coroutine per
+// subgroup and leaks it.
 layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   FILM_HEAD(dispatch, film_stream, ray_counts, pass_counts)
   uvec4 pixels[];
@@ -15,7 +15,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
 
 #include "dispatch.glsl"
 
-// x = passes, y = refracted rays, z = primary rays that have met something.
+// x = passes, y = refracted rays, z = primary rays with a hit.
 void add_passes(uvec3 counts) {
   uint lane = gl_LocalInvocationIndex;
   if (counts.x > 0u) atomicAdd(pass_counts[lane].x, counts.x);

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Ends a turn of the stream: of each path of its list adds what the shadow rays let through, traces its ray, shades
-// what that has met and asks for shadow rays and for the mirror ray. Where there are more sources than a turn takes, a
-// bounce takes several turns, which trace the same ray again, and the last asks for the mirror ray.
+// Ends a turn of the stream. For each path of its list it adds the contributions of shadow rays that were not blocked,
+// traces the path's ray, shades its hit, and requests shadow rays and the mirror ray. If there are more light sources
+// than a turn can take, a bounce takes several turns, which trace the same ray again; the last one requests the mirror
+// ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -30,7 +31,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "lights.glsl"
 #include "environment.glsl"
 #include "shading.glsl"
-// A lane may add twice to a part in a turn, and texels would not tell it of the first.
+// A lane may add twice to a part in a turn, and texels would not show it the first addition.
 #define load_sum(record) uintBitsToFloat(pixels[record])
 #include "path.glsl"
 #include "tree.glsl"
@@ -44,10 +45,10 @@ uint mirror_ray_count = 0u;
 uint refraction_count = 0u;
 uint pass_count = 0u;
 
-// Of the path's ray, the number of mirrors that it comes from.
+// Returns the number of bounces before the path's ray.
 uint bounces_of(Path path) { return KEEPS_PROGRESS != 0u ? path.bounces : turn / turns_of_bounce() + 1u; }
 
-// Adds the sources of the last turn to what is seen.
+// Adds the light sources of the last turn to the radiance.
 vec3 add_contributions(uint path, vec3 seen) {
   uint sources = sources_at(turn - 1u);
   uint source = 0u;
@@ -65,7 +66,7 @@ vec3 add_contributions(uint path, vec3 seen) {
   return seen;
 }
 
-// Stores what a source of this turn adds where nothing is between, and asks for the shadow ray.
+// Stores the unblocked contribution of a light source of this turn, and requests its shadow ray.
 void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
   LightSample sampled = sample_light(light, point.position);
@@ -81,7 +82,7 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
       pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(is_behind ? 1.0 : 0.0);
       store_vector(record_of_path(path) + (is_behind ? RECORD_SHADOW_BEHIND : RECORD_SHADOW_ORIGIN), ray.origin);
     } else {
-      // All begin at one place.
+      // All start at the same point.
       store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
     }
     asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
@@ -100,11 +101,11 @@ void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
       ++source;
     }
   } while (source < sources);
-  // A bounce's last turn may take fewer: the answers to the turn before are no asks.
+  // The last turn of a bounce may have fewer sources; answers of the turn before must not count as requests.
   for (; source < sources_of_turn; ++source) words[ask_of_source(path, source)] = ASK_NOTHING;
 }
 
-// Adds all sources to what is seen, where nothing casts shadows.
+// Adds all light sources to the radiance if nothing casts shadows.
 vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
   uint source = 0u;
   do {
@@ -122,17 +123,17 @@ vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
   return seen;
 }
 
-// Where the path's ray comes from.
+// Returns the origin (LOG_*) of the path's ray.
 uint kind_of_ray(Path path) {
   if (has(FEATURE_GLASS)) return path.kind;
   return has(FEATURE_BLENDING) && path.passed_t >= 0.0 ? LOG_THROUGH : LOG_REFLECTION;
 }
 
-// The numbers of the path at hand that store_passed and store_glass keep, by prepare_sight.
+// The current path's values of store_passed and store_glass, set by prepare_sight.
 uint path_progress;
 uvec4 path_glass;
 
-// Asks for the path's next ray.
+// Requests the path's next ray.
 uint ask_ray(uint number, Path path) {
   store_vector(record_of_weight(number, turn + 1u), path.weight);
   store_vector(record_of_path(number) + RECORD_ORIGIN, path.origin);
@@ -147,15 +148,15 @@ uint ask_ray(uint number, Path path) {
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
 
-// Asks for the path's mirror ray, or else for the turn after the shadow rays that it waits for.
+// Requests the path's mirror ray, or else the turn after the shadow rays that it waits for.
 uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
   if (!leads_on(point, bounces_of(path)) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
   ++mirror_ray_count;
   return ask_ray(number, path);
 }
 
-// With FEATURE_GLASS, where a ray leads no further: asks for the last of those that wait, or else as ask_mirror. Of the
-// path rays and radiance are those so far.
+// With FEATURE_GLASS, at the end of a ray: requests the last of the waiting rays, or else as ask_mirror. The path has
+// the number of rays and the radiance so far.
 uint ask_waiting(uint number, Path path, bool has_seen) {
   uint waiting = path_glass.w & ((1u << KIND_SHIFT) - 1u);
   if (waiting == 0u) {
@@ -186,7 +187,7 @@ uint ask_waiting(uint number, Path path, bool has_seen) {
   return ask_ray(number, path);
 }
 
-// Asks for the rays that a point on glass sends the path on.
+// Requests the rays on which a path continues at a point on glass.
 uint ask_beyond(uint number, inout Path path, ShadingPoint point, bool touches) {
   Children children;
   part_path(path, point, touches, children);
@@ -200,8 +201,8 @@ uint ask_beyond(uint number, inout Path path, ShadingPoint point, bool touches) 
   return ask_ray(number, path);
 }
 
-// With FEATURE_GLASS, what a path asks for whose ray has met nothing while others wait: they begin with a bounce, so until
-// then it asks for the same ray.
+// With FEATURE_GLASS, returns the request of a path whose ray has missed while others wait: these start with a bounce,
+// so until then it requests the same ray again.
 uint ask_after_miss(uint number, Path path, Ray ray) {
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   for (uint source = 0u; source < sources_of_turn; ++source) words[ask_of_source(number, source)] = ASK_NOTHING;
@@ -210,7 +211,7 @@ uint ask_after_miss(uint number, Path path, Ray ray) {
   return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
 }
 
-// Asks for the path's ray from behind what it has met on.
+// Requests the continuation of the path's ray behind its hit.
 uint ask_through(uint number, inout Path path, Ray ray, Hit hit, float coverage) {
   precise vec3 weight = coverage * path.weight;
   store_vector(record_of_weight(number, turn), weight);
@@ -223,12 +224,12 @@ uint ask_through(uint number, inout Path path, Ray ray, Hit hit, float coverage)
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
 
-// Shades what the path's ray has met. Returns what the path asks for.
+// Shades the hit of the path's ray. Returns the path's request.
 uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   uint bounces = bounces_of(path);
   if (hit.primitive == NO_PRIMITIVE) {
     bool has_waiting = has(FEATURE_GLASS) && (path_glass.w & ((1u << KIND_SHIFT) - 1u)) != 0u;
-    // While others wait the same ray may be traced several times.
+    // While others wait, the same ray may be traced several times.
     if (has_waiting && !begins_bounce(turn + 1u)) return ask_after_miss(number, path, ray);
     begin_path_log(ray, hit, bounces, path.weight, kind_of_ray(path));
     bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
@@ -276,7 +277,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     if (has(FEATURE_GLASS)) return ask_beyond(number, path, point, hit.t <= skipped_until);
     return ask_mirror(number, path, point);
   }
-  // The same ray once more.
+  // The same ray again.
   store_vector(record_of_weight(number, turn + 1u), weight_at_start);
   return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
 }
@@ -338,7 +339,7 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   words[ask_of_path(number)] = asked;
 }
 
-// What the path's ray sees, beside its origin and direction.
+// Sets how the path's ray sees, apart from its origin and direction.
 void prepare_sight(uint number) {
   passes_backs = true;
   if (has(FEATURE_HOLES)) {

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Glass (docs/model.md, "Glass"): the media that a ray is in, what a face of glass sends back and lets through, and what
-// shadow rays take along.
+// Glass (docs/model.md, "Glass"): the media that contain a ray, reflection and transmission at a face of glass, and the
+// light along shadow rays.
 
 uint glass_number(MaterialRecord material) { return flags_of(material) >> MATERIAL_GLASS_SHIFT; }
 
-// Whether light goes through it.
+// Returns whether the material transmits light.
 bool is_clear(MaterialRecord material) {
   if (!has(FEATURE_GLASS) || glass_number(material) == 0u) return false;
   return (load_glass(glass_number(material)).bits.x & GLASS_IS_CLEAR) != 0u;
 }
 
-// Of the media that a ray is in the numbers of their glasses, 16 bits each, the last entered first, in the lower half of
-// x. Where there are more than four the first is forgotten.
+// The media that contain a ray, as the numbers of their glasses in 16 bits each. The last one entered comes first, in
+// the lower half of x. With more than four media the first one entered is dropped.
 const uint NO_MEDIUM = 0u;
 uint last_entered(uvec2 media) { return media.x & 0xFFFFu; }
 uvec2 enter(uvec2 media, uint medium) { return uvec2(media.x << 16 | medium, media.y << 16 | media.x >> 16); }
@@ -21,7 +21,7 @@ bool is_within(uvec2 media, uint medium) {
   uvec2 upper = media >> 16;
   return any(equal(lower, uvec2(medium))) || any(equal(upper, uvec2(medium)));
 }
-// Without the last entry of the medium.
+// Returns the media without the last entry of this medium.
 uvec2 leave(uvec2 media, uint medium) {
   uvec2 lower = media & 0xFFFFu;
   uvec2 upper = media >> 16;
@@ -32,14 +32,14 @@ uvec2 leave(uvec2 media, uint medium) {
   return media;
 }
 
-// The colours of light that dispersion parts. What is not parted is bent as green is.
+// The colours of light that dispersion separates. Light that is not separated is bent like green.
 const uint RED = 0u;
 const uint GREEN = 1u;
 const uint BLUE = 2u;
 
 uint count_colors(vec3 weight) { return uint(weight.x > 0.0) + uint(weight.y > 0.0) + uint(weight.z > 0.0); }
 
-// As which color light of this weight is bent: its own, where it has but one.
+// Returns the color as which light of this weight is bent: its own if it has only one.
 uint color_of(vec3 weight) {
   if (!has(FEATURE_DISPERSION) || count_colors(weight) != 1u) return GREEN;
   return weight.x > 0.0 ? RED : (weight.y > 0.0 ? GREEN : BLUE);
@@ -53,12 +53,12 @@ float index_of(uint medium, uint color) {
   return index;
 }
 
-// The share of light that is left after this way through a medium (Beer and Lambert).
+// Returns the part of the light that remains after this distance in a medium (Beer and Lambert).
 vec3 left_after(uint medium, float way) {
   if (medium == NO_MEDIUM) return vec3(1.0);
   vec3 absorption = load_glass(medium).absorption.xyz;
   precise vec3 exponent = -absorption * way;
-  // Without absorption any way is free, be it infinite.
+  // Without absorption any distance transmits everything, even an infinite one.
   return vec3(absorption.x > 0.0 ? power_of_two(exponent.x) : 1.0, absorption.y > 0.0 ? power_of_two(exponent.y) : 1.0,
               absorption.z > 0.0 ? power_of_two(exponent.z) : 1.0);
 }
@@ -70,9 +70,9 @@ struct Face {
   uvec2 beyond;
 };
 
-// Solids that overlap count as the one that was entered last; the faces of the others within bend nothing (Schmidt and
-// Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2)). What is left without having been entered has held
-// the camera, or belongs to a mesh that is not closed.
+// Where solids overlap, the one entered last counts; faces of the others inside it do not bend rays (Schmidt and Budge,
+// "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2)). A solid that is left without having been entered
+// contains the camera, or belongs to a mesh that is not closed.
 void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, uint color, out Face face) {
   float outside = index_of(last_entered(media), color);
   float inside = index_of(medium, color);
@@ -94,8 +94,8 @@ void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, uint color, 
   }
 }
 
-// 1 - (sine beyond)^2 of a ray that meets the face at an angle of this cosine; not positive where it is reflected
-// totally.
+// Returns 1 - (sine beyond)^2 for a ray that hits the face at an angle of this cosine; not positive on total
+// reflection.
 float cosine2_beyond(Face face, float cosine) {
   precise float ratio = face.from / face.to;
   precise float k = 1.0 - ratio * ratio * ((1.0 - cosine) * (1.0 + cosine));
@@ -110,7 +110,7 @@ float schlick_weight(float cosine) {
   return p5;
 }
 
-// What dielectrics reflect of unpolarised light, by Fresnel; the cosines are those on either side.
+// Returns Fresnel's reflectance of a dielectric for unpolarised light, from the cosines on both sides.
 float fresnel_reflectance(Face face, float cosine, float cosine_beyond) {
   precise float s_from = face.from * cosine;
   precise float s_to = face.to * cosine_beyond;

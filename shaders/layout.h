@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The definitions that host and shaders share, written once for both compilers. Members are vec4 and uvec4 alone, so
-// that C++, std140 and std430 agree; tests/gpu/layout_test.cpp holds the offsets against the SPIR-V.
+// The definitions that host and shaders share, written once for both compilers. All members are vec4 or uvec4, so that
+// C++, std140 and std430 agree; tests/gpu/layout_test.cpp compares the offsets with those of the SPIR-V.
 #ifndef PROMIN_LAYOUT_H
 #define PROMIN_LAYOUT_H
 
@@ -19,8 +19,8 @@ using uint = uint32_t;
 #define LAYOUT_FLOAT const float
 #endif
 
-// Features: what a scene may use, and what a caller may ask of a pipeline whatever the scene. Each is the number of a
-// bit in two words, to which a pipeline is specialised. The tables of promin/kinds define kinds, lights, features and
+// Features that a scene may use, and that a caller may request from a pipeline for any scene. Each is the number of a
+// bit in two words, for which a pipeline is specialised. The tables of promin/kinds define kinds, lights, features and
 // debug views.
 #ifdef __cplusplus
 enum class Feature : uint {};
@@ -46,7 +46,7 @@ LAYOUT_CONSTANT FEATURE_WORDS = 2u;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #include "features.def"
 
-// What a picture shows: light, or a debug view. The number of the view lies in the second word of features.
+// The kind of a picture: light, or a debug view. The number of the view is stored in the second word of features.
 LAYOUT_CONSTANT DEBUG_VIEW_NONE = 0u;
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   LAYOUT_CONSTANT DEBUG_VIEW_##KIND = NUMBER;
@@ -83,13 +83,12 @@ LAYOUT_CONSTANT CONSTANT_WAITS_WITH_SOLIDS = 7u;
 LAYOUT_CONSTANT CONSTANT_FETCHES_FILM_TEXELS = 8u;
 LAYOUT_CONSTANT CONSTANT_LISTS_CROSSINGS = 9u;
 
-// A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one a lane (128 invocations are guaranteed).
+// A workgroup traces a block of BLOCK_SIZE x BLOCK_SIZE pixels, one per lane (Vulkan guarantees 128 invocations).
 LAYOUT_CONSTANT BLOCK_SIZE = 8u;
 
 // A node has up to four children with their boxes in bytes. A plane of a box lies at origin + byte * 2^(exponent -
 // 127), and each axis has an exponent of its own. The four bytes of a word belong to the four children, the lowest byte
-// to the first.
-// A child that is an inner node is given by its index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below,
+// to the first. An inner child is stored as its index. A leaf has CHILD_IS_LEAF, its count - 1 in the four bits below,
 // and its first primitive in the rest.
 struct Node {
   uvec4 frame;     // bits of the origin; w = exponents of x, y, z, the lowest byte first, then how many children
@@ -106,10 +105,10 @@ LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
 // Traversal keeps a node's index in 24 bits (family.glsl).
 LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
 
-// One primitive in leaf order; the unbounded ones follow after those of the tree.
-// a, b and c.x are the kind's own: the comment at its pack() and its shader file in primitives/ define them.
-// c.y is the primitive's number in (object, primitive) order, which breaks ties. c.z is the kind. c.w has hashes of the
-// object, in the lower 16 bits, and of the primitive; debug views make colours of them.
+// A primitive. Those of the tree come first, in leaf order, then the unbounded ones. The kind determines a, b and c.x:
+// they are defined by the comment at its pack() and by its shader file in primitives/. c.y is the primitive's number in
+// (object, primitive) order, which breaks ties. c.z is the kind. c.w has hashes of the object, in the lower 16 bits,
+// and of the primitive; debug views turn them into colours.
 struct Primitive {
   vec4 a;
   vec4 b;
@@ -118,8 +117,8 @@ struct Primitive {
 LAYOUT_CONSTANT PRIMITIVE_TEXELS = 3u;
 LAYOUT_CONSTANT SHAPE_IS_OPEN = 0x80000000u;  // in c.x of cylinders and cones
 
-// The data that shading needs of the primitive at the same index: xyz = the corners' vertex indices (triangles with
-// normals, colours, texture coordinates or tangents), w = material index and SURFACE_* bits.
+// The data for shading the primitive at the same index: xyz = the corners' vertex indices (triangles with normals,
+// colours, texture coordinates or tangents), w = material index and SURFACE_* bits.
 struct SurfaceRecord {
   uvec4 corners_material;
 };
@@ -129,7 +128,7 @@ LAYOUT_CONSTANT SURFACE_HAS_UVS = 0x20000000u;
 LAYOUT_CONSTANT SURFACE_HAS_TANGENTS = 0x10000000u;
 LAYOUT_CONSTANT SURFACE_MATERIAL_MASK = 0x0FFFFFFFu;
 
-// a, b, c and d are the model's own: the shader files in materials/ define them.
+// The model determines a, b, c and d: the shader files in materials/ define them.
 struct MaterialRecord {
   vec4 a;
   vec4 b;
@@ -141,20 +140,20 @@ struct MaterialRecord {
 };
 LAYOUT_CONSTANT MATERIAL_TEXELS = 6u;
 LAYOUT_CONSTANT MATERIAL_MODEL_MASK = 0xFFu;
-LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;    // where the texture's alpha says so
+LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;  // where the texture's alpha says so
 LAYOUT_CONSTANT MATERIAL_IS_ONE_SIDED = 0x200u;
-LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;       // with what is behind, by alpha
-LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;     // the number of its GlassRecord, from 1 on, 0: it has none
+LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;    // with what is behind, by alpha
+LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;  // the number of its GlassRecord, from 1 on, 0: it has none
 LAYOUT_CONSTANT MOST_GLASSES = 0x3FFFu;
-// A ray passes through so many surfaces that blend; the next counts as opaque.
+// The largest number of surfaces that blend on a ray; the next one counts as opaque.
 LAYOUT_CONSTANT MOST_LAYERS = 64u;
-// Where less than this is seen of what is behind a surface, it counts as opaque.
+// A surface that lets through less than this counts as opaque.
 LAYOUT_FLOAT LEAST_SHARE_BEHIND = 0.0009765625f;
-// From this roughness on a metallic-roughness material shows the environment alone, no mirror ray.
+// From this roughness on a metallic-roughness material shows only the environment and traces no mirror ray.
 LAYOUT_FLOAT ROUGHEST_MIRROR = 0.4f;
 
-// What few metallic-roughness materials have, of extensions of glTF; the material's record has the number of this, from 1
-// on, in x of d. Slots are numbers of texture slots.
+// Rare properties of metallic-roughness materials, from extensions of glTF. The material's record has the number of
+// this record, from 1 on, in d.x. Slots are numbers of texture slots.
 struct ExtensionRecord {
   vec4 coat;         // x = how much of it there is; y = roughness; z = scale of its normals
   uvec4 coat_slots;  // x = of how much there is, y = of roughness, z = of normals
@@ -170,7 +169,7 @@ struct ExtensionRecord {
 };
 LAYOUT_CONSTANT EXTENSION_TEXELS = 10u;
 
-// What materials have through which light goes, or whose mirrors hang on the angle (glass.glsl).
+// The data of materials that transmit light, or whose reflection depends on the angle (glass.glsl).
 struct GlassRecord {
   vec4 transmission;  // xyz = share of light that goes through; w = index of refraction
   vec4 absorption;    // xyz = of light that is left after a length x the share is 2^(-absorption x)
@@ -179,18 +178,18 @@ struct GlassRecord {
   uvec4 bits;         // x = GLASS_*; y = number of the texture slot of what goes through
 };
 LAYOUT_CONSTANT GLASS_TEXELS = 4u;
-LAYOUT_CONSTANT GLASS_IS_CLEAR = 1u;    // light goes through
-LAYOUT_CONSTANT GLASS_IS_THIN = 2u;     // a wall without an inside, which bends nothing
-LAYOUT_CONSTANT GLASS_IS_FRESNEL = 4u;  // of Phong's: reflection hangs on the angle
-// A sample of a scene with glass has so many rays from surfaces at most, and a ray at least this weight; in place of
-// others the environment is seen (Dispatch::outcome).
+LAYOUT_CONSTANT GLASS_IS_CLEAR = 1u;    // transmits light
+LAYOUT_CONSTANT GLASS_IS_THIN = 2u;     // a wall without an inside, which does not bend light
+LAYOUT_CONSTANT GLASS_IS_FRESNEL = 4u;  // Phong: reflection depends on the angle
+// The largest number of secondary rays of a sample in a scene with glass, and the smallest weight of a ray. The
+// environment replaces other rays (Dispatch::outcome).
 LAYOUT_CONSTANT MOST_TREE_RAYS = 64u;
 LAYOUT_FLOAT LEAST_TREE_WEIGHT = 0.001953125f;
-LAYOUT_CONSTANT COLORS = 3u;  // that dispersion parts
+LAYOUT_CONSTANT COLORS = 3u;  // that dispersion separates
 
-// A texture in its place in a material (textures.glsl). u = to_u . (s, t, 1), v likewise.
+// A material's reference to a texture (textures.glsl). u = to_u . (s, t, 1), and the same for v.
 struct TextureSlotRecord {
-  vec4 to_u;    // w = bits of TEXTURE_*
+  vec4 to_u;  // w = bits of TEXTURE_*
   vec4 to_v;
   uvec4 image;  // x = its first word, y = width, z = height, w = levels
 };
@@ -208,8 +207,8 @@ LAYOUT_CONSTANT WRAP_REPEAT = 0u;
 LAYOUT_CONSTANT WRAP_MIRRORED = 1u;
 LAYOUT_CONSTANT WRAP_CLAMP = 2u;
 
-// The entries of the table of lobes along each side (shading_records.glsl), and of that of sheens, whose entries are
-// shares of this largest one.
+// The number of entries along each side of the table of lobes (shading_records.glsl) and of the table of sheens, whose
+// entries are fractions of this largest one.
 LAYOUT_CONSTANT LOBE_TABLE_SIDE = 32u;
 LAYOUT_FLOAT LARGEST_SHEEN_SHARE = 2.0f;
 
@@ -225,34 +224,35 @@ struct LightRecord {
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 
-// The constants of a view of a scene (uniform buffer). None of them decides a branch or a loop; those are in Dispatch.
+// The constants of a view of a scene (uniform buffer). No branch or loop depends on them; constants that control flow
+// depends on are in Dispatch.
 struct ViewConstants {
-  vec4 eye;  // w = near: distance of the viewport plane
+  vec4 eye;    // w = near: distance of the viewport plane
   vec4 look;   // w = width of a sample's cone of sight at the eye, with TEXTURES
   vec4 right;  // step from one pixel to the next at distance 1 (orthographic: in the world); w = growth of that cone
   vec4 up;
   vec4 ambient;
-  vec4 background;  // w = SHOWS_*: what rays from the camera see
+  vec4 background;       // w = SHOWS_*: what rays from the camera see
   vec4 backdrop_top;     // w = factor by which mirrors and glass see it
   vec4 backdrop_bottom;  // w = rows of the picture
-  vec4 backdrop_rise;    // upwards, 1 over the picture's height at distance 1 (orthographic: in the world); w = 1 for an
-                         // orthographic camera
-  vec4 tree_bounds;   // center and max-norm radius of everything in the tree
-  vec4 film_center;   // x, y = half the picture's size in pixels
-  uvec4 first_index;  // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
-  uvec4 first_lookup;  // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
-                       // w = extensions, as ExtensionRecords
+  vec4 backdrop_rise;   // upwards, 1 over the picture's height at distance 1 (orthographic: in the world); w = 1 for an
+                        // orthographic camera
+  vec4 tree_bounds;     // center and max-norm radius of the tree's primitives
+  vec4 film_center;     // x, y = half the picture's size in pixels
+  uvec4 first_index;    // x = materials, y = lights, z = normals, w = colours: first index in their views of shading
+  uvec4 first_lookup;   // x = table of lobes, y = sky, as texels of shading; z = side of the sky's sharpest level;
+                        // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading; w = words of images
   uvec4 first_glass;    // x = GlassRecords; y, z = the media in which the camera is (glass.glsl)
-  vec4 irradiance[9];  // of a sky: coefficients of its light over pi (environment.glsl)
+  vec4 irradiance[9];   // of a sky: coefficients of its light over pi (environment.glsl)
 };
 
 LAYOUT_FLOAT SHOWS_BACKGROUND = 0.0f;
 LAYOUT_FLOAT SHOWS_SKY = 1.0f;
 LAYOUT_FLOAT SHOWS_BACKDROP = 2.0f;
 
-// The numbers that decide branches and loops, at the head of the buffer that is written. They are not in push constants
-// or a uniform buffer, because lavapipe compiles the shader anew for each value of those that control flow depends on.
+// The constants that branches and loops depend on, at the head of the output buffer. They are not in push constants or
+// a uniform buffer, because lavapipe would compile the shader again for each of their values.
 struct Dispatch {
   uvec4 range;     // x = first block, y = one past the last, z = sample, w = mirror bounces
                    // casting: x = first ray, y = one past the last
@@ -265,22 +265,22 @@ struct Dispatch {
                    // w = bits of y of the sample's place in its pixel
 };
 
-// The stream of paths behind the pixels of a film (stream.glsl), for a piece of a picture.
+// The state of the stream of paths, which lies behind the pixels of a film (stream.glsl), for a piece of a picture.
 struct StreamState {
-  uvec4 place;           // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
-  uvec4 turn;            // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
-                         // of this turn's have a ray
-  uvec4 shadow_rays;     // x = how many are listed; y = records of a path, its sources among them
-  uvec4 list_groups;     // workgroups of each dispatch of the turn, as Vulkan takes them
+  uvec4 place;        // x = the first record, y = most paths, z = sources of a turn, w = most rows of workgroups
+  uvec4 turn;         // x = its number, before the first -1; y, z = paths listed in even and odd turns; w = how many
+                      // of this turn's have a ray
+  uvec4 shadow_rays;  // x = how many are listed; y = records of a path, its sources among them
+  uvec4 list_groups;  // workgroups of each dispatch of the turn, as Vulkan takes them
   uvec4 shadow_groups;
   uvec4 path_groups;
 };
-// What a path takes, and it takes for each source of a turn: records of uvec4.
+// Number of uvec4 records of a path, and further ones for each light source of a turn.
 LAYOUT_CONSTANT STREAM_PATH_RECORDS = 7u;
 LAYOUT_CONSTANT STREAM_SOURCE_RECORDS = 1u;
-// With FEATURE_DIFFUSE_TRANSMISSION a path takes this one too.
+// Further records of a path with FEATURE_DIFFUSE_TRANSMISSION.
 LAYOUT_CONSTANT STREAM_BEHIND_RECORDS = 1u;
-// With FEATURE_GLASS a path takes these too, and for each ray that waits until the path has come to its end.
+// Further records of a path with FEATURE_GLASS, and for each ray that waits until the path has ended.
 LAYOUT_CONSTANT STREAM_GLASS_RECORDS = 2u;
 LAYOUT_CONSTANT STREAM_WAITING_RECORDS = 4u;
 LAYOUT_CONSTANT STREAM_SOURCES = 16u;  // most sources of a turn
@@ -288,50 +288,51 @@ LAYOUT_CONSTANT STREAM_LISTS = 2u;
 LAYOUT_CONSTANT STREAM_BIN_BITS = 9u;  // of the bins by which rays are sorted (ray_bins.glsl)
 LAYOUT_CONSTANT STREAM_BINS = 1u << STREAM_BIN_BITS;
 LAYOUT_CONSTANT STREAM_LANES = 64u;
-// The head of a film, before its pixels: each block that a shader views the film by begins with it, under names of its
-// own, and FilmHead on the host is nothing else. Each lane of a workgroup has counters of its own (film.glsl).
+// The head of a film, before its pixels. Each shader block for the film begins with it, under its own names, and
+// FilmHead on the host is the same. Each lane of a workgroup has its own counters (film.glsl).
 #define FILM_HEAD(DISPATCH, STREAM, RAY_COUNTS, PASS_COUNTS) \
   Dispatch DISPATCH;                                         \
   StreamState STREAM;                                        \
   uvec4 RAY_COUNTS[BLOCK_SIZE * BLOCK_SIZE];                 \
   uvec4 PASS_COUNTS[BLOCK_SIZE * BLOCK_SIZE];
-// Where the pixels of a film lie in its texels.
+// Offset of a film's pixels in texels.
 LAYOUT_CONSTANT FILM_HEAD_TEXELS = 5u + 6u + 64u + 64u;
 
-// The number is more than one, and the compiler does not know it (loop_check.glsl).
+// A number above one that the compiler does not know (loop_check.glsl).
 LAYOUT_CONSTANT LOOP_CHECK_TURNS = 2u;
 
-// A ray to cast: the direction has any length, a hit has tmin < t < tmax in its units.
+// A ray to cast. The direction has any length, and a hit has tmin < t < tmax in its units.
 struct RayRecord {
   vec4 origin_tmin;
   vec4 direction_tmax;
 };
 LAYOUT_CONSTANT RAY_TEXELS = 2u;
 
-// The answer to a ray. FEATURE_STEP_COUNTS adds the counts, each clamped to its 16 bits. A ray that asks for any hit
-// gets a.x, which is 0 or infinite on a miss, and a.y; without the counts nothing else is written.
+// The result of a ray. FEATURE_STEP_COUNTS adds the counts, each clamped to its 16 bits. For an any-hit ray only a.x
+// (0, or infinite on a miss), a.y and the counts are written.
 struct HitRecord {
   uvec4 a;  // bits of t (infinite on a miss), the primitive's number in order (NO_ORDER on a miss), bits of u and v
   uvec4 b;  // bits of the geometric normal; w = node steps + primitive tests * 2^16
 };
 LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
-// Crossings (crossings.comp): a record for each ray, then those of all rays. Of a ray: a.x = how many it has; with
-// LISTS_CROSSINGS a.y = the record of the first and a.z = for how many there is room, before the dispatch. Of a
-// crossing: as of a hit, but b.w = 1 where the ray leaves a solid, else 0.
+// Crossings (crossings.comp): a record for each ray, then those of all crossings. In a ray's record a.x is the number
+// of its crossings; with LISTS_CROSSINGS a.y is the record of the first and a.z the space, both set before the
+// dispatch. A crossing's record is like that of a hit, but b.w is 1 if the ray leaves a solid, else 0.
 
-// With FEATURE_LISTED_SAMPLES each pixel of the film is a sample of a pixel of the picture: before it is traced x, y =
-// bits of its place in that pixel, z = that pixel, its row above 16 bits, or this; then xyz = its radiance.
+// With FEATURE_LISTED_SAMPLES each pixel of the film is a sample of a pixel of the picture. Before it is traced, x and
+// y are the bits of its position in that pixel, and z is that pixel, with its row above 16 bits, or this value.
+// Afterwards xyz is its radiance.
 LAYOUT_CONSTANT NO_LISTED_SAMPLE = 0xFFFFFFFFu;
 
-// What a film holds of each pixel, each kind for all pixels together: first the sum over its samples, and `order` of what
-// it shows; with FEATURE_AOVS then what its middle sample has met, of which the sum is the first record.
-LAYOUT_CONSTANT AOV_NORMAL = 1u;          // geometric; w = distance from the eye
-LAYOUT_CONSTANT AOV_ALBEDO = 2u;          // w = material
+// The records of a film, each kind for all pixels together. The first has the sum over a pixel's samples, and `order`
+// of the primitive that it shows. With FEATURE_AOVS, records of the middle sample's hit follow.
+LAYOUT_CONSTANT AOV_NORMAL = 1u;  // geometric; w = distance from the eye
+LAYOUT_CONSTANT AOV_ALBEDO = 2u;  // w = material
 LAYOUT_CONSTANT AOV_POSITION = 3u;
 LAYOUT_CONSTANT AOV_SHADING_NORMAL = 4u;
-LAYOUT_CONSTANT AOV_MEASURES = 5u;        // x, y = texture coordinates; z = distance along the view; w = steps, an integer
+LAYOUT_CONSTANT AOV_MEASURES = 5u;  // x, y = texture coordinates; z = distance along the view; w = steps, an integer
 LAYOUT_CONSTANT AOV_RECORDS = 6u;
-// With FEATURE_LIGHT_AOVS the parts of the sum behind these.
+// With FEATURE_LIGHT_AOVS the parts of the sum follow after these.
 LAYOUT_CONSTANT PART_EMISSION = 0u;      // what the surface that the camera sees emits,
 LAYOUT_CONSTANT PART_DIRECT = 1u;        // what lights bring to it,
 LAYOUT_CONSTANT PART_INDIRECT = 2u;      // what its surroundings do,
@@ -339,21 +340,22 @@ LAYOUT_CONSTANT PART_REFLECTION = 3u;    // mirror rays from it,
 LAYOUT_CONSTANT PART_TRANSMISSION = 4u;  // and rays through it
 LAYOUT_CONSTANT PART_BACKGROUND = 5u;    // what is seen beside and behind surfaces; w = how much of the pixel shows it
 LAYOUT_CONSTANT LIGHT_PARTS = 6u;
-LAYOUT_CONSTANT PART_SEEN = 6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
+LAYOUT_CONSTANT PART_SEEN =
+    6u;  // no part: xyz = light of the point at hand without lights, w = parts (light_parts.glsl)
 LAYOUT_CONSTANT PART_RECORDS = 7u;
-// With FEATURE_SAMPLE_IDS the `order` of what each of so many samples shows behind these, four a record.
+// With FEATURE_SAMPLE_IDS the `order` of each of this number of samples follows, four per record.
 LAYOUT_CONSTANT SAMPLE_IDS = 16u;
-// With FEATURE_SAMPLE_RANGES, on films that are not of a list, behind these the least and the largest of its samples,
-// each by channel.
+// With FEATURE_SAMPLE_RANGES, on films that are not of a list, the smallest and the largest value of its samples
+// follow, each by channel.
 LAYOUT_CONSTANT RANGE_LEAST = 0u;
 LAYOUT_CONSTANT RANGE_LARGEST = 1u;
 LAYOUT_CONSTANT RANGE_RECORDS = 2u;
-// With FEATURE_UNLIT_SHARE behind all of these one: what the camera sees of unlit surfaces and of a backdrop, summed over
-// samples; w = in how many it sees them.
+// With FEATURE_UNLIT_SHARE one more record follows: the unlit surfaces and the backdrop that the camera sees, summed
+// over samples; w = in how many samples it sees them.
 
-// What FEATURE_RAY_LOG keeps: an entry for each ray of the path, and one (LOG_SOURCE) for each source that may light
-// its hit. Sources come before the ray whose hit they light. Rays are as traced: the direction's largest component is
-// in [1, 2), and t is in its units.
+// The log of FEATURE_RAY_LOG: an entry for each ray of the path, and one (LOG_SOURCE) for each light source that may
+// light its hit. Sources come before the ray whose hit they light. Rays are stored as traced: the direction's largest
+// component is in [1, 2), and t is in its units.
 struct RayLog {
   uvec4 ids;  // x = LOG_PATH or LOG_SOURCE; y = the bounce or the source; z = the material; w = where a ray comes from,
               // or 1 where a source has a shadow ray
@@ -369,7 +371,7 @@ struct RayLog {
 };
 LAYOUT_CONSTANT LOG_PATH = 0u;
 LAYOUT_CONSTANT LOG_SOURCE = 1u;
-// Where a path's ray comes from.
+// The origin of a path's ray.
 LAYOUT_CONSTANT LOG_CAMERA = 0u;
 LAYOUT_CONSTANT LOG_REFLECTION = 1u;
 LAYOUT_CONSTANT LOG_REFRACTION = 2u;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The parts (PART_*) that a pixel's light is made of, with FEATURE_LIGHT_AOVS: each is a sum over samples, as the whole
-// is. Of a pixel one path at a time is on its way, so nobody else touches its records.
+// The parts (PART_*) of a pixel's light, with FEATURE_LIGHT_AOVS: each is a sum over samples, like the whole. Only one
+// path of a pixel is traced at a time, so no other lane accesses its records.
 
 uint record_of_part(uint pixel, uint part) {
   uint before = has(FEATURE_AOVS) ? AOV_RECORDS : 1u;
@@ -11,7 +11,7 @@ uint record_of_part(uint pixel, uint part) {
 uint record_of_unlit(uint pixel) {
   uint before = (has(FEATURE_AOVS) ? AOV_RECORDS : 1u) + (has(FEATURE_LIGHT_AOVS) ? PART_RECORDS : 0u) +
                 (has(FEATURE_SAMPLE_RANGES) ? RANGE_RECORDS : 0u);
-  // Apart from the sum: glslang 12 writes no valid module for a constant with && in it.
+  // Separate from the sum, because glslang 12 writes an invalid module for a constant with &&.
   if (has(FEATURE_SAMPLE_IDS) && !has(FEATURE_LISTED_SAMPLES)) before += SAMPLE_IDS / 4u;
   return before * window_pixel_count() + pixel;
 }
@@ -23,62 +23,62 @@ void add_to_part(uint pixel, uint part, vec3 light) {
   pixels[record].xyz = floatBitsToUint(sum);
 }
 
-// Adds what a path's ray sees where it meets nothing.
+// Adds the radiance that a path's ray sees on a miss.
 void add_beyond(Path path, vec3 beyond) {
   if (!has(FEATURE_LIGHT_AOVS)) return;
   uint record = record_of_part(path.pixel, path.part);
   vec4 part = load_sum(record);
   precise vec3 sum = part.xyz + path.weight * beyond;
-  // Only surfaces that blend have weighed it, all colours alike.
+  // Only surfaces that blend have changed its weight, equally for all colours.
   precise float share = part.w + (path.part == PART_BACKGROUND ? path.weight.x : 0.0);
   pixels[record] = floatBitsToUint(vec4(sum, share));
 }
 
-// Adds what a point that the path's ray has met sends without lights, where the camera sees it.
+// Adds the radiance of the path's hit without lights, if the camera sees it.
 void add_own_parts(Path path, ShadingPoint point, vec3 own, float coverage) {
   if (path.part != PART_BACKGROUND) return;
   vec3 emitted = emitted_light(point);
   precise vec3 weight = coverage * path.weight;
-  // Not less than 0: sums of what is not negative are not less than either.
+  // Not negative, because sums of non-negative numbers are not smaller than either.
   precise vec3 emission = weight * emitted;
   precise vec3 indirect = weight * (own - emitted);
   add_to_part(path.pixel, PART_EMISSION, emission);
   add_to_part(path.pixel, PART_INDIRECT, indirect);
 }
 
-// Adds all that is seen of a point to the part of the ray that has met it; where that is the camera's, what lights bring.
+// Adds the radiance of a point to the part of the ray that has hit it; for a camera ray only the light from lights.
 void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
   bool is_of_camera = part == PART_BACKGROUND;
   precise vec3 light = weight * (is_of_camera ? seen - own : seen);
   add_to_part(pixel, is_of_camera ? PART_DIRECT : part, light);
 }
 
-// With FEATURE_UNLIT_SHARE adds to the pixel's unlit light what it shows as it is.
+// With FEATURE_UNLIT_SHARE adds colours that are displayed unchanged to the pixel's unlit light.
 void add_to_unlit(uint pixel, vec3 weight, vec3 seen) {
   uint record = record_of_unlit(pixel);
-  // As the whole sum counts it: where nothing else is seen they are the same.
+  // Computed as in the whole sum, so that both are equal if nothing else is visible.
   precise vec4 sum = load_sum(record) + vec4(weight * seen, weight.x);
   pixels[record] = floatBitsToUint(sum);
 }
 
-// What the camera sees of a point, where the point is unlit.
+// Adds the radiance of a point that the camera sees, if the point is unlit.
 void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
   if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
   precise vec3 weight = coverage * path.weight;
   add_to_unlit(path.pixel, weight, seen);
 }
 
-// What the camera sees behind all, where that is a backdrop.
+// Adds the background that the camera sees, if it is a backdrop.
 void add_backdrop(Path path, vec3 seen) {
   if (!has(FEATURE_BACKDROP)) return;
   bvec3 is_shown = bvec3(is_backdrop_shown());
   add_to_unlit(path.pixel, mix(vec3(0.0), path.weight, is_shown), mix(vec3(0.0), seen, is_shown));
 }
 
-// Whether the stream has rays of several parts. Else all of them come from mirrors.
+// Whether the stream has rays of several parts; else all of them are mirror rays.
 const uint STREAM_HAS_PARTS = FEATURE_BIT(FEATURE_LIGHT_AOVS) & KEEPS_PROGRESS;
 
-// In w of PART_SEEN: the part of the point at hand, and from here on that of the path's ray.
+// In w of PART_SEEN: the part of the current point, and from this bit on that of the path's ray.
 const uint PART_OF_RAY_SHIFT = 8u;
 
 void store_part_of_ray(Path path) {
@@ -87,7 +87,7 @@ void store_part_of_ray(Path path) {
   pixels[record].w = (pixels[record].w & ((1u << PART_OF_RAY_SHIFT) - 1u)) | path.part << PART_OF_RAY_SHIFT;
 }
 
-// Keeps what is needed of the point at hand when its light has come, which may take several turns.
+// Stores the data of the current point for when its light is known, which may take several turns.
 void store_seen_part(Path path, vec3 own) {
   if (STREAM_HAS_PARTS == 0u) return;
   pixels[record_of_part(path.pixel, PART_SEEN)] =

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The way of light along a shadow ray, through surfaces that blend and through glass (docs/model.md, "Glass"): straight
-// on, the nearest surface first, so that the product does not hang on the tree.
+// The path of light along a shadow ray, straight through surfaces that blend and through glass (docs/model.md,
+// "Glass"), the nearest surface first, so that the product does not depend on the tree.
 
 struct LightWay {
   vec3 arriving;  // the share of the source's light that is left so far
@@ -12,7 +12,7 @@ struct LightWay {
 
 LightWay light_way(uvec2 media) { return LightWay(vec3(1.0), media, 0.0); }
 
-// What is left after the way in the medium that the ray is in, up to t.
+// Applies the absorption of the ray's current medium up to t.
 void absorb_until(inout LightWay way, Ray ray, float t) {
   precise float length = (t - way.t) * length3(ray.direction);
   precise vec3 arriving = way.arriving * left_after(last_entered(way.media), length);
@@ -20,7 +20,7 @@ void absorb_until(inout LightWay way, Ray ray, float t) {
   way.t = t;
 }
 
-// By the finest level; 1 where there is no texture.
+// Returns the texel of the finest level; 1 if there is no texture.
 vec4 texel_at_hit(uint slot, Hit hit, Primitive p, SurfaceRecord surface) {
   uvec4 corners = surface.corners_material;
   if (!has(FEATURE_TEXTURES) || slot == 0u || (corners.w & SURFACE_HAS_UVS) == 0u) return vec4(1.0);
@@ -38,8 +38,8 @@ vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord mat
   return min(tint, vec3(1.0));
 }
 
-// What a face lets through, and the media behind it. Rays that go straight on meet each face as if from its thinner
-// side, so that none is reflected totally.
+// Returns the part of the light that a face transmits, and the media behind it. Straight rays treat each face as if
+// they came from its thinner side, so that there is no total reflection.
 vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord material, inout uvec2 media) {
   Primitive p = load_primitive(hit.primitive);
   GlassRecord record = load_glass(glass_number(material));
@@ -69,7 +69,7 @@ vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord mater
   return left;
 }
 
-// Takes the way on behind a hit that the ray meets after so many others. Whether any light is left.
+// Continues behind a hit; `layers` is the number of hits before it. Returns whether any light remains.
 bool goes_on_behind(inout LightWay way, Ray ray, Hit hit, uint layers) {
   if (!has(FEATURE_GLASS)) {
     way.arriving = vec3(share_behind(hit, ray.direction, way.arriving.x, layers));
@@ -86,7 +86,7 @@ bool goes_on_behind(inout LightWay way, Ray ray, Hit hit, uint layers) {
   return max_abs(way.arriving) > 0.0;
 }
 
-// The way to the source, behind the last surface.
+// Applies the distance from the last surface to the light source.
 void end_way(inout LightWay way, Ray ray) {
   if (has(FEATURE_GLASS) && ray.tmax < INFINITY && max_abs(way.arriving) > 0.0) absorb_until(way, ray, ray.tmax);
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Lights as a surface point sees them. Each kind of promin/kinds/lights.def has a function sample_*.
+// Lights as seen from a surface point. Each kind of promin/kinds/lights.def has a function sample_*.
 
-// A source as a surface point sees it. The shadow ray's direction is as long as the way to where t = 1, so a source
-// with a place has it there and tmax 1; one at infinity has tmax INFINITY and a direction of any length. Strength is a
-// factor to the source's powers.
+// A light source as seen from a surface point. The direction of the shadow ray reaches a source with a position at t =
+// 1, and its tmax is 1. A source at infinity has tmax INFINITY and a direction of any length. `strength` is a factor of
+// the source's powers.
 struct LightSample {
   vec3 direction;
   float tmax;
@@ -24,7 +24,8 @@ LightSample sample_light(LightRecord light, vec3 position) {
   return LightSample(vec3(0.0), 0.0, 0.0);
 }
 
-// From `origin` to a source, whose direction hangs on the place alone where it has a place, else on nothing.
+// Returns the ray from `origin` to a light source. Its direction depends only on the source's position, or for a source
+// at infinity on nothing.
 Ray shadow_ray(vec3 origin, LightRecord light) {
   LightSample sampled = sample_light(light, origin);
   precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;

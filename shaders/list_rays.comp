@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes the lists of a turn of the stream: what the paths of the turn before have asked for.
+// Writes the lists of a turn of the stream from the requests of the previous turn.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "layout.h"

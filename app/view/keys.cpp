@@ -26,8 +26,8 @@ constexpr Press debug_view(int number) {
 
 // A row without a text is described by the row above it.
 constexpr std::array kKeys = {
-    KeyBinding{GLFW_KEY_W, "W", "ahead; nearer when orbiting", Hold::kAhead},
-    KeyBinding{GLFW_KEY_S, "S", "back; away when orbiting", Hold::kBack},
+    KeyBinding{GLFW_KEY_W, "W", "fly forward; when orbiting, move nearer", Hold::kAhead},
+    KeyBinding{GLFW_KEY_S, "S", "fly backward; when orbiting, move away", Hold::kBack},
     KeyBinding{GLFW_KEY_A, "A", "left", Hold::kLeft},
     KeyBinding{GLFW_KEY_D, "D", "right", Hold::kRight},
     KeyBinding{GLFW_KEY_E, "E", "up", Hold::kUp},
@@ -38,16 +38,16 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_RIGHT_SHIFT, "", "", Hold::kFast},
     KeyBinding{GLFW_KEY_LEFT_CONTROL, "Ctrl", "a quarter as fast", Hold::kSlow},
     KeyBinding{GLFW_KEY_RIGHT_CONTROL, "", "", Hold::kSlow},
-    KeyBinding{GLFW_KEY_O, "O", "orbit what is in the middle, or fly again", {}, Press::kOrbit},
+    KeyBinding{GLFW_KEY_O, "O", "orbit the point in the middle, or return to flying", {}, Press::kOrbit},
     KeyBinding{GLFW_KEY_R, "R", "reset the camera", {}, Press::kReset},
-    KeyBinding{GLFW_KEY_F, "F", "frame the model", {}, Press::kFrame},
-    KeyBinding{GLFW_KEY_1, "1, 3, 7", "from the front, the right, the top", {}, Press::kFront},
+    KeyBinding{GLFW_KEY_F, "F", "show the whole model", {}, Press::kFrame},
+    KeyBinding{GLFW_KEY_1, "1, 3, 7", "view from the front, the right, the top", {}, Press::kFront},
     KeyBinding{GLFW_KEY_3, "", "", {}, Press::kRight},
     KeyBinding{GLFW_KEY_7, "", "", {}, Press::kTop},
     KeyBinding{GLFW_KEY_KP_1, "", "", {}, Press::kFront},
     KeyBinding{GLFW_KEY_KP_3, "", "", {}, Press::kRight},
     KeyBinding{GLFW_KEY_KP_7, "", "", {}, Press::kTop},
-    KeyBinding{GLFW_KEY_PERIOD, ". and ,", "the scene's next camera, the one before", {}, Press::kNextCamera},
+    KeyBinding{GLFW_KEY_PERIOD, ". and ,", "next or previous camera of the scene", {}, Press::kNextCamera},
     KeyBinding{GLFW_KEY_COMMA, "", "", {}, Press::kPreviousCamera},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
     KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
@@ -55,23 +55,23 @@ constexpr std::array kKeys = {
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   KeyBinding{GLFW_KEY_F1 + static_cast<int>(NUMBER), "", "", {}, debug_view(NUMBER)},
 #include "promin/kinds/debug_views.def"
-    KeyBinding{GLFW_KEY_P, "P", "pause refining, or a replay", {}, Press::kPause},
+    KeyBinding{GLFW_KEY_P, "P", "pause refinement or replay", {}, Press::kPause},
     KeyBinding{GLFW_KEY_C, "C", "print the command that renders this view", {}, Press::kPrintCommand},
     KeyBinding{GLFW_KEY_F12, "F12", "write promin-NNNN.exr and .png", {}, Press::kScreenshot},
     KeyBinding{GLFW_KEY_F11, "F11", "full screen", {}, Press::kFullscreen},
     KeyBinding{GLFW_KEY_TAB, "Tab", "hide or show the panel", {}, Press::kOverlay},
-    KeyBinding{GLFW_KEY_H, "H", "this help", {}, Press::kHelp},
+    KeyBinding{GLFW_KEY_H, "H", "show this help", {}, Press::kHelp},
     KeyBinding{GLFW_KEY_ESCAPE, "Esc", "quit", {}, Press::kQuit},
 };
 
 constexpr std::array kPointer = {
     PointerBinding{"left drag", "turn the model"},
-    PointerBinding{"right drag", "move the picture; so does the middle button"},
+    PointerBinding{"right drag", "move the picture (the middle button does this too)"},
     PointerBinding{"Shift-drag", "turn the light"},
-    PointerBinding{"wheel", "nearer or further away"},
-    PointerBinding{"double click", "look at that point, and turn around it"},
-    PointerBinding{"left click", "explain the pixel: its rays, sources, contributions"},
-    PointerBinding{"right click", "look around without a button, as in flight; again to stop"},
+    PointerBinding{"wheel", "move nearer or further away"},
+    PointerBinding{"double click", "look at that point and orbit it"},
+    PointerBinding{"left click", "explain the pixel: its rays, light sources and contributions"},
+    PointerBinding{"right click", "look around without holding a button; again to stop"},
 };
 
 }  // namespace

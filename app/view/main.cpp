@@ -5,6 +5,6 @@
 
 int main(int argc, char** argv) {
   using namespace promin::app;
-  return run_program("promin-view", "Flies through a scene in a window, ray traced while you look. H shows the keys.",
+  return run_program("promin-view", "Shows a scene in a window, ray traced while you fly through it. H lists the keys.",
                      {add_view_command}, argc, argv);
 }

@@ -40,7 +40,7 @@ void show_times(const OverlayContent& content) {
   const FrameStatistics& statistics = *content.statistics;
   const double ms = statistics.frame_ms();
   show_text("{}", content.device);
-  show_text("{:.1f} pictures a second, {:.1f} ms each", ms > 0.0 ? 1e3 / ms : 0.0, ms);
+  show_text("{:.1f} pictures per second, {:.1f} ms each", ms > 0.0 ? 1e3 / ms : 0.0, ms);
   const StageTimes& stages = statistics.stages();
   show_text("trace {:.1f} ms, display {:.1f} ms", stages.trace, stages.display);
   const dvec3& rays = statistics.mrays_per_s();
@@ -49,19 +49,19 @@ void show_times(const OverlayContent& content) {
   if (!shown) return;
   show_text("{} x {} of {} x {} pixels", shown->size.x, shown->size.y, content.picture->full_size().x,
             content.picture->full_size().y);
-  if (!shown->error) return show_text("samples a pixel: {}", shown->samples_per_pixel);
-  show_text("samples a pixel: {:.3g}", static_cast<double>(shown->error->samples) / shown->size.x / shown->size.y);
+  if (!shown->error) return show_text("samples per pixel: {}", shown->samples_per_pixel);
+  show_text("samples per pixel: {:.3g}", static_cast<double>(shown->error->samples) / shown->size.x / shown->size.y);
 }
 
 /// How good the picture is, in words.
 std::string describe_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
-  if (!shown) return "the first picture comes";
-  if (shown->size != picture.full_size()) return "coarse while it moves";
+  if (!shown) return "making the first picture";
+  if (shown->size != picture.full_size()) return "coarse while moving";
   if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
   const std::string error = fmt::format("1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
-  if (!picture.is_settled()) return fmt::format("off by {} at most, sharpening", error);
-  if (shown->error->unmet_pixels == 0) return fmt::format("done: off by {} at most", error);
+  if (!picture.is_settled()) return fmt::format("refining: off by at most {}", error);
+  if (shown->error->unmet_pixels == 0) return fmt::format("done: off by at most {}", error);
   return fmt::format("done: off by {}, {} pixels by more", error, shown->error->unmet_pixels);
 }
 
@@ -172,7 +172,7 @@ void show_details(const OverlayContent& content, Switches& switches, OverlayAnsw
   choose_scale(switches.scale);
   choose_builder(switches.scene);
   auto speed = static_cast<float>(content.speed);
-  if (ImGui::DragFloat("speed", &speed, 0.02F * speed, 0.0F, 0.0F, "%.3g a second")) answer.speed = speed;
+  if (ImGui::DragFloat("speed", &speed, 0.02F * speed, 0.0F, 0.0F, "%.3g per second")) answer.speed = speed;
   if (content.picture != nullptr) show_times(content);
   ImGui::TreePop();
 }

@@ -220,7 +220,8 @@ void Viewer::update_screenshot() {
     if (std::optional<std::string> text = screenshot_.take()) {
       const std::string command = std::exchange(saved_command_, {});
       if (!command.empty()) window_.copy(command);
-      report(*text + (command.empty() ? "" : "; this gives the same, and is on the clipboard: " + command));
+      report(*text +
+             (command.empty() ? "" : "; this command renders the same and was copied to the clipboard: " + command));
     }
   } catch (const Error& error) {
     saved_command_.clear();
@@ -342,7 +343,7 @@ bool Viewer::awaits_mode() const {
 std::string Viewer::describe_awaited() const {
   if (opening_.is_busy()) return "loading " + file_.filename().string();
   if (preparer_ && preparer_->is_busy()) return preparer_->describe();
-  if (traced_ && traced_->picture().is_compiling()) return "compiling what refines";
+  if (traced_ && traced_->picture().is_compiling()) return "compiling the kernels for refinement";
   return query_.is_busy() ? "tracing a pixel" : "";
 }
 

@@ -50,7 +50,7 @@ void Viewer::look_at(const View& view, const uvec2& pixel) {
 }
 
 void Viewer::open(const std::filesystem::path& file) {
-  if (opening_.is_busy()) return report_failure("a scene is being opened already");
+  if (opening_.is_busy()) return report_failure("another scene is still being opened");
   file_ = file;
   window_.set_title(title_of(file_));
   opening_.start([this, file] { return start_.open(file); });
@@ -167,11 +167,10 @@ View Viewer::view_of_middle() const {
 void Viewer::print_command() {
   const View view = reproducible_view();
   if (!can_describe(described_scene(view), view)) {
-    return report_failure(
-        fmt::format("no command of promin render gives this view: no option takes the half height "
-                    "{:g} of an orthographic camera, and no camera of the scene has it; give the "
-                    "flight to promin render --path",
-                    view.camera.ymag));
+    return report_failure(fmt::format(
+        "no command of promin render renders this view: no option sets the half height {:g} of an orthographic camera, "
+        "and no camera of the scene has it; record the flight and use promin render --path",
+        view.camera.ymag));
   }
   fmt::print("{}\n", describe_command(described_scene(view), view));
   std::fflush(stdout);

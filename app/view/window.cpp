@@ -27,7 +27,7 @@ constexpr double kDoubleClickTime = 0.3;
   const char* reason = nullptr;
   glfwGetError(&reason);
   throw DeviceError({what + (reason == nullptr ? "" : " (" + std::string(reason) + ")"), "for the window",
-                     "render pictures without one with promin render"});
+                     "use promin render, which needs no window"});
 }
 
 /// The monitor that most of the window is on; null where there is none.
@@ -114,7 +114,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   if (glfwInit() == GLFW_FALSE) refuse("no display");
   if (glfwVulkanSupported() == GLFW_FALSE) {
     glfwTerminate();
-    throw DeviceError({"there is no Vulkan loader", "on this machine",
+    throw DeviceError({"the Vulkan loader is missing", "on this machine",
                        "install libvulkan1 and a driver such as mesa-vulkan-drivers"});
   }
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
@@ -122,7 +122,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   if (window_ == nullptr) {
     glfwTerminate();
     throw DeviceError(
-        {"the display opens no window", "for promin-view", "render pictures without one with promin render"});
+        {"the display cannot open a window", "for promin-view", "use promin render, which needs no window"});
   }
   glfwSetWindowUserPointer(window_, this);
   Callbacks::set(window_);

@@ -13,7 +13,7 @@
 // The inner loops of the SAH builder: boxes that fill whole registers, their bins, and the best plane between bins.
 namespace promin {
 
-/// Four floats in one register (GCC's and Clang's vector extension): x, y, z and a lane that is not looked at.
+/// Four floats in one register (vector extension of GCC and Clang): x, y, z and an unused lane.
 using Lanes = float __attribute__((vector_size(16)));
 using IntLanes = int32_t __attribute__((vector_size(16)));
 using DoubleLanes = double __attribute__((vector_size(32)));
@@ -41,7 +41,7 @@ struct LaneBox {
     hi = max(high, hi);
   }
   void extend(const LaneBox& box) { extend(box.lo, box.hi); }
-  /// Computed in double, because fp32 would overflow from coordinates of 1e19 on. The box must not be empty.
+  /// Computes in double, because fp32 would overflow for coordinates of 1e19 or more. The box must not be empty.
   double half_area() const {
     // Indices in the spare lane are slow to convert, because most are subnormal as floats.
     const DoubleLanes size = __builtin_convertvector(clear_spare_lane(hi), DoubleLanes) -
@@ -52,8 +52,8 @@ struct LaneBox {
   Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-/// A box to be sorted into the tree; its index in the builder's input travels in the spare lane. Without defaults,
-/// so that an array of millions is first touched by the threads that fill it.
+/// A box to sort into the tree; the spare lane holds its index in the builder's input. It has no defaults, so that an
+/// array of millions is first touched by the threads that fill it.
 struct Record {
   Lanes lo;
   Lanes hi;
@@ -70,7 +70,7 @@ struct Record {
   Lanes center() const { return fill_lanes(0.5F) * clear_spare_lane(lo) + fill_lanes(0.5F) * hi; }
 };
 
-/// What is known of a set of records: their common box and that of their centres.
+/// The bounds of a set of records: their common box and the box of their centres.
 struct Extent {
   LaneBox box;
   LaneBox centers;
@@ -91,13 +91,14 @@ class BinGrid {
  public:
   static constexpr uint32_t kMaxBins = 32;
 
-  /// For `count` records between these centres. Few records get few bins.
+  /// Creates a grid for `count` records whose centres lie in this box. Few records get few bins.
   BinGrid(const LaneBox& centers, uint32_t count);
 
   uint32_t bin_count() const { return bin_count_; }
-  /// False where the centres coincide (or are too near or far apart for a float): everything falls into bin 0.
+  /// Returns false if the centres coincide (or are too close or too far apart for a float); then everything falls into
+  /// bin 0.
   bool is_divided(int axis) const { return scale_[axis] > 0.0F; }
-  /// The bin on each axis; the spare lane has no meaning.
+  /// Returns the bin on each axis; the spare lane has no meaning.
   IntLanes bins_of(Lanes center) const { return __builtin_convertvector((center - origin_) * scale_, IntLanes); }
 
  private:
@@ -110,7 +111,7 @@ class BinGrid {
 struct Split {
   int axis = -1;
   uint32_t bin = 0;
-  /// Sum over both sides of half area times records; infinite where there is no plane with records on both sides.
+  /// Sum over both sides of half the area times the number of records; infinite if no plane has records on both sides.
   double cost = std::numeric_limits<double>::infinity();
 
   bool exists() const { return axis >= 0; }
@@ -122,7 +123,7 @@ inline bool is_below(Lanes center, const BinGrid& grid, const Split& split) {
 
 /// Boxes and numbers of the records in every bin of a grid, by bin and axis.
 struct Bins {
-  // These are not boxes, because the default constructor would make all of them empty.
+  // These are not boxes, because their default constructor would set all of them to empty.
   Lanes lo[BinGrid::kMaxBins][3];
   Lanes hi[BinGrid::kMaxBins][3];
   uint32_t counts[BinGrid::kMaxBins][3];
@@ -131,14 +132,14 @@ struct Bins {
   void add(const BinGrid& grid, std::span<const Record> records);
   void add(const Bins& bins, const BinGrid& grid);
   uint32_t count_below(const Split& split) const;
-  /// The boxes of the records below the plane and above it; empty where there is no plane.
+  /// Returns the boxes of the records below and above the plane; empty if there is no plane.
   std::pair<LaneBox, LaneBox> boxes_of(const Split& split, const BinGrid& grid) const;
 };
 
-/// The split that find_best_split finds in the bins of two records.
+/// Returns the split that find_best_split would find in the bins of two records.
 Split find_best_split(const BinGrid& grid, const Record& a, const Record& b);
 
-/// The cheapest plane; where several are equally cheap, the first by axis, then by bin.
+/// Returns the cheapest plane; of several equally cheap ones the first by axis, then by bin.
 Split find_best_split(const BinGrid& grid, const Bins& bins);
 
 }  // namespace promin

@@ -25,44 +25,44 @@ struct BvhNode {
   uint32_t count = 0;
 };
 
-/// What a builder makes. Node 0 is the root; a tree of no primitives has no nodes.
+/// The result of a builder. Node 0 is the root; a tree without primitives has no nodes.
 struct Bvh {
   UnsetVector<BvhNode> nodes;
   /// Indices of primitives in leaf order, each at least once. A primitive that a builder has split is in several
-  /// leaves, whose boxes hold it together.
+  /// leaves, whose boxes together contain it.
   UnsetVector<uint32_t> references;
 };
 
-/// No builder makes leaves larger, or trees deeper, than this: the device's leaf encoding and its traversal stack
-/// rest on it. The median fallback below kMaxBvhDepth - 32 keeps the depth for any count that fits 32 bits.
+/// The limits of all builders: the device's leaf encoding and its traversal stack depend on them. The median fallback
+/// below kMaxBvhDepth - 32 keeps the depth within the limit for any count that fits 32 bits.
 inline constexpr uint32_t kMaxLeafSize = 16;
 inline constexpr uint32_t kMaxBvhDepth = 96;
 
-/// No builder makes more references than this times the primitives.
+/// The largest number of references per primitive of any builder.
 inline constexpr uint32_t kMaxReferencesPerPrimitive = 2;
 
-/// Units of the SAH: a visit of an inner node, which tests two boxes, against the test of one primitive. Both are some
-/// forty operations on 48...64 bytes (two slab tests; a sheared triangle), hence equal weights.
+/// Units of the SAH: the cost of visiting an inner node, which tests two boxes, and of testing one primitive. Both take
+/// about forty operations on 48...64 bytes (two slab tests; a sheared triangle), hence equal weights.
 inline constexpr double kNodeCost = 1.0;
 inline constexpr double kTestCost = 1.0;
 
-/// What a tree is built over.
+/// The input of a builder.
 struct BuildInput {
   /// The box of each primitive; not empty, finite.
   std::span<const Bounds> boxes;
-  /// Gives a box inside `window` that holds every point of the primitive's part in there. The box is empty only where
-  /// there is no such point. `window` lies inside the primitive's box. Only builders that split primitives use this;
-  /// without it none is split. It must bear calls from several threads.
+  /// Returns a box inside `window` that contains every point of the primitive in there. The box is empty only if there
+  /// is no such point. `window` lies inside the primitive's box. Only builders that split primitives use this; without
+  /// it no primitive is split. Several threads may call it.
   std::function<Bounds(uint32_t primitive, const Bounds& window)> clip = {};
 };
 
 struct BuildOptions {
-  /// 0 takes one thread per core. The tree has the same bits for any number.
+  /// Number of threads; 0 uses one per core. The tree has the same bits for any number.
   unsigned thread_count = 0;
   ProgressCallback progress = {};
 };
 
-/// A tree depends on the input alone; a node comes after its parent. Throws UsageError for an unknown name.
+/// Builds a tree that depends only on the input. A node comes after its parent. Throws UsageError for an unknown name.
 Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOptions& options = {});
 
 BvhStats measure_bvh(std::string_view builder, const Bvh& bvh);

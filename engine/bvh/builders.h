@@ -4,14 +4,14 @@
 
 #include "bvh/builder.h"
 
-// The builders behind build_bvh, for the table in builder.cpp alone.
+// The builders behind build_bvh, only for the table in builder.cpp.
 namespace promin {
 
-/// Deeper ranges are halved by number, whatever lies where: 2^32 references halved 32 times fit into leaves.
+/// Deeper ranges are halved by count, regardless of positions: 2^32 references halved 32 times fit into leaves.
 inline constexpr uint32_t kMaxSahDepth = kMaxBvhDepth - 32;
 
 /// The thesis's tree (docs/model.md, "Acceleration"): sort the centroids along the longest axis of the node's box,
-/// equal ones by index; split at N/2; stop at two objects. It is the baseline that other builders are compared with.
+/// equal ones by index; split at N/2; stop at two objects. It is the baseline for comparisons with other builders.
 Bvh build_median(const BuildInput& input, const BuildOptions& options);
 
 /// Binned surface area heuristic on all three axes (Wald, "On fast Construction of SAH-based Bounding Volume
@@ -19,10 +19,10 @@ Bvh build_median(const BuildInput& input, const BuildOptions& options);
 Bvh build_sah(const BuildInput& input, const BuildOptions& options);
 
 /// The surface area heuristic with spatial splits (Stich, Friedrich, Dietrich, "Spatial Splits in Bounding Volume
-/// Hierarchies", HPG 2009): a plane may also cut primitives in two, whose parts get boxes of their own. The references
-/// that cutting may add are shared out from the root down, by number (Fuetterling et al., "Parallel Spatial Splits in
-/// Bounding Volume Hierarchies", EGPGV 2016), so that subtrees do not depend on each other. Where build_sah's tree
-/// costs less, it is that one. On all cores.
+/// Hierarchies", HPG 2009): a plane may also cut primitives in two, and each part gets its own box. The budget of
+/// references that cutting may add is distributed from the root down, by count (Fuetterling et al., "Parallel Spatial
+/// Splits in Bounding Volume Hierarchies", EGPGV 2016), so that subtrees do not depend on each other. If build_sah's
+/// tree costs less, the result is that tree. Uses all cores.
 Bvh build_spatial(const BuildInput& input, const BuildOptions& options);
 
 }  // namespace promin

@@ -115,14 +115,14 @@ uint64_t hash_file(Header header, std::span<const std::byte> nodes, std::span<co
 
 Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
   if (std::memcmp(bytes.data(), kMagic.data(), std::min(bytes.size(), kMagic.size())) != 0) {
-    throw InputError({"not a BVH file", file.string(), "name a file that promin-bvh build has written"});
+    throw InputError({"the file is not a BVH file", file.string(), "name a file that promin-bvh build has written"});
   }
   if (bytes.size() < sizeof(Header)) refuse(file, "the BVH file ends within its header");
   Header header;
   std::memcpy(&header, bytes.data(), sizeof(Header));
-  if (header.byte_order != kByteOrder) refuse(file, "the BVH file is of another byte order");
+  if (header.byte_order != kByteOrder) refuse(file, "the BVH file has another byte order");
   if (header.version != kVersion) {
-    refuse(file, "the BVH file is of version " + std::to_string(header.version) + " and this promin reads version " +
+    refuse(file, "the BVH file has version " + std::to_string(header.version) + " and this promin reads version " +
                      std::to_string(kVersion));
   }
   const bool has_known_kinds = (header.further_kinds & ~kTreeKinds) == 0;
@@ -161,10 +161,10 @@ class TreeCheck {
     // A child comes after its parent, so there is no cycle, and each node has been reached when its turn comes.
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     if (most_entries_ != tree_.stack_size) {
-      refuse(file_, "the BVH file's tree takes a stack of " + std::to_string(most_entries_) + " and claims " +
+      refuse(file_, "the BVH file's tree needs a stack of " + std::to_string(most_entries_) + " but declares " +
                         std::to_string(tree_.stack_size));
     }
-    if (slots_taken_ != tree_.references.size()) refuse(file_, "the BVH file has references in no leaf");
+    if (slots_taken_ != tree_.references.size()) refuse(file_, "the BVH file has references that belong to no leaf");
     check_stats();
     for (const uint32_t primitive : tree_.references) {
       if (primitive >= tree_.primitive_count) {
@@ -190,11 +190,11 @@ class TreeCheck {
     if (entries_[index] == kUnreached) refuse_node(index, "has no parent before it");
     const Node& node = tree_.nodes[index];
     const uint32_t count = child_count(node);
-    if (count > layout::NODE_WIDTH) refuse_node(index, "tells of " + std::to_string(count) + " children");
+    if (count > layout::NODE_WIDTH) refuse_node(index, "declares " + std::to_string(count) + " children");
     // The only node without children is that of an empty tree.
     if (count == 0 && tree_.nodes.size() > 1) refuse_node(index, "has no children");
     const uint32_t entries = entries_[index];
-    if (entries > kMaxStackSize) refuse_node(index, "lies deeper than any builder goes");
+    if (entries > kMaxStackSize) refuse_node(index, "lies deeper than in the tree of any builder");
     most_entries_ = std::max(most_entries_, entries);
     for (uint32_t i = 0; i < count; ++i) {
       const NodeChild child = child_of(node, i);
@@ -217,7 +217,7 @@ class TreeCheck {
     const bool is_so = stats.leaves == leaf_count_ && stats.max_leaf_size == max_leaf_size_ &&
                        stats.nodes == binary_nodes && stats.depth <= kMaxBvhDepth && stats.sah_cost >= 0.0 &&
                        std::isfinite(stats.sah_cost);
-    if (!is_so) refuse(file_, "the BVH file tells of another tree than it holds");
+    if (!is_so) refuse(file_, "the BVH file describes another tree than it holds");
   }
 
   void take_slots(uint32_t index, const NodeChild& leaf) {
@@ -252,7 +252,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   const uint64_t reference_bytes = uint64_t{header.reference_count} * sizeof(uint32_t);
   const uint64_t size = sizeof(Header) + node_bytes + reference_bytes;
   if (bytes.size() != size) {
-    refuse(file, "the BVH file has " + std::to_string(bytes.size()) + " bytes where its header tells of " +
+    refuse(file, "the BVH file has " + std::to_string(bytes.size()) + " bytes, but its header declares " +
                      std::to_string(size));
   }
   const auto nodes = bytes.subspan(sizeof(Header), node_bytes);
@@ -282,7 +282,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
 
 void BvhFile::check_scene(uint64_t geometry_hash, size_t bounded_count) const {
   if (geometry_hash != tree_.geometry_hash || bounded_count != tree_.primitive_count) {
-    refuse(file_, "the BVH file is stale: it was built over other geometry than the scene's");
+    refuse(file_, "the BVH file is stale: it was built from other geometry than the scene's");
   }
 }
 

@@ -11,18 +11,18 @@
 
 namespace promin {
 
-/// A tree in a file that can be uploaded as it lies there; docs/bvh_file.md has the format.
+/// A tree in a file whose bytes can be uploaded directly; docs/bvh_file.md describes the format.
 class BvhFile {
  public:
-  /// Maps the file and checks all of it: what tree() shows can be traversed, whoever wrote it, and its references are
-  /// primitives. That the boxes hold the primitives is not checked (find_tree_faults does). Throws InputError.
+  /// Maps the file and checks it completely: afterwards tree() can be traversed and its references are valid, whoever
+  /// wrote the file. It does not check that the boxes contain the primitives; find_tree_faults does. Throws InputError.
   explicit BvhFile(const std::filesystem::path& file);
 
-  /// The tree lives as long as this.
+  /// Returns the tree, which is valid as long as this object.
   const TreeView& tree() const { return tree_; }
   size_t size_bytes() const { return mapped_.bytes().size(); }
 
-  /// Throws InputError unless the tree was built over this geometry (PackedScene).
+  /// Throws InputError unless the tree was built from this geometry (PackedScene).
   void check_scene(uint64_t geometry_hash, size_t bounded_count) const;
 
  private:
@@ -31,7 +31,7 @@ class BvhFile {
   TreeView tree_;
 };
 
-/// Writes the file whole or not at all. Throws RunError.
+/// Writes the file completely or not at all. Throws RunError.
 void write_bvh_file(const std::filesystem::path& file, const TreeView& tree);
 
 }  // namespace promin

@@ -8,9 +8,9 @@
 
 namespace promin {
 
-/// The box of that part of a triangle which lies inside a window. It lies inside the window and the triangle's box, and
-/// is rounded outward, so that no point of the part is outside. It may be empty where there is no such part. The window
-/// may be of any size.
+/// Returns the box of the part of a triangle inside a window. It lies inside the window and the triangle's box, and is
+/// rounded outward, so that it contains every point of the part. It may be empty if there is no such part. The window
+/// may have any size.
 Bounds clip_triangle(const std::array<vec3, 3>& corners, const Bounds& window);
 
 }  // namespace promin

@@ -192,7 +192,7 @@ class Inspection {
     const ExactBounds whole{bounds.lo, bounds.hi};
     if (slots.size() == 1) {
       if (contains(box_of(slots.front()), whole)) return;
-      add_fault(faults, name_of(primitive) + " reaches out of the box of its leaf or of a node above it");
+      add_fault(faults, name_of(primitive) + " extends outside the box of its leaf or of a node above it");
       return;
     }
     std::vector<ExactBounds> boxes;

@@ -10,10 +10,10 @@
 
 namespace promin {
 
-/// One of the parts that a triangle is packed as (device_scene/cut_triangles.h).
+/// One of the parts into which a triangle is packed (device_scene/cut_triangles.h).
 struct PackedPart {
   uint32_t order = 0;
-  /// The number of parts up to this one, of all triangles, that are not the first of their triangle.
+  /// Number of parts of all triangles, up to and including this one, that are not the first part of their triangle.
   uint32_t further_parts = 0;
   /// The weights of the triangle's second and third corner, at each of the part's three corners.
   std::array<vec2, 3> weights{};
@@ -37,8 +37,8 @@ struct PrimitiveId {
 };
 PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order);
 
-/// Converts the weights of a packed part's second and third corner to those of the whole triangle's, as it is in its
-/// object, which primitive_of_order tells.
+/// Converts the weights of a packed part's second and third corner to those of the whole triangle in its object
+/// (primitive_of_order).
 vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, uint32_t object, const vec2& weights);
 
 }  // namespace promin

@@ -8,7 +8,7 @@
 #include "layout.h"
 #include "promin/math.h"
 
-// Reads on the host what pack_tree and pack_scene write, as the shaders read it: for checks, tests and builders.
+// Host functions that read the data of pack_tree and pack_scene as the shaders do, for checks, tests and builders.
 namespace promin {
 
 /// A box in double. By default it is unbounded.
@@ -27,16 +27,16 @@ struct NodeChild {
   uint32_t count = 0;
 };
 
-/// The number of children that a node claims: at most NODE_WIDTH, unless the bits are not those of a node.
+/// Returns the number of children that a node declares: at most NODE_WIDTH, unless the bits are not those of a node.
 uint32_t child_count(const layout::Node& node);
 
 /// Child 0...NODE_WIDTH - 1; children from child_count on are absent.
 NodeChild child_of(const layout::Node& node, uint32_t child);
 
-/// The box of a child that is there. Bits that are no box (NaN, infinity) are returned as they are.
+/// Returns the box of an existing child. Bits that are not a box (NaN, infinity) are returned unchanged.
 ExactBounds child_box(const layout::Node& node, uint32_t child);
 
-/// The bounds of any primitive of the tree, as conservative as bounds_of of its shape.
+/// Returns the bounds of any primitive of the tree, as conservative as bounds_of for its shape.
 Bounds primitive_bounds(const layout::Primitive& primitive);
 
 /// The corners of a primitive of KIND_TRIANGLE.

@@ -21,7 +21,7 @@ std::optional<Problem> find_lack_of_space(const std::string& what, uint64_t byte
     munmap(probe, bytes);
     return std::nullopt;
   }
-  return Problem{"too little address space for " + what,
+  return Problem{"there is too little address space for " + what,
                  "of the " + std::to_string(*limit >> 20) + " MiB that ulimit -v allows fewer than " +
                      std::to_string(bytes >> 20) + " are free",
                  "raise ulimit -v"};

@@ -8,7 +8,7 @@ namespace promin {
 namespace {
 
 std::string join_sentences(const std::vector<Problem>& problems) {
-  if (problems.empty()) return "unknown failure";
+  if (problems.empty()) return "the failure is unknown";
   std::string text = problems.front().sentence();
   if (problems.size() > 1) text += " (1 of " + std::to_string(problems.size()) + " problems)";
   for (size_t i = 1; i < problems.size(); ++i) text += "\n  " + problems[i].sentence();

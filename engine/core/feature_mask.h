@@ -9,7 +9,7 @@
 
 namespace promin::layout {
 
-/// A set of features FEATURE_* (promin/kinds): what a scene uses or a caller asks for and a pipeline is specialised to.
+/// A set of features FEATURE_* (promin/kinds) that a scene uses or a caller requests. Pipelines are specialised for it.
 class FeatureMask {
  public:
   constexpr FeatureMask() = default;

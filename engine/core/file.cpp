@@ -35,17 +35,17 @@ void refuse_lost_folder(const fs::path& file) {
   if (file.is_absolute()) return;
   static_cast<void>(fs::current_path(error));
   if (error != std::errc::no_such_file_or_directory) return;
-  throw RunError({"the current folder is gone", file.string(), "change to a folder that exists"});
+  throw RunError({"the current folder no longer exists", file.string(), "change to a folder that exists"});
 }
 
 fs::file_status find_input(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::none) {
-    throw InputError({"cannot reach the file (" + error.message() + ")", file.string(), "check its permissions"});
+    throw InputError({"the file cannot be accessed (" + error.message() + ")", file.string(), "check its permissions"});
   }
   if (!fs::exists(status)) refuse_lost_folder(file);
-  if (!fs::exists(status)) throw InputError({"file not found", file.string(), "check the path"});
+  if (!fs::exists(status)) throw InputError({"the file does not exist", file.string(), "check the path"});
   return status;
 }
 
@@ -61,14 +61,14 @@ std::vector<std::byte> read_file(const fs::path& file, uint64_t most_bytes) {
   const fs::file_status status = find_input(file);
   if (fs::is_directory(status)) throw InputError({"is a folder, not a file", file.string(), "name a file in it"});
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw InputError({"cannot open the file", file.string(), "check its permissions"});
+  if (!stream) throw InputError({"the file cannot be opened", file.string(), "check its permissions"});
   const std::streamoff size = stream.tellg();
-  if (size < 0) throw InputError({"cannot read the file", file.string(), "name a regular file"});
+  if (size < 0) throw InputError({"the file cannot be read", file.string(), "name a regular file"});
   if (size == 0) throw InputError({"the file is empty", file.string(), "export it again"});
   std::vector<std::byte> bytes(std::min(static_cast<uint64_t>(size), most_bytes));
   stream.seekg(0);
   if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-    throw InputError({"cannot read the file to its end", file.string(), "check the disk"});
+    throw InputError({"the file cannot be read to its end", file.string(), "check the disk"});
   }
   if (const StandIn* stand_in = find_stand_in({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
     throw InputError({std::string("the file is ") + stand_in->what, file.string(), stand_in->cure});
@@ -208,7 +208,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::fail() const {
-  throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
+  throw RunError({std::string("the output file cannot be written (") + std::strerror(errno) + ")", target_.string(),
                   "check the disk and permissions"});
 }
 
@@ -243,8 +243,8 @@ bool keep_old(const fs::path& file, const fs::path& name) {
   if (!error) return true;
   fs::copy_file(file, name, fs::copy_options::overwrite_existing, error);
   if (!error) return true;
-  throw RunError({"cannot keep the old file until the new ones are there (" + error.message() + ")", file.string(),
-                  "move it elsewhere, or check the disk and permissions"});
+  throw RunError({"the old file cannot be kept until the new ones are complete (" + error.message() + ")",
+                  file.string(), "move it elsewhere, or check the disk and permissions"});
 }
 
 }  // namespace
@@ -325,7 +325,7 @@ void write_file(const fs::path& file, std::initializer_list<std::span<const std:
   }
   stream.close();
   if (!stream) {
-    throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", file.string(),
+    throw RunError({std::string("the output file cannot be written (") + std::strerror(errno) + ")", file.string(),
                     "check the disk and permissions"});
   }
   output.commit();

@@ -20,11 +20,11 @@ namespace promin {
 /// The file's ending in lower case, with its dot; empty if it has none.
 std::string lower_case_ending(const std::filesystem::path& file);
 
-/// Throws RunError where a path begins at the current folder, and that was removed.
+/// Throws RunError if a path is relative to the current folder and that folder was removed.
 void refuse_lost_folder(const std::filesystem::path& file);
 
-/// The status of a file that is to be read. Throws InputError if it is missing or cannot be reached, and RunError where
-/// the current folder, at which the path begins, was removed.
+/// Returns the status of a file to read. Throws InputError if it is missing or cannot be accessed, and RunError if the
+/// path is relative to the current folder and that folder was removed.
 std::filesystem::file_status find_input(const std::filesystem::path& file);
 
 /// Identifies a version of a file: it differs when the file is written or another takes its place.
@@ -64,19 +64,18 @@ class AtomicFile {
 
   /// The temporary file lies beside the target and has its ending, so that writers which pick the format by the ending
   /// see the right one: NAME.tmpPID-HOST.ENDING; NAME.2.tmp… where another thread of the process writes the same
-  /// target. NAME and ENDING are cut where the whole would be longer than the file system allows.
+  /// target. NAME and ENDING are shortened if the whole would be longer than the file system allows.
   const std::filesystem::path& temporary() const { return temporary_; }
 
   /// Flushes the temporary file to disk and renames it. Throws RunError.
   void commit();
-  /// Commits all or none: flushes all before it renames any, and where one cannot be renamed puts the others' old files
-  /// back. A process that is killed on the way leaves old files alone or new files alone, perhaps without those that
-  /// come later in the list, but never a new file beside an old one. Throws RunError.
+  /// Commits all files or none: flushes all before it renames any, and restores the old files if one cannot be renamed.
+  /// A process that is killed meanwhile leaves either only old files or only new files, perhaps without those later in
+  /// the list, but never a mixture. Throws RunError.
   static void commit_together(std::span<AtomicFile* const> files);
 
  private:
-  /// Makes the temporary file with the mode of the file that it replaces, so that nobody reads it meanwhile who may not
-  /// read that one.
+  /// Creates the temporary file with the mode of the file that it replaces, so that it is never readable by more users.
   void begin_with_mode();
   void flush() const;
   void rename_to_target();
@@ -89,12 +88,11 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Removes from a folder the temporary files of AtomicFiles whose processes have ended on this machine without a chance
-/// to do so. What cannot be removed stays.
+/// Removes from a folder the temporary files of processes on this machine that ended without removing them. Files that
+/// cannot be removed stay.
 void clear_leftovers(const std::filesystem::path& folder);
 
-/// Writes all of the bytes at a place of an open file. Returns 0, or the number of the error (errno) that kept it from
-/// it.
+/// Writes all bytes at a position of an open file. Returns 0, or errno after a failure.
 int write_at(int descriptor, uint64_t place, std::span<const std::byte> bytes) noexcept;
 
 /// Writes a whole file atomically, part after part. Throws RunError.

@@ -9,13 +9,13 @@
 
 namespace promin {
 
-/// A lock that one holder has at a time, of threads, of processes, and where the file system knows locks of all
-/// machines that see the file. It ends with the object or the process, whatever ends that. It is there to spare work
-/// that several would do at once, and to keep nothing right: who cannot have it goes on without.
+/// A lock that excludes other threads, other processes and, if the file system supports it, other machines. It is
+/// released with the object or when the process ends in any way. It only avoids duplicate work; correctness does not
+/// depend on it, and a caller that cannot get it continues without it.
 class FileLock {
  public:
-  /// Makes the file, which stays, and waits for the lock; without it where there are no locks to be had, or another has
-  /// held it so long. Throws Cancelled where `progress`, which is asked meanwhile, says so.
+  /// Creates the file, which stays, and waits for the lock. Continues without it if locks are not supported, or if
+  /// another process has held it for `patience`. Calls `progress` meanwhile and throws Cancelled if it returns false.
   FileLock(const std::filesystem::path& file, std::chrono::seconds patience, const ProgressCallback& progress);
   ~FileLock();
   FileLock(const FileLock&) = delete;

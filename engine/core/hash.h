@@ -18,16 +18,16 @@ inline uint32_t mix_bits(uint32_t x) {
   return x ^ x >> 16;
 }
 
-/// A 64-bit checksum over words of 8 bytes: each is mixed in by xor, a multiplication by an odd number and a shift.
-/// Each step is one to one, so data that differ in one word alone never have the same value. It does not protect
-/// against forgers.
+/// A 64-bit checksum over words of 8 bytes. Each word is mixed in by xor, a multiplication by an odd number and a
+/// shift. Each step is a bijection, so data that differ in a single word never have the same checksum. It does not
+/// protect against deliberate changes.
 class Hash64 {
  public:
   void add(uint64_t word) {
     state_ = (state_ ^ word) * kMultiplier;
     state_ ^= state_ >> 32;
   }
-  /// A last word that is not full is filled with zeros.
+  /// An incomplete last word is padded with zeros.
   void add(std::span<const std::byte> bytes) {
     for (size_t i = 0; i < bytes.size(); i += sizeof(uint64_t)) {
       uint64_t word = 0;

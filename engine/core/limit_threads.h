@@ -4,7 +4,7 @@
 
 namespace promin {
 
-/// From here on core_count() (core/parallel.h) is `count`, at least 1. For the beginning of a program.
+/// Sets core_count() (core/parallel.h) to `count`, at least 1. Call it at the start of a program.
 void limit_threads(unsigned count);
 
 }  // namespace promin

@@ -8,11 +8,11 @@
 
 namespace promin {
 
-/// A regular file as memory that is read only. The file must not be changed in place while it is mapped; one that is
-/// replaced by another (AtomicFile) stays as it was.
+/// A regular file, mapped read-only into memory. The file must not be changed in place while it is mapped. Replacing it
+/// by another (AtomicFile) does not change the mapping.
 class MappedFile {
  public:
-  /// Throws InputError, with the place and the cure, if it is missing, not a regular file, not readable or empty.
+  /// Maps the file. Throws InputError if it is missing, not a regular file, not readable or empty.
   explicit MappedFile(const std::filesystem::path& file);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

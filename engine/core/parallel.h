@@ -12,30 +12,30 @@
 
 namespace promin {
 
-/// The machine's number of cores, or 1 where it is not known.
+/// Returns the machine's number of cores, or 1 if it is unknown.
 unsigned core_count();
 
-/// Whether the system starts so many further threads now.
+/// Returns whether the system can start this number of further threads now.
 bool can_start_threads(size_t count);
 
-/// The problem where it does not.
+/// Returns the problem if it cannot.
 Problem explain_no_threads();
 
 /// Calls task(i) once for every i in [0, count) and returns when all calls have. The calls share up to `thread_count`
-/// threads (0: as many as the machine has cores) and start in the order of i; where the
-/// system starts fewer threads, those do the whole work. After an exception no further call starts, and the first one
-/// is rethrown here.
+/// threads (0: as many as the machine has cores) and start in the order of i; if the system starts fewer threads, those
+/// do the whole work. After an exception no further call starts, and the first one is rethrown here.
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task);
 
-/// Does the same for ranges: calls task(begin, end) for [0, count) in pieces of `size`; the last one has what is left.
+/// Does the same for ranges: divides [0, count) into pieces of `size`, the last one with the remainder, and calls
+/// task(begin, end) for each.
 template <typename Task>
 void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task& task) {
   for_each_index((count + size - 1) / size, thread_count,
                  [&](size_t i) { task(i * size, std::min(count, (i + 1) * size)); });
 }
 
-/// Returns a part for each such piece, in order: `initial`, after work(begin, end, part). What is made of the parts in
-/// their order does not depend on the number of threads.
+/// Returns a part for each such piece, in order: a copy of `initial` after work(begin, end, part). A result that is
+/// computed from the parts in order does not depend on the number of threads.
 template <typename Part, typename Work>
 std::vector<Part> make_parts(size_t count, size_t size, unsigned thread_count, const Part& initial, const Work& work) {
   std::vector<Part> parts((count + size - 1) / size, initial);
@@ -43,7 +43,7 @@ std::vector<Part> make_parts(size_t count, size_t size, unsigned thread_count, c
   return parts;
 }
 
-/// Those of [0, count) for which a test that takes little holds, in order.
+/// Returns the indices of [0, count) for which a cheap test holds, in order.
 template <typename Test>
 std::vector<uint32_t> find_indices(size_t count, const Test& test) {
   using Indices = std::vector<uint32_t>;
@@ -59,7 +59,7 @@ std::vector<uint32_t> find_indices(size_t count, const Test& test) {
   return all;
 }
 
-/// Calls task(i) for each pixel, or whatever else takes little: many to a piece.
+/// Calls task(i) for each pixel or another cheap item, many per piece.
 template <typename Task>
 void for_each_pixel(size_t count, const Task& task) {
   constexpr size_t kPixels = 4096;

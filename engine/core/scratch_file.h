@@ -9,13 +9,13 @@
 
 namespace promin {
 
-/// Room on disk for what is too much for memory until a file can be written: a file without a name in the folder of
-/// that file, so that nothing of it is left however the process ends. Any threads may write and read places that do not
+/// Disk space for data that is too large for memory until a file can be written: a nameless file in the folder of that
+/// file, so that nothing of it remains however the process ends. Several threads may write and read ranges that do not
 /// overlap.
 class ScratchFile {
  public:
-  /// Takes the room of so many bytes at once where the file system can promise it; others tell while it is written.
-  /// Throws RunError, whose place is `target`, where there is not as much.
+  /// Reserves this number of bytes if the file system supports it; other file systems report a lack of space when the
+  /// file is written. Throws RunError with the place `target` if there is not enough space.
   ScratchFile(std::filesystem::path target, uint64_t byte_count);
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;

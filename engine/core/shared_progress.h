@@ -10,8 +10,8 @@
 
 namespace promin {
 
-/// Reports to a callback, which may be empty, the fraction of some work that is done. Throws Cancelled where the
-/// callback returns false.
+/// Reports the fraction of the work that is done to a callback, which may be empty. Throws Cancelled if the callback
+/// returns false.
 inline void tell_progress(const ProgressCallback& callback, double fraction) {
   if (callback && !callback(fraction)) throw Cancelled();
 }

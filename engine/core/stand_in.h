@@ -6,18 +6,18 @@
 
 namespace promin {
 
-/// What lies in the place of a file that was never fetched.
+/// A file that was left in place of one that was never fetched.
 struct StandIn {
   /// What it is.
   const char* what;
   const char* cure;
 };
 
-/// The kind of stand-in that a file is by its first bytes: a pointer of Git LFS, or a web page. nullptr where it is
-/// none.
+/// Returns the kind of stand-in that the first bytes of a file show: a Git LFS pointer or a web page. nullptr for other
+/// files.
 const StandIn* find_stand_in(std::string_view first_bytes);
 
-/// The text behind a byte order mark and white space.
+/// Returns the text after a byte order mark and white space.
 std::string_view skip_to_text(std::string_view bytes);
 
 }  // namespace promin

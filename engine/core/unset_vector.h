@@ -10,8 +10,8 @@
 
 namespace promin {
 
-/// Memory that is aligned to 64 bytes. From 4 MiB on it is in huge pages where the system has them, because touching
-/// millions of elements for the first time costs as much as computing them otherwise. Throws std::bad_alloc.
+/// Memory that is aligned to 64 bytes. From 4 MiB on it uses huge pages if the system has them, because otherwise the
+/// first access to millions of elements costs as much as computing them. Throws std::bad_alloc.
 void* allocate_pages(size_t bytes);
 void free_pages(void* memory, size_t bytes);
 

@@ -7,12 +7,12 @@
 
 namespace promin {
 
-/// The text with U+FFFD in place of what is not UTF-8: names and words of files may be in any encoding, but messages,
-/// JSON, EXR files and Python want UTF-8.
+/// Returns the text with U+FFFD in place of bytes that are not UTF-8. Names and words of files may have any encoding,
+/// but messages, JSON, EXR files and Python need UTF-8.
 std::string to_utf8(std::string_view text);
 
-/// The text with question marks in place of control characters, for what a terminal shows: names and words of files may
-/// hold line feeds and what drives it.
+/// Returns the text with question marks in place of control characters, for output on a terminal. Names and words of
+/// files may contain line feeds and escape sequences.
 std::string to_one_line(std::string_view text);
 
 }  // namespace promin

@@ -108,13 +108,13 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& device, uint32_t index, vk::
   info.api_version = version_text(properties.apiVersion);
   if (properties.apiVersion < VK_API_VERSION_1_1) {
     info.driver = "driver " + version_text(properties.driverVersion);
-    info.obstacles.push_back("only Vulkan " + info.api_version + ", 1.1 is needed");
+    info.obstacles.push_back("it has only Vulkan " + info.api_version + ", 1.1 is needed");
     return info;
   }
   info.driver = driver_text(device, properties);
   info.uuid = uuid_of(device);
   if (!find_family(device, {})) {
-    info.obstacles.emplace_back("no compute queue");
+    info.obstacles.emplace_back("it has no compute queue");
     return info;
   }
   const auto family = find_family(device, surface);
@@ -170,7 +170,7 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
     if (!selection && infos[i].is_default) return i;
   }
   if (!selection) {
-    throw DeviceError({"no usable Vulkan device (" + infos[0].name + ": " + infos[0].obstacles[0] + ")",
+    throw DeviceError({"there is no usable Vulkan device (" + infos[0].name + ": " + infos[0].obstacles[0] + ")",
                        "on this machine", "install a driver such as mesa-vulkan-drivers"});
   }
   size_t number = 0;
@@ -186,11 +186,11 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
       throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],
-                         "asked for as the device", "choose another of: " + list_names(infos), Setting::kDevice});
+                         "requested as the device", "choose another of: " + list_names(infos), Setting::kDevice});
     }
     return i;
   }
-  throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "asked for as the device",
+  throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "requested as the device",
                      "choose one of: " + list_names(infos), Setting::kDevice});
 }
 
@@ -220,10 +220,11 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   try {
     work();
   } catch (const vk::OutOfDeviceMemoryError& error) {
-    throw RunError({"out of device memory", error.what(),
+    throw RunError({"the device has not enough memory", error.what(),
                     cure_short_memory("use a smaller scene or picture, or another device"), Setting::kDevice});
   } catch (const vk::OutOfHostMemoryError& error) {
-    throw RunError({"out of host memory", error.what(), cure_short_memory("use a smaller scene or picture")});
+    throw RunError(
+        {"the host has not enough memory", error.what(), cure_short_memory("use a smaller scene or picture")});
   } catch (const vk::DeviceLostError& error) {
     throw RunError({"the device was lost", error.what(), "try again, or another device", Setting::kDevice});
   } catch (const vk::SystemError& error) {
@@ -246,7 +247,7 @@ Device::Device(const DeviceOptions& options)
   physical_ = std::move(devices[index]);
   info_ = infos[index];
   choice_ = "using " + info_.name + " (" + info_.type + ", " + info_.driver + "), " +
-            (options.selection   ? "asked for as the device"
+            (options.selection   ? "requested as the device"
              : infos.size() == 1 ? "the only Vulkan device"
                                  : "the first of the best kind among " + std::to_string(infos.size()) + " devices");
   translate_vulkan_errors([&] {

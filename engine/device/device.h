@@ -19,7 +19,7 @@
 
 namespace promin::gpu {
 
-/// What a window asks of a device beside tracing.
+/// The requirements of a window on a device, in addition to tracing.
 struct Presentation {
   std::vector<const char*> instance_extensions;
   /// Makes the surface, which the device will own. Throws DeviceError.
@@ -29,9 +29,9 @@ struct Presentation {
 struct DeviceOptions {
   /// See open_device (promin/device.h).
   std::optional<std::string> selection = std::nullopt;
-  /// Where not null, a device that can present to its surface.
+  /// If not null, the device must be able to present to its surface.
   const Presentation* presentation = nullptr;
-  /// Optional features to enable; no other is.
+  /// Optional features to enable; no others are enabled.
   std::vector<FeatureRequest> features = {};
   /// Replaces the profile's. Tests set it to 1: such kernels compile in two thirds of the time.
   std::optional<uint32_t> pixel_packet_size = std::nullopt;
@@ -40,9 +40,9 @@ struct DeviceOptions {
 /// Runs `work` and turns Vulkan's exceptions into RunError sentences that name the call and the result.
 void translate_vulkan_errors(const std::function<void()>& work);
 
-/// A Vulkan instance and one logical device with one queue that computes; for a window it draws and presents as well.
-/// Needs nothing beyond Vulkan 1.1's required minima, and enables nothing beyond them that is not asked for. Several
-/// threads may use a device, each its own buffers and pipelines.
+/// A Vulkan instance and one logical device with one compute queue; for a window the queue also draws and presents. It
+/// needs only the minima that Vulkan 1.1 requires, and enables other features only on request. Several threads may use
+/// a device, each with its own buffers and pipelines.
 class Device {
  public:
   /// Throws DeviceError.
@@ -52,12 +52,12 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
   const std::string& choice() const { return choice_; }
-  /// What suits it.
+  /// Returns the settings that suit the device.
   const DeviceProfile& profile() const { return profile_; }
-  /// Whether a feature that was asked for is there.
+  /// Returns whether a requested feature is enabled.
   bool has_enabled(OptionalFeature feature) const { return has_feature(enabled_features_, feature); }
   const vk::PhysicalDeviceFeatures& enabled_features() const { return enabled_features_; }
-  /// Names of the device's extensions that are on.
+  /// Returns the names of the enabled device extensions.
   const std::vector<const char*>& enabled_extensions() const { return enabled_extensions_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
 
@@ -70,26 +70,26 @@ class Device {
     const std::lock_guard lock(queue_mutex_);
     return use(queue_);
   }
-  /// Waits until nothing that was submitted is left to do.
+  /// Waits until all submitted work is done.
   void wait_idle() const;
   uint32_t queue_family() const { return queue_family_; }
   /// Null without a window.
   const vk::raii::SurfaceKHR& surface() const { return surface_; }
   CompiledPipelines& compiled_pipelines() const { return compiled_pipelines_; }
   const vk::PhysicalDeviceLimits& limits() const { return limits_; }
-  /// Nanoseconds a timestamp tick; 0 where the queue has no timestamps.
+  /// Returns nanoseconds per timestamp tick; 0 if the queue has no timestamps.
   double timestamp_period_ns() const { return timestamp_period_ns_; }
-  /// Ticks between two timestamps, of which the device may have fewer than 64 bits.
+  /// Returns the ticks between two timestamps, which may have fewer than 64 bits.
   uint64_t ticks_between(uint64_t first, uint64_t second) const { return (second - first) & timestamp_mask_; }
 
-  /// Index of the first memory type in `allowed_types` that has all of `wanted`, or none.
+  /// Returns the index of the first memory type in `allowed_types` that has all properties of `wanted`, or nullopt.
   std::optional<uint32_t> find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const;
 
-  /// Records one command buffer, submits it and waits until the device has finished; one thread after the other.
+  /// Records one command buffer, submits it and waits until the device has finished. Threads take turns.
   void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
  private:
-  // Declared in the order of their making: each needs those before it.
+  // Declared in order of creation: each needs those before it.
   std::unique_ptr<std::atomic<uint64_t>> validation_messages_;
   vk::raii::Context context_;
   vk::raii::Instance instance_{nullptr};

@@ -27,7 +27,7 @@ std::string find_fault(const fs::path& file) {
   if (fs::is_directory(file, error)) return "";
   std::ifstream stream(file);
   if (!stream) return "cannot be read";
-  return nlohmann::json::accept(stream) ? "" : "is no JSON";
+  return nlohmann::json::accept(stream) ? "" : "is not JSON";
 }
 
 /// The first fault among the files of a variable, which colons part.
@@ -36,7 +36,7 @@ std::optional<Problem> find_fault_in(const std::string& variable, const std::str
   for (std::string file; std::getline(list, file, ':');) {
     const std::string fault = file.empty() ? "" : find_fault(file);
     if (fault.empty()) continue;
-    return Problem{"no Vulkan device: the manifest of a driver " + fault, file + ", named by " + variable,
+    return Problem{"there is no Vulkan device: the manifest of a driver " + fault, file + ", named by " + variable,
                    "correct " + variable + " or unset it"};
   }
   return std::nullopt;
@@ -70,10 +70,10 @@ Problem explain_missing_driver() {
   for (const std::string variable : kVariables) {
     const char* files = std::getenv(variable.c_str());
     if (files == nullptr) continue;
-    return {"no Vulkan device", "with " + variable + " set to \"" + files + "\"",
+    return {"there is no Vulkan device", "with " + variable + " set to \"" + files + "\"",
             "name a driver's manifest in " + variable + " or unset it"};
   }
-  return {"no Vulkan device", "on this machine", "install a driver such as mesa-vulkan-drivers"};
+  return {"there is no Vulkan device", "on this machine", "install a driver such as mesa-vulkan-drivers"};
 }
 
 }  // namespace promin::gpu

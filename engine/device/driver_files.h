@@ -8,14 +8,14 @@
 
 namespace promin::gpu {
 
-/// Where the process may have too little address space for a Vulkan driver: these crash where they meet the limit.
+/// Returns a problem if the process may have too little address space for a Vulkan driver; drivers crash at the limit.
 std::optional<Problem> find_lack_of_address_space();
 
-/// The first file that is no manifest among those that the environment names for Vulkan's loader.
+/// Returns a problem for the first file that the environment names for Vulkan's loader and that is not a manifest.
 std::optional<Problem> find_manifest_fault();
 
-/// Why Vulkan's loader finds no driver that works: such a lack, such a file, else a variable that chooses drivers, else
-/// that none is installed.
+/// Returns the reason why Vulkan's loader finds no working driver: one of the problems above, else a variable that
+/// selects drivers, else that none is installed.
 Problem explain_missing_driver();
 
 }  // namespace promin::gpu

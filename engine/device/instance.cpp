@@ -46,7 +46,7 @@ vk::raii::Context load_vulkan() {
   try {
     return {};
   } catch (const std::exception&) {
-    throw DeviceError({"there is no Vulkan loader", "on this machine",
+    throw DeviceError({"the Vulkan loader is missing", "on this machine",
                        "install libvulkan1 and a driver such as "
                        "mesa-vulkan-drivers"});
   }
@@ -60,10 +60,10 @@ vk::raii::Instance try_make_instance(const vk::raii::Context& context, std::vect
   vk::InstanceCreateFlags flags;
   if (!mode.empty()) {
     if (mode != "core" && mode != "sync") {
-      throw UsageError({"unknown validation mode " + mode, "in PROMIN_VALIDATION", "use core or sync"});
+      throw UsageError({"there is no validation mode " + mode, "in PROMIN_VALIDATION", "use core or sync"});
     }
     if (!has_layer(context, kValidationLayer)) {
-      throw DeviceError({std::string(kValidationLayer) + " is not installed", "asked for by PROMIN_VALIDATION",
+      throw DeviceError({std::string(kValidationLayer) + " is not installed", "requested by PROMIN_VALIDATION",
                          "install vulkan-validationlayers"});
     }
     layers.push_back(kValidationLayer);
@@ -92,7 +92,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<c
   } catch (const vk::SystemError& error) {
     // A manifest that is no JSON is OutOfHostMemory to the loader.
     if (find_manifest_fault()) throw NoDriverError();
-    throw DeviceError({std::string("Vulkan does not start (") + error.what() + ")", "on this machine",
+    throw DeviceError({std::string("Vulkan cannot start (") + error.what() + ")", "on this machine",
                        "install a Vulkan 1.1 driver such as mesa-vulkan-drivers"});
   }
 }

@@ -36,8 +36,8 @@ vk::PhysicalDeviceFeatures pick_features(const vk::PhysicalDeviceFeatures& offer
     if (has_feature(offered, request.feature)) {
       picked.*row.member = VK_TRUE;
     } else if (request.is_needed) {
-      throw DeviceError({"device " + device + " lacks Vulkan's optional feature " + row.name,
-                         "needed for what is asked of it", "choose another device", Setting::kDevice});
+      throw DeviceError({"device " + device + " lacks Vulkan's optional feature " + row.name, "which the request needs",
+                         "choose another device", Setting::kDevice});
     }
   }
   return picked;

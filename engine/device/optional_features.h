@@ -8,21 +8,21 @@
 
 namespace promin::gpu {
 
-/// Features that Vulkan leaves to the device. Pictures and rays need none: they are for measurements.
+/// Features that Vulkan makes optional. Pictures and rays need none of them; measurements do.
 enum class OptionalFeature {
   kFloat64,  ///< Shaders that compute in double.
 };
 
 struct FeatureRequest {
   OptionalFeature feature{};
-  /// False: the caller does without it where the device lacks it, and asks Device::has_enabled.
+  /// If false, the caller can do without the feature and checks Device::has_enabled.
   bool is_needed = true;
 };
 
 bool has_feature(const vk::PhysicalDeviceFeatures& features, OptionalFeature feature);
 
-/// What to enable of what a device offers: what is asked for and nothing else. Throws DeviceError where it lacks
-/// something that is needed. `device` is its name.
+/// Returns the features to enable: the requested ones that the device offers. Throws DeviceError if a needed one is
+/// missing. `device` is its name.
 vk::PhysicalDeviceFeatures pick_features(const vk::PhysicalDeviceFeatures& offered,
                                          std::span<const FeatureRequest> requests, const std::string& device);
 

@@ -23,11 +23,11 @@ struct BoundBuffer {
   uint32_t binding = 0;
   vk::DescriptorType type = vk::DescriptorType::eStorageBuffer;
   const Buffer* buffer = nullptr;
-  /// Of a texel buffer, its view.
+  /// The view of a texel buffer.
   const vk::raii::BufferView* view = nullptr;
 };
 
-/// A compiled compute shader with entry point "main" and one descriptor set, apart from what is bound to it.
+/// A compiled compute shader with entry point "main" and one descriptor set, without its bindings.
 struct CompiledPipeline {
   vk::raii::DescriptorSetLayout set_layout{nullptr};
   vk::raii::PipelineLayout layout{nullptr};
@@ -39,8 +39,8 @@ struct CompiledPipeline {
 /// distinguishes pipelines by their layout objects. Several threads can use it; none waits while another compiles.
 class CompiledPipelines {
  public:
-  /// Compiles where needed. The pipeline lives as long as this. Throws vk::SystemError, and std::logic_error if the
-  /// module lacks a constant: a driver would ignore it in silence.
+  /// Returns a pipeline, and compiles it if needed. It is valid as long as this object. Throws vk::SystemError, and
+  /// std::logic_error if the module lacks a constant, which drivers silently ignore.
   const CompiledPipeline& get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                               std::span<const SpecializationConstant> constants,
                               std::span<const vk::DescriptorSetLayoutBinding> bindings);
@@ -64,7 +64,7 @@ class ComputePipeline {
 
   /// Records binding everything and `group_count` workgroups, across and down.
   void dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const;
-  /// The same with the workgroups that three words at `offset_bytes` of a buffer tell.
+  /// Does the same with the number of workgroups in three words at `offset_bytes` of a buffer.
   void dispatch_indirect(const vk::raii::CommandBuffer& commands, const Buffer& group_count,
                          vk::DeviceSize offset_bytes) const;
 

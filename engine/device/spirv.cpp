@@ -34,7 +34,7 @@ uint32_t word(Op op, uint32_t length) {
 void visit_instructions(std::span<const uint32_t> spirv, const std::function<bool(Words)>& visit) {
   for (size_t i = kHeaderWords; i < spirv.size();) {
     const size_t length = spirv[i] >> spv::WordCountShift;
-    if (length == 0 || length > spirv.size() - i) throw std::logic_error("these words are no SPIR-V module");
+    if (length == 0 || length > spirv.size() - i) throw std::logic_error("these words are not a SPIR-V module");
     if (!visit(spirv.subspan(i, length))) return;
     i += length;
   }

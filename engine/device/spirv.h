@@ -14,7 +14,7 @@ struct SpecializationConstant {
   uint32_t value = 0;
 };
 
-/// Whether a SPIR-V module declares a specialisation constant with this SpecId.
+/// Returns whether a SPIR-V module declares a specialisation constant with this SpecId.
 bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 
 /// Returns the module for these values of its specialization constants, which it no longer has; a constant that is not

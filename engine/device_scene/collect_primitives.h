@@ -15,9 +15,10 @@
 
 namespace promin {
 
-/// What vertices have beside positions, each array empty or with a record for every vertex so far that has one.
+/// Attributes of vertices other than positions. Each array is empty, or has a record for every vertex so far that has
+/// the attribute.
 struct VertexRecords {
-  /// w is 0. Empty without smooth meshes.
+  /// Normals with w = 0; empty without smooth meshes.
   std::vector<vec4> normals;
   std::vector<vec4> colors;
   /// As Mesh::uvs and Mesh::tangents.
@@ -30,7 +31,7 @@ struct VertexRecords {
 
 /// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
 struct Collected {
-  /// All but the unbounded ones and degenerate triangles; surfaces and boxes go with them.
+  /// All primitives except unbounded ones and degenerate triangles; surfaces and boxes correspond to them.
   UnsetVector<layout::Primitive> bounded;
   UnsetVector<layout::SurfaceRecord> bounded_surfaces;
   UnsetVector<Bounds> boxes;
@@ -44,10 +45,10 @@ struct Collected {
   uint64_t degenerate_count = 0;
 };
 
-/// Collects a checked scene's primitives. Throws RunError where there are more than the layout can hold.
+/// Collects a checked scene's primitives. Throws RunError if there are more than the layout can hold.
 Collected collect_primitives(const world::Scene& scene);
 
-/// Throws RunError for "`who` `count` `what`" beyond `most`.
+/// Throws RunError with the text "`who` `count` `what`" if the count exceeds `most`.
 void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
                    const char* cure = "", Setting setting = Setting::kNone);
 

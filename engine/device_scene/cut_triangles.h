@@ -12,30 +12,31 @@
 
 namespace promin {
 
-/// A corner of a part of a triangle: its place, and the weights there of the whole triangle's second and third corner.
+/// A corner of a part of a triangle: its position, and the weights of the whole triangle's second and third corner
+/// there.
 struct PartCorner {
   vec3 position{0.0F};
   dvec2 weights{0.0};
 };
 using TrianglePart = std::array<PartCorner, 3>;
 
-/// A triangle in one part.
+/// Returns a triangle as one part.
 TrianglePart whole_triangle(const Mesh& mesh, uint32_t triangle);
 
-/// Where a triangle's corners lie in a line it is not packed, but its middle corner lies on the edge of a neighbour. In
-/// the intersection's rounding that corner is beside the edge, and a ray slips through between (hard case 21). So such
-/// neighbours are cut at the corner: what is packed is the same surface, and closed vertex to vertex. Interpolated
-/// normals and colours stay as they were; only the terminator's lift, which looks at the corners, may come out smaller
-/// along a cut. A triangle with more than kMaxParts parts is left whole.
+/// Cuts triangles at corners on their edges. A triangle whose corners lie on a line is not packed, but its middle
+/// corner lies on the edge of a neighbour. With the rounding of the intersection test that corner lies beside the edge,
+/// and a ray could slip through (hard case 21). Such neighbours are therefore cut at the corner: the packed surface is
+/// the same and is closed vertex to vertex. Interpolated normals and colours do not change; only the terminator's lift,
+/// which depends on the corners, may be smaller along a cut. A triangle of more than kMaxParts parts is not cut.
 class CutTriangles {
  public:
-  /// This bounds what a file can make of one triangle.
+  /// Limits the number of parts that a file can cause.
   static constexpr size_t kMaxParts = 64;
 
-  /// Finds the corners that lie in the middle of edges, of all meshes together.
+  /// Finds the corners that lie inside edges, among all meshes together.
   explicit CutTriangles(const world::Scene& scene);
 
-  /// Whether any triangle may be in more than one part.
+  /// Returns whether any triangle may have more than one part.
   bool cut_any() const { return !line_of_edge_.empty(); }
 
   /// The degenerate triangles of an object that is a mesh, by index in order.
@@ -54,7 +55,7 @@ class CutTriangles {
   std::vector<std::vector<uint32_t>> degenerate_;
   /// The index in `lines_` of each edge of a triangle whose corners lie in a line.
   std::map<Edge, uint32_t> line_of_edge_;
-  /// Corners of triangles that lie in one line and hang together by their edges, in order.
+  /// Corners of degenerate triangles on one line that are connected by their edges, in order.
   std::vector<std::vector<Point>> lines_;
 };
 

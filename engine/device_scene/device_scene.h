@@ -16,49 +16,50 @@
 
 namespace promin {
 
-/// The parts of a scene that are replaced apart.
+/// The parts of a scene that can be replaced separately.
 struct ShadingParts {
   std::span<const Material> materials;
-  /// For good, as images are.
+  /// Textures, which are never replaced, as their images.
   std::span<const Texture> textures;
   std::span<const Light> lights;
   Environment environment;
-  /// For good; none where no view needs them.
+  /// Solids of glass, which are never replaced; null if no view needs them.
   std::shared_ptr<const GlassSolids> glass_solids = nullptr;
 };
 
-/// A scene in device memory, in parts that are replaced apart: tree, primitives and surfaces for good; materials,
-/// lights and environment as often as they change. Keeps no reference to the PackedScene.
+/// A scene in device memory. Tree, primitives and surfaces are permanent; materials, lights and environment can be
+/// replaced. Keeps no reference to the PackedScene.
 class DeviceScene {
  public:
-  /// Scenes for casts need no shading. Throws vk::SystemError, and RunError where a device limit is passed.
+  /// Uploads the scene; scenes for casts need no shading. Throws vk::SystemError, and RunError if a device limit is
+  /// exceeded.
   DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading = {});
 
-  // The setters need that nothing on the device reads the scene meanwhile. Where they need more room than there is, the
-  // buffer of shading is replaced: what is bound to it must be bound anew (Film::bind_scene).
+  // The device must not read the scene while a setter runs. If a setter needs more space, it replaces the buffer of
+  // shading, which must then be bound again (Film::bind_scene).
   void set_materials(std::span<const Material> materials);
   void set_lights(std::span<const Light> lights);
   void set_environment(const Environment& environment);
 
-  /// What the scene contributes to the constants of pictures and casts.
+  /// Returns the scene's part of the constants of pictures and casts.
   const SceneConstants& constants() const { return constants_; }
   /// The index in Scene::lights of each light on the device.
   const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
   uint32_t stack_size() const { return stack_size_; }
-  /// Whether the tree has more solids than triangles.
+  /// Returns whether the tree has more solids than triangles.
   bool is_mostly_solids() const { return is_mostly_solids_; }
-  /// The size of all that the scene holds in device memory.
+  /// Returns the size of the scene in device memory.
   uint64_t size_bytes() const;
 
   /// The buffers that traversal reads: nodes and primitives, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> geometry() const;
-  /// Whether all of it is read as texels (DeviceProfile::most_texel_bytes): CONSTANT_FETCHES_TEXELS.
+  /// Returns whether all of it is read as texels (DeviceProfile::most_texel_bytes): CONSTANT_FETCHES_TEXELS.
   bool fetches_texels() const { return fetches_texels_; }
   /// The buffers that shading reads, as storage buffers and as texels.
   std::vector<gpu::BoundBuffer> shading() const;
 
-  /// The number of bytes copied to the device so far: geometry and surfaces, and all else. Tests count by it what a
-  /// change uploads.
+  /// The number of bytes copied to the device so far: geometry and surfaces, and everything else. Tests use it to check
+  /// the cost of a change.
   struct Uploads {
     uint64_t geometry = 0;
     uint64_t shading = 0;
@@ -66,25 +67,25 @@ class DeviceScene {
   const Uploads& uploads() const { return uploads_; }
 
  private:
-  /// Takes over what an environment is without its sky, and whether that is seen.
+  /// Sets the environment's colours, without its sky, and whether the sky is visible.
   void take_colors(const Environment& environment);
   gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
-  /// What is replaced apart, behind the surfaces.
+  /// The replaceable parts, which lie behind the surfaces.
   struct Tail {
-    // All but the lights are shared by the tails that do not change them.
+    // All parts except the lights are shared between tails that do not change them.
     std::shared_ptr<const PackedMaterials> materials = std::make_shared<const PackedMaterials>();
-    /// That of lobes and that of sheens, each only where a material looks it up.
+    /// The tables of lobes and of sheens, each only if a material uses it.
     std::shared_ptr<const std::vector<uvec4>> lobe_tables = std::make_shared<const std::vector<uvec4>>();
     std::shared_ptr<const PackedSky> sky = std::make_shared<const PackedSky>();
     PackedLights lights;
   };
-  /// Where the parts of a tail lie.
+  /// The positions of the parts of a tail.
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
   PackedMaterials pack_materials(std::span<const Material> materials) const;
   std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
-  /// Copies what of the tail is new, or all of it into a larger buffer where it needs one. Where that cannot be made
+  /// Copies the changed parts of the tail, or all of it into a larger buffer if needed. If that cannot be created,
   /// nothing changes.
   void write_tail(Tail tail);
 
@@ -104,7 +105,7 @@ class DeviceScene {
   std::vector<Texture> textures_;
   std::vector<PlacedImage> images_;
   Tail tail_;
-  /// The last that was set.
+  /// The current environment.
   Environment environment_;
   SceneConstants constants_;
   uint32_t stack_size_;
@@ -113,7 +114,7 @@ class DeviceScene {
   Uploads uploads_;
 };
 
-/// Copies a packed scene to the device. Throws RunError where memory does not suffice or a device limit is passed.
+/// Copies a packed scene to the device. Throws RunError if memory runs out or a device limit is exceeded.
 std::shared_ptr<DeviceScene> upload_scene(const gpu::Device& device, const PackedScene& packed,
                                           const ShadingParts& shading = {});
 

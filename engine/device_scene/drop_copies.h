@@ -12,25 +12,25 @@
 
 namespace promin {
 
-/// Where there are more identical primitives than this, the tree has only the first: a ray that meets one meets all,
-/// and drivers end loops of so many turns (trace/cut_loops.h). Fewer stay, so that the trees of other scenes stay as
-/// they are.
+/// If there are more identical primitives than this, the tree contains only the first: a ray that hits one hits all,
+/// and drivers end loops of so many iterations (trace/cut_loops.h). Smaller groups are kept, so that the trees of other
+/// scenes do not change.
 inline constexpr uint32_t kMostCopies = 1024;
 
-/// What is left out for other primitives.
+/// The primitives that were left out as copies of others.
 struct DroppedCopies {
-  /// The numbers, in order, of the primitives that are left out for one, by its number.
+  /// The numbers of the copies in order, by the number of the primitive that stands for them.
   std::map<uint32_t, std::vector<uint32_t>> by_first;
   /// Their materials.
   std::set<uint32_t> materials;
 };
 
-/// Whether nothing behind a surface of the material shows through it, whatever its textures say: only then a picture of
-/// one surface is that of many at the same place.
+/// Returns whether a surface of the material hides everything behind it, whatever its textures are. Only then does one
+/// surface look the same as many at the same place.
 bool hides_copies(const Material& material);
 
-/// Leaves out the copies of a primitive after the first, which is the nearest hit wherever they are hit, as all have
-/// equal t. It leaves out those of one material that hides copies.
+/// Leaves out copies of a primitive. The first of them is the nearest hit wherever they are hit, because all have equal
+/// t. Only copies with the same material, which must hide copies, are left out.
 DroppedCopies drop_copies(const world::Scene& scene, Collected& collected);
 
 }  // namespace promin

@@ -8,12 +8,12 @@
 namespace promin {
 
 // Tables that materials look up (shaders/shading_records.glsl): a record for each cell between four entries, row by row
-// of roughness, in it the entries at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). tools/make_lobe_table.py says what
-// an entry is.
+// of roughness, in it the entries at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). tools/make_lobe_table.py defines
+// the entries.
 
-/// Of metallic-roughness materials: what a lobe does with light from all around.
+/// Returns the table for metallic-roughness materials: how a lobe reflects light from all directions.
 std::vector<glm::uvec4> make_lobe_table();
-/// Of sheens: what they send of light from all around.
+/// Returns the table for sheens: the part of the light from all directions that they reflect.
 std::vector<glm::uvec4> make_sheen_table();
 
 }  // namespace promin

@@ -119,9 +119,8 @@ class MaterialPacker {
          .scattering = vec4(m.diffuse_transmission_color, m.diffuse_transmission),
          .thin_film = vec4(m.iridescence, m.iridescence_ior, thickness, thickness - m.iridescence_thickness_minimum),
          .anisotropy = vec4(m.anisotropy, std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation), 0.0F),
-         .rare_slots =
-             uvec4(number_of(m.diffuse_transmission_texture), number_of(m.diffuse_transmission_color_texture),
-                   number_of(m.iridescence_texture), number_of(m.iridescence_thickness_texture)),
+         .rare_slots = uvec4(number_of(m.diffuse_transmission_texture), number_of(m.diffuse_transmission_color_texture),
+                             number_of(m.iridescence_texture), number_of(m.iridescence_thickness_texture)),
          .anisotropy_slot = uvec4(number_of(m.anisotropy_texture), 0, 0, 0)});
     return std::bit_cast<float>(static_cast<uint>(packed_.extensions.size()));
   }
@@ -134,7 +133,7 @@ class MaterialPacker {
     if (found != packed_.glasses.end()) return number;
     if (number > MOST_GLASSES) {
       throw RunError({"the materials have more than " + std::to_string(MOST_GLASSES) + " kinds of glass",
-                      "in all of the scene", "use fewer"});
+                      "in the whole scene", "use fewer"});
     }
     packed_.glasses.push_back(record);
     return number;

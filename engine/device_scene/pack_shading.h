@@ -11,11 +11,11 @@
 #include "promin/scene.h"
 #include "textures/pack_images.h"
 
-// What shading needs of a scene beside its primitives, in the layout of shaders/layout.h. Each alone, as they change
-// alone.
+// Packs the data for shading other than primitives into the layout of shaders/layout.h. Each kind is packed separately,
+// because each changes separately.
 namespace promin {
 
-/// What textures are, for materials to name.
+/// Tables of textures, which materials refer to.
 struct TextureTables {
   std::span<const Texture> textures;
   std::span<const PlacedImage> images;
@@ -23,11 +23,11 @@ struct TextureTables {
 
 struct PackedMaterials {
   std::vector<layout::MaterialRecord> records;
-  /// Of the textures that records name, which number them from 1 on.
+  /// The textures that records refer to, numbered from 1.
   std::vector<layout::TextureSlotRecord> slots;
-  /// Of what few materials have, which their records number likewise.
+  /// Rare properties of materials, numbered likewise.
   std::vector<layout::ExtensionRecord> extensions;
-  /// Of what lets light through, likewise.
+  /// Materials that transmit light, numbered likewise.
   std::vector<layout::GlassRecord> glasses;
 };
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables = {});

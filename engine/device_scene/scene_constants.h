@@ -13,12 +13,13 @@
 #include "promin/view.h"
 #include "scene/glass_solids.h"
 
-// The blocks of constants that shaders read. One function makes each block whole from the arguments. Vulkan-free.
+// The blocks of constants that shaders read. One function computes each complete block from its arguments. Does not use
+// Vulkan.
 namespace promin {
 
-/// What a scene on the device contributes to these constants.
+/// The scene's part of these constants.
 struct SceneConstants {
-  /// Center and max-norm radius of all that lies in the tree.
+  /// Center and max-norm radius of the tree's primitives.
   vec4 tree_bounds{0.0F};
   /// The first records of materials, lights, normals and colours in their views of the buffer of shading.
   uvec4 first_index{0};
@@ -26,10 +27,10 @@ struct SceneConstants {
   uvec4 first_texture{0};
   /// x = the first GlassRecord.
   uvec4 first_glass{0};
-  /// In which the camera may be, and of each material the number of its glass, 0 where it bounds no volume.
+  /// The solids in which the camera may be, and for each material the number of its glass, 0 if it bounds no volume.
   std::shared_ptr<const GlassSolids> glass_solids;
   std::vector<uint32_t> media;
-  /// Whether anything lets light through.
+  /// Whether any material transmits light.
   bool has_glass = false;
   /// The unbounded primitives, which lie behind those of the tree.
   uint32_t first_unbounded = 0;
@@ -37,9 +38,9 @@ struct SceneConstants {
   uint32_t light_count = 0;
   vec3 ambient{0.0F};
   vec3 background{0.0F};
-  /// Whether the sky is seen in place of the background.
+  /// Whether the sky is visible in place of the background.
   bool shows_sky = false;
-  /// What is seen in place of both, where there is one.
+  /// The backdrop, which replaces both if there is one.
   std::optional<Backdrop> backdrop;
   std::array<vec4, 9> irradiance{};
 };
@@ -55,7 +56,7 @@ struct TileRange {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   uint32_t sample = 0;
-  /// In the pixel (device_scene/sampling.h).
+  /// Position in the pixel (device_scene/sampling.h).
   vec2 sample_point{0.5F};
 };
 layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,

@@ -9,13 +9,13 @@
 
 namespace promin {
 
-/// The points at which a pixel is sampled where their number is not known before: Sobol's first two dimensions,
-/// scrambled as Owen does by a hash of the pixel's place (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020).
-/// The first 2^m of them are a (0, m, 2)-net, so a pixel that takes more keeps those that it has. Coordinates are odd
-/// multiples of 2^-24 in 0...1, of integer operations alone.
+/// The sample points of a pixel if their number is not known in advance: the first two Sobol dimensions with Owen
+/// scrambling by a hash of the pixel's position (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). The first
+/// 2^m of them are a (0, m, 2)-net, so a pixel that takes more samples keeps its earlier ones. Coordinates are odd
+/// multiples of 2^-24 in 0...1, computed by integer operations only.
 class ScrambledPoints {
  public:
-  /// Of the pixel at this place of the whole picture.
+  /// Creates the points of the pixel at this position of the whole picture.
   explicit ScrambledPoints(const uvec2& pixel);
 
   vec2 at(uint32_t index) const;
@@ -24,13 +24,13 @@ class ScrambledPoints {
   std::array<uint32_t, 2> seeds_;
 };
 
-/// Where samples lie that are drawn by a filter's weight: place_of_share of a table, between whose entries it is
-/// linear. That moves at most a share of 2^-12 of the weight, by less than what lies between two entries.
+/// Maps uniform points to samples that are distributed by a filter's weight: place_of_share as a table with linear
+/// interpolation. The interpolation moves at most 2^-12 of the weight, by less than the distance of two entries.
 class FilterPlaces {
  public:
   explicit FilterPlaces(const View& view);
 
-  /// In pixels from the pixel's upper left corner, for a point of the unit square.
+  /// Returns the position for a point of the unit square, in pixels from the pixel's upper left corner.
   vec2 at(const vec2& shares) const { return {place(shares.x), place(shares.y)}; }
 
  private:

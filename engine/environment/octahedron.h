@@ -6,9 +6,9 @@
 
 #include "promin/math.h"
 
-// The map of all directions onto a square: directions are cast onto an octahedron, whose upper half is seen from above
-// and whose lower half is folded out. Coordinates are 0...1, (0.5, 0.5) is +Y, the corners are -Y, x of the square goes
-// with +X and y with +Z. One division and no angle: shaders/environment.glsl has the same map.
+// The map of all directions onto a square: directions are projected onto an octahedron, whose upper half is viewed from
+// above and whose lower half is unfolded. Coordinates are 0...1, (0.5, 0.5) is +Y, the corners are -Y, x of the square
+// goes with +X and y with +Z. It needs one division and no angles; shaders/environment.glsl has the same map.
 namespace promin {
 
 /// Takes a direction of any length but 0.
@@ -26,7 +26,7 @@ glm::vec<2, typename Vector3::value_type> octahedral_place(const Vector3& direct
   return {Real(0.5) + Real(0.5) * x, Real(0.5) + Real(0.5) * z};
 }
 
-/// The point of the octahedron |x| + |y| + |z| = 1 at a place; a direction when its length is made 1.
+/// Returns the point of the octahedron |x| + |y| + |z| = 1 for a place; normalised it is the direction.
 inline dvec3 octahedral_point(const dvec2& place) {
   double x = 2.0 * place.x - 1.0;
   double z = 2.0 * place.y - 1.0;

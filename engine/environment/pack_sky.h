@@ -11,28 +11,28 @@
 
 namespace promin {
 
-/// A sky as shaders/environment.glsl reads it.
+/// A sky in the form that shaders/environment.glsl reads.
 struct PackedSky {
-  /// Texels of the sharpest level along each side, a power of two from 128 to 512; 0 where there is no sky.
+  /// Side of the sharpest level in texels, a power of two from 128 to 512; 0 if there is no sky.
   uint32_t side = 0;
   /// The levels of shaders/sky_levels.def one after the other, each with side + 2 rows of side + 1 entries: its texels
   /// with a border of one (environment/sky_map.h), two neighbours of a row in an entry, each texel as three half floats
   /// from the lowest bits on.
   std::vector<glm::uvec4> texels;
-  /// Coefficients of the light that a surface gets, over pi; w is 0. With the unit normal (x, y, z) they are those of
-  /// 1, y, z, x, xy, yz, 3zz - 1, zx and xx - yy.
+  /// Coefficients of the irradiance divided by pi; w is 0. With the unit normal (x, y, z) they are those of 1, y, z, x,
+  /// xy, yz, 3zz - 1, zx and xx - yy.
   std::array<vec4, 9> irradiance{};
 };
 
 /// Texels along each side of a level, by the side of the sharpest one and the level's number.
 uint32_t side_of_level(uint32_t sharpest_side, uint32_t level);
 
-/// Prefilters an environment's sky: level i has in each direction the mean over a lobe of GGX of its roughness, seen
-/// along its normal, so that a level shows what a rough metal of this colour reflects. On up to `thread_count` threads
-/// (0: all cores); the result does not depend on their number. Empty where there is no sky.
+/// Prefilters an environment's sky: each texel of level i is the mean over a GGX lobe of its roughness, viewed along
+/// its normal, which is what a rough white metal reflects. Uses up to `thread_count` threads (0: all cores); the result
+/// does not depend on their number. Empty if there is no sky.
 PackedSky pack_sky(const Environment& environment, unsigned thread_count = 0);
 
-/// The size of pack_sky's texels, without making them.
+/// Returns the size of pack_sky's texels without computing them.
 uint64_t packed_sky_bytes(const Environment& environment);
 
 }  // namespace promin

@@ -36,7 +36,8 @@ std::string remove_negatives(Image& image, const std::string& name) {
   if (count == 0) return "";
   std::ostringstream sentence;
   sentence << count_of(count, "number") << " of " << name << " " << verb_of(count, "is", "are")
-           << " negative, the first " << first.str() << "; " << verb_of(count, "it counts", "they count") << " as 0";
+           << " negative, the first " << first.str() << "; " << verb_of(count, "it is read", "they are read")
+           << " as 0";
   return sentence.str();
 }
 

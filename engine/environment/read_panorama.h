@@ -12,9 +12,9 @@
 
 namespace promin {
 
-/// Reads a panorama from a picture: of .hdr and .exr the values are radiance, of any other format sRGB's. Negative
-/// numbers, which resampling leaves behind, count as 0, with a warning that counts them. Throws InputError where it is
-/// no picture, larger than a panorama may be, or has a pixel that is no radiance; RunError where the plugin for
+/// Reads a panorama from a picture. Values of .hdr and .exr are radiance, those of other formats sRGB. Negative values,
+/// which resampling may cause, count as 0, with a warning that counts them. Throws InputError if the file is not a
+/// picture, is larger than a panorama may be, or has a pixel that is not a radiance; RunError if the plugin for
 /// pictures is missing.
 Panorama read_panorama(const std::filesystem::path& file, std::vector<std::string>& warnings);
 

@@ -6,9 +6,10 @@
 
 namespace promin {
 
-/// A panorama of at most `most_width` pixels in a row and half as many rows. Each pixel has the mean radiance of what
-/// it covers, and rows are blurred until their pixels are as wide on the sphere as they are high: what interpolates
-/// between pixels at steps of about their height loses no light, however small a sun is or near a pole.
+/// Returns the panorama reduced to at most `most_width` pixels in a row and half as many rows. Each pixel has the mean
+/// radiance of its area, and rows are blurred until their pixels are as wide on the sphere as they are high.
+/// Interpolating between pixels in steps of about their height therefore loses no light, even from a small sun or near
+/// a pole.
 Panorama shrink_panorama(const Panorama& panorama, uint32_t most_width, unsigned thread_count);
 
 }  // namespace promin

@@ -8,8 +8,8 @@
 
 namespace promin {
 
-/// A sky as texels of an octahedron's map (environment/octahedron.h), with a border of one texel around them, so that
-/// interpolation needs no wrap.
+/// A sky as texels of an octahedral map (environment/octahedron.h), with a border of one texel so that interpolation
+/// needs no wrapping.
 class SkyMap {
  public:
   explicit SkyMap(int side) : side_(side), texels_(static_cast<size_t>(side + 2) * static_cast<size_t>(side + 2)) {}
@@ -20,10 +20,10 @@ class SkyMap {
   const vec4& at(int x, int y) const { return texels_[index(x, y)]; }
   vec4& at(int x, int y) { return texels_[index(x, y)]; }
 
-  /// Makes the border of the texels that lie beyond the edges on the sphere.
+  /// Fills the border with the texels that adjoin the edges on the sphere.
   void fill_border();
 
-  /// The interpolated radiance of a direction of any length but 0.
+  /// Returns the interpolated radiance of a direction of any length except 0.
   vec4 look_up(const vec3& direction) const;
 
  private:
@@ -39,7 +39,7 @@ class SkyMap {
 /// The solid angle of a part of the map around a place, per area of the map, in steradian.
 double solid_angle_density(const dvec2& place);
 
-/// A map of half the side, at least 2, each texel the mean of four by their solid angles.
+/// Returns a map of half the side, at least 2. Each texel is the mean of four, weighted by their solid angles.
 SkyMap halve(const SkyMap& map);
 
 }  // namespace promin

@@ -6,9 +6,8 @@
 
 namespace promin {
 
-/// The radiance, linear RGB, that an environment's sky sends from a direction of any length but 0, with its rotation
-/// and intensity. A panorama's is interpolated between the middles of its pixels. The ambient light where there is no
-/// sky.
+/// Returns the radiance, linear RGB, of an environment's sky in a direction of any length except 0, with its rotation
+/// and intensity. A panorama is interpolated between the centres of its pixels. Without a sky it is the ambient light.
 dvec3 sky_radiance(const Environment& environment, const dvec3& direction);
 
 }  // namespace promin

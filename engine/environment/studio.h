@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// The grey radiance of a studio whose front is +Z, from a unit direction.
+/// Returns the grey radiance of a studio with its front at +Z in a unit direction.
 double studio_radiance(const dvec3& direction);
 
 }  // namespace promin

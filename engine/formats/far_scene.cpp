@@ -102,9 +102,9 @@ void warn_of_coarse_coordinates(const VertexBounds& bounds, bool is_rounded, Sce
     step = std::max(step, step_at(magnitude) * scale_of(object.world_from_object));
   }
   if (!(step > kCoarsestStep * size)) return;
-  scene.warnings.push_back("the file has coordinates in fp32, whose steps of " + to_text(step) +
-                           " are coarse for a scene of size " + to_text(size) +
-                           ": export it nearer to the origin, and the distance as a node's translation or as doubles");
+  scene.warnings.push_back(
+      "the file has coordinates in fp32, whose steps of " + to_text(step) + " are coarse for a scene of size " +
+      to_text(size) + ": export the scene nearer to the origin and move it by a node's translation, or export doubles");
 }
 
 }  // namespace promin

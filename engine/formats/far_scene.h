@@ -8,32 +8,32 @@
 
 namespace promin {
 
-/// Steps of fp32 at the coordinates of a scene must not be longer than this share of its size, its longest edge.
+/// The largest allowed step of fp32 at a scene's coordinates, relative to the scene's longest edge.
 inline constexpr double kCoarsestStep = 1e-5;
 
-/// Bounds of what is finite, unused vertices too.
+/// Bounds of everything finite, including unused vertices.
 struct VertexBounds {
-  /// Each mesh's in its own space; empty for other geometries.
+  /// Bounds of each mesh in its own space; empty for other geometries.
   std::vector<Bounds> of_meshes;
-  /// Each object's in the world.
+  /// Bounds of each object in the world.
   std::vector<Bounds> of_objects;
-  /// Those of all objects together.
+  /// Bounds of all objects together.
   Bounds all;
 };
 
-/// Unlike bounds_of() it looks at each vertex of a mesh once.
+/// Computes bounds. Unlike bounds_of() it reads each vertex of a mesh once.
 VertexBounds bounds_of_vertices(const Scene& scene);
 
-/// Whether steps of fp32 are coarser than kCoarsestStep somewhere in a box; not of an empty one.
+/// Returns whether steps of fp32 exceed kCoarsestStep somewhere in a box; false for an empty one.
 bool is_too_coarse(const Bounds& bounds);
 
 /// The middle of the box, rounded to a multiple of a power of two between 1/8 and 1/4 of its longest edge, so that
 /// differences to it mostly are exact; the box is not empty.
 dvec3 round_middle(const Bounds& bounds);
 
-/// Warns where the file itself has coordinates in fp32 whose steps are too coarse for the scene: no center helps them.
-/// `is_rounded`: whether all of them are fp32 in the file, in the world; those of meshes always are, in their own
-/// space.
+/// Warns if the file itself stores fp32 coordinates whose steps are too coarse for the scene, which no center can
+/// repair. `is_rounded`: whether all world coordinates in the file are fp32; those of meshes in their own space always
+/// are.
 void warn_of_coarse_coordinates(const VertexBounds& bounds, bool is_rounded, Scene& scene);
 
 }  // namespace promin

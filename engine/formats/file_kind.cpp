@@ -54,7 +54,7 @@ constexpr Magic kMagics[] = {
     {"#VRML"sv, "VRML", kMeshLab},
     {"#X3D"sv, "X3D", kMeshLab},
     {"Ogawa\xFF"sv, "Alembic", kBlender},
-    {"\x89HDF\r\n\x1A\n"sv, "HDF5, as old files of Alembic are", kBlender},
+    {"\x89HDF\r\n\x1A\n"sv, "HDF5, as in old Alembic files", kBlender},
     {"LASF"sv, "LAS, a point cloud", kPoints},
     {"ASTM-E57"sv, "E57, a point cloud", kPoints},
     {"# .PCD"sv, "PCD, a point cloud", kPoints},

@@ -69,10 +69,10 @@ void warn_of_turned_normals(Scene& scene) {
     if (is_shown[i] && mesh != nullptr) count += find_turned_triangles(*mesh).size();
   }
   if (count == 0) return;
-  scene.warnings.push_back(std::to_string(count) +
-                           (count == 1
-                                ? " triangle has vertex normals that lie against its winding: they are turned"
-                                : " triangles have vertex normals that lie against their winding: they are turned"));
+  scene.warnings.push_back(
+      std::to_string(count) +
+      (count == 1 ? " triangle has vertex normals that point against its winding: the normals are reversed"
+                  : " triangles have vertex normals that point against their winding: the normals are reversed"));
 }
 
 std::vector<bool> find_shown_materials(const Scene& scene) {
@@ -117,7 +117,7 @@ void warn_of_rough_glass(Scene& scene) {
   const std::string other = count == 1 ? "" : " and " + count_of(count - 1, "other") + " like it";
   scene.warnings.push_back("material " + (name.empty() ? std::to_string(first) : quote(name)) + other +
                            (count == 1 ? " is" : " are") +
-                           " rough glass: only a sky is blurred through it, and objects are seen sharp");
+                           " rough glass: only a sky is blurred through it, and objects look sharp");
 }
 
 /// Warns of geometry that a camera which frames the scene leaves out.
@@ -200,7 +200,7 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
 void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
   if (has_anything_to_draw(scene)) return;
   refuse_wrong_ending(report.file(), format);
-  const std::string what = "the scene holds nothing to draw";
+  const std::string what = "the scene contains nothing to draw";
   if (!format.is_mesh && !report.has_lost_geometry()) return scene.warnings.push_back(what);
   const std::string reason = scene.warnings.empty() ? "" : " (" + scene.warnings.front() + ")";
   throw InputError({what + reason, report.file().string(), "export it with triangles"});
@@ -209,19 +209,19 @@ void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& 
 void check_root(const std::filesystem::path& root) {
   std::error_code error;
   if (root.empty() || is_directory(root, error)) return;
-  throw UsageError({"the root of a scene's files is no folder", root.string(), "name a folder"});
+  throw UsageError({"the root of a scene's files is not a folder", root.string(), "name a folder"});
 }
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
   check_root(options.root);
   if (!options.material_variant.empty() && !format.has_variants) {
-    throw UsageError({"files that end in " + std::string(format.ending) + " have no variants of materials",
-                      file.string(), "ask for none"});
+    throw UsageError({"files that end in " + std::string(format.ending) + " have no material variants", file.string(),
+                      "leave the variant out"});
   }
   // A pipe might be waited for without end.
   if (!is_regular_file(find_input(file))) {
-    throw InputError({"not a regular file", file.string(), "name the scene's file"});
+    throw InputError({"the scene is not a regular file", file.string(), "name the scene's file"});
   }
   try {
     Scene scene = format.load(options, report);

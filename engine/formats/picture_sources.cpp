@@ -82,7 +82,7 @@ void report_damage(const PictureSource& source, const std::string& warning, Load
                  .value = warning,
                  .place = "image " + source.title,
                  .cure = "write or export it again",
-                 .repair = "it is shown as it is decoded"});
+                 .repair = "the part that can be decoded is shown"});
 }
 
 }  // namespace

@@ -16,38 +16,38 @@
 
 namespace promin {
 
-/// A file of a picture that a scene's textures show.
+/// The picture file of a scene's texture image.
 struct PictureSource {
-  /// Gets its size and texels when it is decoded; the rest is the reader's.
+  /// Its size and texels are set by decoding; the reader sets all other members.
   std::shared_ptr<TextureImage> image = std::make_shared<TextureImage>();
-  /// Whether it gets its texels, or its size alone.
+  /// Whether to decode its texels, or only its size.
   bool takes_texels = true;
-  /// In a buffer that outlives this, or in `own`.
+  /// The file's bytes, in a buffer that outlives this or in `own`.
   std::span<const std::byte> file = {};
   std::vector<std::byte> own = {};
-  /// What messages call it.
+  /// Its title in messages.
   std::string title = {};
-  /// Why it cannot be used; nothing where it can.
+  /// The reason why it cannot be used, if so.
   std::optional<Fault> problem = std::nullopt;
-  /// Whether the file is broken or missing. It is not where its format allows what promin does not read.
+  /// Whether the file is damaged or missing, as opposed to valid but not supported.
   bool is_file_at_fault = true;
 };
 
-/// The problem in one line.
+/// Returns the problem in one line.
 std::string describe_problem(const PictureSource& source);
 
-/// Gives the first `most_bytes` of a picture's file, or all where it has no more; a few more are no harm. nullopt once
-/// the report holds the reason.
+/// Returns the first `most_bytes` of a picture's file, or all if it is shorter; a few more are allowed. Returns nullopt
+/// after reporting the reason.
 using ReadPictureBytes = std::function<std::optional<std::vector<std::byte>>(LoadReport& report, uint64_t most_bytes)>;
 
-/// Takes the bytes that `read`, called with a report of its own, gives for the source: the whole file, or its first
-/// 64 KiB where the source takes no texels and these tell the size. What would refuse a scene's other files is no more
-/// than the source's problem: the scene can be shown without.
+/// Reads the bytes of the source by `read`, which gets a separate report: the whole file, or its first 64 KiB if only
+/// the size is needed and they contain it. A fault that would refuse another file of the scene only becomes the
+/// source's problem, because the scene can be shown without the picture.
 void read_picture(PictureSource& source, LoadReport& report, const ReadPictureBytes& read);
 
-/// Decodes all pictures on all cores, or reads the sizes of those that take no texels. Those for which that fails, and
-/// those that are damaged but decoded, are warned about once for each kind; the images of the former stay without. A
-/// strict report refuses those whose files are at fault.
+/// Decodes all pictures on all cores, or only reads their sizes. Warns once for each kind of failure, and of damaged
+/// pictures that could be decoded. Images of failed pictures get no texels. A strict report refuses pictures whose
+/// files are at fault.
 void decode_pictures(std::span<PictureSource> sources, LoadReport& report);
 
 }  // namespace promin

@@ -77,7 +77,7 @@ constexpr const char* kStayInside =
 
 /// Why a name is the path of no file that a scene may name; empty where it may be one.
 std::string find_fault(const std::string& name, const fs::path& path, const fs::path& folder, const fs::path& root) {
-  if (has_scheme(name)) return "a file's name is no relative path";
+  if (has_scheme(name)) return "a file's name is not a relative path";
   if (path.is_absolute() && root.empty()) return "a file's name is an absolute path";
   const fs::path file = folder / path;
   if (lies_in(folder, file) || (!root.empty() && lies_in(root, file))) return "";
@@ -108,7 +108,7 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
   report.add_source(file);
   const fs::file_status status = fs::status(file, error);
   if (fs::is_directory(status)) return refuse("a file is a folder", "name a file");
-  if (fs::exists(status) && !fs::is_regular_file(status)) return refuse("a file is no regular file", "name a file");
+  if (fs::exists(status) && !fs::is_regular_file(status)) return refuse("a file is not a regular file", "name a file");
   if (!fs::exists(status)) {
     if (must_exist) return refuse("a file does not exist", "put it beside the scene", suggest_path(folder, path));
     return std::nullopt;

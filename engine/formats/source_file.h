@@ -14,13 +14,12 @@ namespace promin {
 /// A file that a scene is read from.
 struct SourceFile {
   std::filesystem::path file;
-  /// The stamp from just before the file was read, so that a later change differs from it. nullopt where the file was
+  /// The stamp taken just before the file was read, so that a later change differs from it. nullopt if the file was
   /// missing.
   std::optional<FileStamp> stamp;
 };
 
-/// Does what load_scene does, and reports each file that was read or missed, the scene's own first, also where it
-/// throws.
+/// Does what load_scene does, and returns each file that was read or missing, the scene's own first, also if it throws.
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources);
 
 }  // namespace promin

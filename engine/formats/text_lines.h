@@ -9,20 +9,20 @@
 
 namespace promin {
 
-/// A text without the byte order mark that some editors begin a file with.
+/// Returns a text without the byte order mark with which some editors begin a file.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// A text without the zero bytes that some programs write behind it.
+/// Returns a text without the zero bytes that some programs write after it.
 std::string_view without_zero_bytes_at_end(std::string_view text);
 
-/// Walks the lines of a text, whether they end in \n, \r\n or \r, without the byte order mark of a file.
+/// Iterates over the lines of a text, which may end in \n, \r\n or \r. Skips a byte order mark.
 class TextLines {
  public:
-  /// `lines_before` of the file come before the text.
+  /// `lines_before` is the number of the file's lines before the text.
   explicit TextLines(std::string_view text, uint64_t lines_before = 0)
       : rest_(lines_before == 0 ? without_byte_order_mark(text) : text), number_(lines_before) {}
 
-  /// Goes to the next line; false at the end.
+  /// Moves to the next line. Returns false at the end.
   bool advance();
 
   /// The current line without its end.
@@ -35,28 +35,28 @@ class TextLines {
  private:
   std::string_view rest_;
   std::string_view line_;
-  /// The next \n from rest_ on, or the end of the text; stale where it lies before rest_.
+  /// The next \n from rest_ on, or the end of the text; outdated if it lies before rest_.
   const char* line_feed_ = nullptr;
   uint64_t number_;
 };
 
-/// Takes the next word off a line; empty at its end or at a comment.
+/// Removes and returns the next word of a line; empty at its end or at a comment.
 std::string_view take_word(std::string_view& line);
 
-/// Takes the next word off a line, in a format that has no comments within lines; empty at its end.
+/// Removes and returns the next word of a line in a format without comments in lines; empty at its end.
 std::string_view take_field(std::string_view& line);
 
 /// The rest of a line without spaces around it.
 std::string_view trim(std::string_view line);
 
-/// A finite decimal number that is the whole word; nullopt for anything else ("nan", "inf", "0,5", "1e999").
+/// Returns the finite decimal number that is the whole word; nullopt for other words ("nan", "inf", "0,5", "1e999").
 std::optional<double> parse_number(std::string_view word);
 
-/// A number as programs write any: also infinite or NaN ("nan", "-inf", "1.#QNAN"), which "1e999" is too; nullopt for
-/// any other word.
+/// Returns a number that may also be infinite or NaN ("nan", "-inf", "1.#QNAN"); "1e999" is infinite too. nullopt for
+/// other words.
 std::optional<double> parse_any_number(std::string_view word);
 
-/// An integer that is the whole word and fits.
+/// Returns the integer that is the whole word and fits; else nullopt.
 std::optional<int64_t> parse_integer(std::string_view word);
 
 }  // namespace promin

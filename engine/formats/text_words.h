@@ -9,14 +9,14 @@
 
 namespace promin {
 
-/// Takes the words off a text in which lines mean little, and # begins a comment up to a line's end.
+/// Reads words from a text in which line ends hardly matter. # begins a comment up to the end of the line.
 class TextWords {
  public:
   explicit TextWords(std::string_view text) : lines_(text) { advance(); }
 
-  /// The word that comes next; empty at the end of the file.
+  /// Returns the next word; empty at the end of the file.
   std::string_view next() const { return next_; }
-  /// Whether it is on the line of the word that was taken last.
+  /// Returns whether the next word is on the same line as the last one.
   bool is_next_on_line() const { return !next_.empty() && next_line_ == line_; }
 
   std::string_view take() {
@@ -27,10 +27,10 @@ class TextWords {
     return word;
   }
 
-  /// What is on its line behind the word that was taken last, comments too.
+  /// Returns the rest of the line after the last word, including comments.
   std::string_view behind() const { return behind_; }
 
-  /// The place of the word that was taken last: "line 12".
+  /// Returns the place of the last word: "line 12".
   std::string place() const { return "line " + std::to_string(line_); }
 
  private:

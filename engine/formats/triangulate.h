@@ -10,12 +10,12 @@
 
 namespace promin {
 
-/// Cutting a concave polygon takes quadratic time, so readers refuse more corners.
+/// The largest number of corners that readers accept, because triangulating a concave polygon takes quadratic time.
 inline constexpr size_t kMaxPolygonCorners = 10'000;
 
-/// Cuts a polygon, convex or not, into its n - 2 triangles, wound as it is; indices into `corners`. Convex polygons
-/// become the fan around corner 0, others are cut by ear clipping (Meisters 1975). A polygon that crosses itself or
-/// has no area still gives n - 2 triangles, so that numbering holds.
+/// Divides a polygon, convex or not, into n - 2 triangles with the same winding, as indices into `corners`. Convex
+/// polygons become the fan around corner 0, others are divided by ear clipping (Meisters 1975). A polygon that crosses
+/// itself or has no area still gives n - 2 triangles, so that triangle numbers do not change.
 std::vector<uvec3> triangulate_polygon(std::span<const vec3> corners);
 
 }  // namespace promin

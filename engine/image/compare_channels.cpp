@@ -60,7 +60,7 @@ std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const Chann
   if (!in_reference.empty() || !in_test.empty()) {
     const std::string between = in_reference.empty() || in_test.empty() ? "" : "; ";
     throw InputError(
-        {"the pictures differ in channels", in_reference + between + in_test, "write both with the same --aov"});
+        {"the pictures have different channels", in_reference + between + in_test, "write both with the same --aov"});
   }
   std::vector<ChannelPair> pairs;
   for (size_t i = 0; i < of_reference.size(); ++i) pairs.push_back({of_reference[i], of_test[i]});
@@ -68,9 +68,9 @@ std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const Chann
   std::erase_if(pairs, [](const ChannelPair& pair) { return is_color_channel(pair.reference->name); });
   for (const ChannelPair& pair : pairs) {
     if (pair.reference->size == pair.test->size) continue;
-    throw InputError({"the pictures differ in size in " + pair.reference->name,
+    throw InputError({"the pictures have different sizes in " + pair.reference->name,
                       name_size(pair.reference->size) + " against " + name_size(pair.test->size),
-                      "render both at one size"});
+                      "render both at the same size"});
   }
   return pairs;
 }

@@ -11,14 +11,14 @@
 
 namespace promin {
 
-/// How far apart one channel of two picture files is, in the files' numbers.
+/// The difference of one channel between two picture files, in the files' units.
 struct ChannelDifference {
   std::string name;
   uint64_t pixel_count = 0;
-  /// As PictureDifference has it.
+  /// As PictureDifference::largest.
   double largest = 0.0;
   uvec2 largest_at{0};
-  /// Pixels whose values differ by more than is allowed.
+  /// Number of pixels whose values differ by more than is allowed.
   uint64_t different_count = 0;
 };
 

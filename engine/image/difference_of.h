@@ -7,7 +7,8 @@
 
 namespace promin {
 
-/// Of a channel's two values; infinite where only one is a finite number, or both are other ones.
+/// Returns the absolute difference of two values of a channel; infinite if only one of them is finite, or if neither is
+/// and they differ.
 inline double difference_of(double a, double b) {
   if (std::isfinite(a) && std::isfinite(b)) return std::abs(a - b);
   const bool is_same = a == b || (std::isnan(a) && std::isnan(b));

@@ -13,15 +13,16 @@
 
 namespace promin {
 
-/// A picture of a format that the plugin writes (image/plugin/pictures.h), as a whole.
+/// Encodes a whole picture in a format that the plugin writes (image/plugin/pictures.h).
 class PluginEncoder {
  public:
-  /// Writes the file, which is there. Throws RunError where the plugin is missing.
+  /// Writes to an existing file. Throws RunError if the plugin is missing.
   PluginEncoder(std::filesystem::path file, std::string_view format, const uvec2& size, size_t pixel_bytes);
 
-  /// The next rows, as the format has them.
+  /// Adds the next rows in the format's layout.
   void write_rows(std::span<const std::byte> pixels);
-  /// Throws std::runtime_error where it cannot be written, as a WebP with a side of more than 16383 pixels.
+  /// Writes the file. Throws std::runtime_error if it cannot be written, for example a WebP with a side of more than
+  /// 16383 pixels.
   void finish();
 
  private:

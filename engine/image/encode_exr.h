@@ -12,20 +12,20 @@
 
 namespace promin {
 
-/// An EXR file on its way through OpenEXR. Equal pixels give equal bytes.
+/// Encodes an EXR file by OpenEXR. Equal pixels give equal bytes.
 class ExrEncoder {
  public:
-  /// The bytes outlive it. `target` is the file that they become, beside which rows wait that are not the first part's.
-  /// Everything throws RunError where bytes cannot be written or kept, std::runtime_error where OpenEXR has another
-  /// reason.
+  /// The bytes must outlive it. `target` is the final file; rows of parts other than the first are kept beside it until
+  /// the end. All functions throw RunError if bytes cannot be written or kept, and std::runtime_error for other
+  /// failures of OpenEXR.
   ExrEncoder(PictureBytes& bytes, const PictureHeader& header, const std::filesystem::path& target);
   ~ExrEncoder();
   ExrEncoder(const ExrEncoder&) = delete;
   ExrEncoder& operator=(const ExrEncoder&) = delete;
 
-  /// The next rows: of each pixel R, G, B and the header's channels, four bytes each.
+  /// Adds the next rows: for each pixel R, G, B and the header's channels, four bytes each.
   void write_rows(std::span<const uint32_t> words);
-  /// After the last row.
+  /// Call it after the last row.
   void finish();
 
  private:

@@ -11,18 +11,18 @@
 
 namespace promin {
 
-/// A JPEG file of sRGB in 8 bits, without subsampling of colours (4:4:4), by libjpeg-turbo, which takes the picture as
-/// a whole. Equal pixels give equal bytes.
+/// Encodes a JPEG file in 8-bit sRGB without chroma subsampling (4:4:4) by libjpeg-turbo, which needs the whole
+/// picture. Equal pixels give equal bytes.
 class JpegEncoder {
  public:
-  /// libjpeg-turbo's, of 100.
+  /// Quality of libjpeg-turbo, of 100.
   static constexpr int kQuality = 92;
 
-  /// The bytes outlive it. Everything throws RunError where they cannot be written, std::runtime_error where
-  /// libjpeg-turbo has another reason, as a side of more than 65500 pixels.
+  /// The bytes must outlive it. All functions throw RunError if they cannot be written, and std::runtime_error for
+  /// other failures of libjpeg-turbo, for example a side of more than 65500 pixels.
   JpegEncoder(PictureBytes& bytes, const uvec2& size);
 
-  /// The next rows, of three bytes a pixel.
+  /// Adds the next rows, three bytes per pixel.
   void write_rows(std::span<const uint8_t> pixels);
   void finish();
 

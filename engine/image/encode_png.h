@@ -15,18 +15,18 @@
 
 namespace promin {
 
-/// A PNG file of sRGB in 8 bits, on its way through libpng, which returns from errors by longjmp: nothing with a
-/// destructor may be made between setjmp and a call of libpng. Equal pixels of equal scenes give equal bytes.
+/// Encodes a PNG file in 8-bit sRGB by libpng. libpng returns from errors by longjmp, so no object with a destructor
+/// may be created between setjmp and a call of libpng. Equal pixels of equal scenes give equal bytes.
 class PngEncoder {
  public:
-  /// The bytes outlive it. Everything throws RunError where they cannot be written, std::runtime_error where libpng has
-  /// another reason. An iTXt chunk named promin:scene holds `scene`, unless that is empty.
+  /// The bytes must outlive it. All functions throw RunError if they cannot be written, and std::runtime_error for
+  /// other failures of libpng. An iTXt chunk named promin:scene stores `scene` unless it is empty.
   PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene = "");
   ~PngEncoder();
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
 
-  /// The next rows, of three bytes a pixel or, with alpha, four.
+  /// Adds the next rows, three bytes per pixel, or four with alpha.
   void write_rows(std::span<const uint8_t> pixels);
   void finish();
 

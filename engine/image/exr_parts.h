@@ -7,15 +7,14 @@
 
 namespace promin {
 
-/// The part of an EXR of several that has the picture itself.
+/// The part of a multi-part EXR that contains the picture itself.
 inline constexpr std::string_view kColorPart = "rgba";
 
 inline bool is_color_channel(const std::string& channel) {
   return channel == "R" || channel == "G" || channel == "B";
 }
 
-/// The part that ExrOptions::is_multipart puts a channel into. The plugin that writes parts and those who read them ask
-/// it.
+/// Returns the part into which ExrOptions::is_multipart puts a channel. Writers and readers of parts use it.
 inline std::string part_of_channel(const std::string& channel) {
   const size_t dot = channel.rfind('.');
   if (dot != std::string::npos) return channel.substr(0, dot);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kFileName = "libpromin_pictures.so";
 constexpr const char* kListEnding = ".libraries";
-constexpr const char* kCure = "install promin whole, or name the plugin's folder in PROMIN_PLUGINS";
+constexpr const char* kCure = "install all of promin, or name the plugin's folder in PROMIN_PLUGINS";
 
 /// The file of the program: the one that the system reports, else the name that the program was called by.
 fs::path find_program() {
@@ -95,7 +95,7 @@ std::string list_names(const std::vector<fs::path>& folders) {
 
 std::string take_loader_error() {
   const char* text = dlerror();
-  return text == nullptr ? "no reason given" : text;
+  return text == nullptr ? "no reason is given" : text;
 }
 
 template <typename Function>
@@ -126,7 +126,7 @@ fs::path find_plugin() {
     if (fs::is_regular_file(folder / kFileName, error)) return folder / kFileName;
   }
   throw RunError({std::string("the plugin that reads pictures, ") + kFileName + ", is missing",
-                  "sought in " + list_names(folders), kCure});
+                  "searched in " + list_names(folders), kCure});
 }
 
 /// OpenImageIO's libraries start threads before anyone calls them, and wait without an end or end the process where
@@ -150,7 +150,7 @@ PicturesPlugin load_plugin() {
   void* library = dlopen(file.c_str(), kHow);
   if (library == nullptr) {
     const char* cure = "install OpenImageIO, for example with the package libopenimageio-dev";
-    throw RunError({"cannot load the plugin that reads pictures (" + take_loader_error() + ")", file.string(),
+    throw RunError({"the plugin that reads pictures cannot be loaded (" + take_loader_error() + ")", file.string(),
                     cure_short_memory(cure)});
   }
   PicturesPlugin plugin;

@@ -20,10 +20,10 @@ struct PicturesPlugin {
   decltype(&promin_pictures_close) close = nullptr;
 };
 
-/// Opens the plugin where no call before has, which takes a fifth of a second, and keeps it to the end of the process.
-/// Any thread may call it. It lies in the folder that the environment variable PROMIN_PLUGINS names or, where it is not
-/// set, beside the library or program that holds this code, as CMake builds and installs it. Throws RunError if it is
-/// missing, cannot be loaded or has another interface.
+/// Opens the plugin at the first call, which takes a fifth of a second, and keeps it open until the process ends. Any
+/// thread may call it. The plugin is searched in the folder that the environment variable PROMIN_PLUGINS names or, if
+/// it is not set, beside the library or program that contains this code, as CMake builds and installs it. Throws
+/// RunError if it is missing, cannot be loaded or has another interface.
 const PicturesPlugin& open_pictures();
 
 }  // namespace promin

@@ -13,9 +13,9 @@ std::string name_existing(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     refuse_lost_folder(file);
-    throw InputError({"no such picture", file.string(), "check the path"});
+    throw InputError({"the picture does not exist", file.string(), "check the path"});
   }
-  if (!std::ifstream(file)) throw InputError({"cannot open the file", file.string(), "check its permissions"});
+  if (!std::ifstream(file)) throw InputError({"the file cannot be opened", file.string(), "check its permissions"});
   return file.string();
 }
 
@@ -30,7 +30,7 @@ Image OpenedPicture::read(const uvec2& most) {
   if (info_.is_flat != 0 && (info_.width > most.x || info_.height > most.y)) {
     throw InputError(
         {"the picture is too large (" + std::to_string(info_.width) + "x" + std::to_string(info_.height) + " pixels)",
-         name_, "give one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
+         name_, "use one of use one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
   }
   check_flat(info_.is_flat != 0, info_.width, info_.height);
   if (info_.first_rgb_channel < 0) {
@@ -61,10 +61,10 @@ void OpenedPicture::check_read(int status) const {
 }
 
 void OpenedPicture::check_flat(bool is_flat, uint64_t width, uint64_t height) const {
-  if (!is_flat) throw InputError({"not a flat picture", name_, "name a two-dimensional picture"});
+  if (!is_flat) throw InputError({"the picture is not two-dimensional", name_, "use a two-dimensional picture"});
   if (width * height <= kMaxReadPixels) return;
   throw InputError({"the picture is too large (" + std::to_string(width * height) + " pixels)", name_,
-                    "at most " + std::to_string(kMaxReadPixels) + " pixels are read"});
+                    "use one of at most " + std::to_string(kMaxReadPixels) + " pixels"});
 }
 
 }  // namespace promin

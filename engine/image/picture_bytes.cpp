@@ -54,7 +54,7 @@ void PictureBytes::seek(uint64_t place) noexcept {
 
 void PictureBytes::check() const {
   if (error_ == 0) return;
-  throw RunError({std::string("cannot write the output file (") + std::strerror(error_) + ")", target_.string(),
+  throw RunError({std::string("the output file cannot be written (") + std::strerror(error_) + ")", target_.string(),
                   "check the disk and permissions"});
 }
 

@@ -10,23 +10,23 @@
 
 namespace promin {
 
-/// The bytes of a picture file that is being encoded. They are gathered, as encoders write many times a few.
+/// The bytes of a picture file that is being encoded. They are buffered, because encoders write many small pieces.
 class PictureBytes {
  public:
-  /// Writes `file`, which is to become `target`. Throws RunError.
+  /// Writes to `file`, which will become `target`. Throws RunError.
   PictureBytes(const std::filesystem::path& file, std::filesystem::path target);
   ~PictureBytes();
   PictureBytes(const PictureBytes&) = delete;
   PictureBytes& operator=(const PictureBytes&) = delete;
 
-  /// At the place. False where it cannot be written, from then on too.
+  /// Writes at the current position. Returns false after a failure, and for all later calls.
   bool write(std::span<const std::byte> bytes) noexcept;
   uint64_t place() const { return begin_ + gathered_.size(); }
   void seek(uint64_t place) noexcept;
 
-  /// Throws RunError where something could not be written.
+  /// Throws RunError if a write failed.
   void check() const;
-  /// After the last byte. Throws RunError.
+  /// Call it after the last byte. Throws RunError.
   void close();
 
  private:
@@ -34,9 +34,9 @@ class PictureBytes {
 
   std::filesystem::path target_;
   int descriptor_ = -1;
-  /// Why it cannot be written (errno); 0 where it can.
+  /// errno of the failure; 0 if there was none.
   int error_ = 0;
-  /// Where the bytes lie that are gathered.
+  /// File position of the buffered bytes.
   uint64_t begin_ = 0;
   std::vector<std::byte> gathered_;
 };

@@ -9,13 +9,13 @@
 
 namespace promin {
 
-/// Whether write_image makes a JPEG of the file, which holds no alpha.
+/// Returns whether write_image writes the file as a JPEG, which has no alpha.
 inline bool is_jpeg(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
   return ending == ".jpg" || ending == ".jpeg";
 }
 
-/// The format in which the plugin writes a file of this ending (image/plugin/pictures.h); empty where it does not.
+/// Returns the plugin's format for a file with this ending (image/plugin/pictures.h); empty if it has none.
 inline std::string_view plugin_format_of(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
   if (ending == ".webp") return "webp";
@@ -23,15 +23,15 @@ inline std::string_view plugin_format_of(const std::filesystem::path& file) {
   return ending == ".hdr" ? "hdr" : "";
 }
 
-/// Whether write_image writes linear light without named channels.
+/// Returns whether write_image writes linear light without named channels.
 inline bool is_radiance(const std::filesystem::path& file) {
   return lower_case_ending(file) == ".hdr";
 }
 
-/// The metadata that names the scene which a picture is of.
+/// The key of the metadata that names the scene of a picture.
 inline constexpr std::string_view kSceneKey = "promin:scene";
 
-/// The cure for any other ending.
+/// The cure for an unknown ending.
 inline constexpr const char* kUseKnownEnding = "use .exr, .png, .jpg, .webp, .tif or .hdr";
 
 }  // namespace promin

@@ -13,25 +13,25 @@ namespace promin {
 
 /// A format that the plugin for pictures reads from memory.
 struct PictureFormat {
-  /// OpenImageIO's name of it, or one of image/plugin/own_formats.h.
+  /// Its name in OpenImageIO or in image/plugin/own_formats.h.
   const char* name = "";
-  /// What files begin with, '?' for any byte; empty where only is_targa recognises the format.
+  /// The first bytes of such files, '?' for any byte; empty if only is_targa recognises the format.
   std::string_view magic;
-  /// Where the header holds width and height, little-endian, in how many bytes; 0 bytes where what reads it takes no
-  /// memory for the picture before the size is known.
+  /// Offsets of the little-endian width and height in the header, and their number of bytes; 0 bytes if the reader
+  /// allocates no memory before it knows the size.
   size_t width_at = 0;
   size_t height_at = 0;
   size_t size_bytes = 0;
 };
 
-/// The format of a file: PNG, JPEG, WebP, AVIF, KTX 2.0, BMP, DDS, GIF, OpenEXR or Radiance by their first bytes, else
-/// Targa where the header can be Targa's, which has no such bytes. Null for any other format.
+/// Returns the format of a file: PNG, JPEG, WebP, AVIF, KTX 2.0, BMP, DDS, GIF, OpenEXR or Radiance by their first
+/// bytes, else Targa if the header is plausible, because Targa has no such bytes. Null for other formats.
 const PictureFormat* find_picture_format(std::span<const std::byte> file);
 
-/// Whether a file of such a format holds numbers of light, as OpenEXR and Radiance do, and not codes of sRGB.
+/// Returns whether a file of such a format stores linear light, as OpenEXR and Radiance do, and not sRGB values.
 bool holds_light(std::span<const std::byte> file);
 
-/// The size that the header states; nullopt where the header's layout is not known.
+/// Returns the size that the header states; nullopt if the header's layout is unknown.
 std::optional<uvec2> read_told_size(std::span<const std::byte> file, const PictureFormat& format);
 
 }  // namespace promin

@@ -125,11 +125,11 @@ void check(bool is_so, const std::string& what, const char* cure) {
 /// Throws UsageError where parts of a picture do not suit each other: encoders read as much as the sizes state.
 void check_rows(const Image& image, std::span<const Channel> channels) {
   const size_t pixel_count = static_cast<size_t>(image.size.x) * image.size.y;
-  check(pixel_count > 0, "there are no pixels", "give it a width and a height");
-  check(
-      image.pixels.size() == pixel_count,
-      "there are " + std::to_string(image.pixels.size()) + " pixels where its size has " + std::to_string(pixel_count),
-      "give one for each place");
+  check(pixel_count > 0, "the picture has no pixels", "give it a width and a height");
+  check(image.pixels.size() == pixel_count,
+        "the picture has " + std::to_string(image.pixels.size()) + " pixels, but its size requires " +
+            std::to_string(pixel_count),
+        "give width times height pixels");
   for (const Channel& channel : channels) {
     check(channel.values.size() == pixel_count,
           "the channel " + channel.name + " has " + std::to_string(channel.values.size()) + " values for " +
@@ -139,12 +139,12 @@ void check_rows(const Image& image, std::span<const Channel> channels) {
 }
 
 void check_header(const PictureHeader& header) {
-  check(header.size.x > 0 && header.size.y > 0, "there are no pixels", "give it a width and a height");
+  check(header.size.x > 0 && header.size.y > 0, "the picture has no pixels", "give it a width and a height");
   if (!header.crop) return;
   const CropPlacement& crop = *header.crop;
   const auto is_within = [](uint32_t lo, uint32_t size, uint32_t whole) { return lo <= whole && size <= whole - lo; };
   check(is_within(crop.lo.x, header.size.x, crop.full_size.x) && is_within(crop.lo.y, header.size.y, crop.full_size.y),
-        "the crop reaches beyond the whole picture", "give its place and the size of the whole");
+        "the crop extends beyond the whole picture", "give the crop's position and the size of the whole picture");
 }
 
 }  // namespace
@@ -184,9 +184,9 @@ class PictureWriter::Impl {
   void write_rows(const Image& rows, std::span<const Channel> channels) {
     check_rows(rows, channels);
     check(rows.size.x == header_.size.x && rows.size.y <= header_.size.y - rows_written_,
-          "rows do not suit the picture's size", "give as many as it has, of its width");
-    check(channels.size() == header_.channels.size(), "rows have other channels than the picture",
-          "give values of all that were named");
+          "the rows do not match the picture's size", "give as many rows as the picture has, each of its width");
+    check(channels.size() == header_.channels.size(), "the rows have other channels than the picture",
+          "give values for all channels that were named");
     if (exr_) {
       const size_t width = rows.size.x;
       const size_t most_rows = std::max<size_t>(kMostWords / (width * (3 + channels.size())), 1);
@@ -211,7 +211,7 @@ class PictureWriter::Impl {
   }
 
   void commit() {
-    check(rows_written_ == header_.size.y, "rows of the picture are missing", "write all before the end");
+    check(rows_written_ == header_.size.y, "rows of the picture are missing", "write all rows before finishing");
     encode([&] {
       if (plugin_) return plugin_->finish();
       exr_ ? exr_->finish() : jpeg_ ? jpeg_->finish() : png_->finish();
@@ -230,8 +230,8 @@ class PictureWriter::Impl {
     } catch (const Error&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw RunError({std::string("cannot encode the picture (") + error.what() + ")", file_.string(),
-                      "try another format, as .exr or .png"});
+      throw RunError({std::string("the picture cannot be encoded (") + error.what() + ")", file_.string(),
+                      "try another format, such as .exr or .png"});
     }
   }
 
@@ -249,7 +249,7 @@ class PictureWriter::Impl {
 
 PictureWriter::PictureWriter(const fs::path& file, const PictureHeader& header) {
   if (!is_writable_format(file)) {
-    throw UsageError({"unknown picture format " + file.extension().string(), file.string(), kUseKnownEnding});
+    throw UsageError({"the picture format is unknown: " + file.extension().string(), file.string(), kUseKnownEnding});
   }
   check_header(header);
   impl_ = std::make_unique<Impl>(file, header);

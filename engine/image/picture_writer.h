@@ -12,20 +12,20 @@
 
 namespace promin {
 
-/// What a picture file begins with.
+/// The header of a picture file.
 struct PictureHeader {
-  /// Width and height of what is written.
+  /// Width and height of the written pixels.
   uvec2 size{0};
   std::optional<CropPlacement> crop = std::nullopt;
   Metadata metadata = {};
-  /// Beside R, G and B; without values.
+  /// Channels in addition to R, G and B, without values.
   std::vector<Channel> channels = {};
   DisplayTransform display = {};
   ExrOptions exr = {};
 };
 
-/// Writes a picture as write_image does, but some rows at a time. The file appears when it is whole; without commit()
-/// nothing stays behind.
+/// Writes a picture as write_image does, but some rows at a time. The file appears when it is complete; without
+/// commit() nothing remains.
 class PictureWriter {
  public:
   /// Throws as write_image.
@@ -34,10 +34,10 @@ class PictureWriter {
   PictureWriter(PictureWriter&&) noexcept;
   PictureWriter& operator=(PictureWriter&&) noexcept;
 
-  /// The next rows from the top, of the header's width, with values of its channels. Throws UsageError where they do
-  /// not suit it, RunError.
+  /// Adds the next rows from the top, of the header's width, with values of its channels. Throws UsageError if they do
+  /// not match the header, and RunError.
   void write_rows(const Image& rows, std::span<const Channel> channels = {});
-  /// After the last row. Throws UsageError where rows are missing, RunError.
+  /// Completes the file after the last row. Throws UsageError if rows are missing, and RunError.
   void commit();
 
  private:

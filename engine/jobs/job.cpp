@@ -78,15 +78,16 @@ std::string text_of(const Manifest& manifest) {
 /// The manifest of a folder that has one. Throws InputError.
 Manifest read_manifest(const fs::path& folder) {
   const fs::path file = manifest_file(folder);
-  const char* cure = "take another folder, or remove this one";
-  const InputError damaged({"is no manifest of a job, or a damaged one", file.string(), cure});
+  const char* cure = "name another folder, or remove this one";
+  const InputError damaged({"the file is not the manifest of a job, or it is damaged", file.string(), cure});
   std::error_code none;
   if (fs::is_empty(file, none)) throw damaged;
   const std::vector<std::byte> bytes = read_file(file);
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   try {
     const Json json = Json::parse(text);
-    if (json.at("promin_job") != kFormat) throw InputError({"is a job of another version", file.string(), cure});
+    if (json.at("promin_job") != kFormat)
+      throw InputError({"the job was made by another version of promin", file.string(), cure});
     Manifest manifest = manifest_of(json);
     // What was changed by hand is no longer what its pieces are of.
     if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
@@ -100,11 +101,11 @@ std::string shown(const std::string& value) {
 }
 
 /// What is true of an option that a manifest lacks, as manifests leave out those that have their defaults.
-constexpr std::string_view kLeftOut = "is not given or its default";
+constexpr std::string_view kLeftOut = "is not given or has its default value";
 
 /// What is different about two jobs, in a sentence about the wanted one.
 std::string find_difference(const Manifest& there, const Manifest& wanted) {
-  if (there.kind != wanted.kind) return "it is of the kind " + shown(there.kind);
+  if (there.kind != wanted.kind) return "its kind is " + shown(there.kind);
   const auto value_of = [](const Manifest& manifest, const std::string& name) -> std::optional<std::string> {
     for (const auto& [key, value] : manifest.options) {
       if (key == name) return value;
@@ -120,7 +121,7 @@ std::string find_difference(const Manifest& there, const Manifest& wanted) {
     if (!value_of(wanted, name)) return fmt::format("its {} is {}, and {} now", name, shown(value), kLeftOut);
   }
   for (size_t i = 0; i < std::max(there.files.size(), wanted.files.size()); ++i) {
-    if (i >= there.files.size()) return fmt::format("it does not know the file {}", shown(wanted.files[i].name));
+    if (i >= there.files.size()) return fmt::format("it lacks the file {}", shown(wanted.files[i].name));
     if (i >= wanted.files.size()) return fmt::format("it has the file {} as well", shown(there.files[i].name));
     if (there.files[i].name != wanted.files[i].name) {
       return fmt::format("its file is {}, and {} now", shown(there.files[i].name), shown(wanted.files[i].name));
@@ -133,7 +134,7 @@ std::string find_difference(const Manifest& there, const Manifest& wanted) {
     return fmt::format("it has {} pieces, and {} now", there.pieces.size(), wanted.pieces.size());
   }
   const auto [own, other] = std::ranges::mismatch(there.pieces, wanted.pieces);
-  return fmt::format("its piece {} is {} now", *own, *other);
+  return fmt::format("its piece {} is called {} now", *own, *other);
 }
 
 void make_folder(const fs::path& folder) {
@@ -142,7 +143,7 @@ void make_folder(const fs::path& folder) {
   if (!error) return;
   refuse_lost_folder(folder);
   throw RunError(
-      {"cannot make the folder (" + error.message() + ")", folder.string(), "check the disk and permissions"});
+      {"the folder cannot be created (" + error.message() + ")", folder.string(), "check the disk and permissions"});
 }
 
 /// Whether the folder has what no job brings, which begins with its manifest, by a temporary file.
@@ -198,18 +199,18 @@ Reading read_piece(const fs::path& file, const std::string& job, const std::stri
   }
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::optional<Header> header = read_header(text);
-  if (!header) return {{}, "is no piece of a job, or cut"};
+  if (!header) return {{}, "the file is not a piece of a job, or it is cut short"};
   const auto word = [&](const char* key) { return header->json.value(key, std::string()); };
   try {
-    if (word("job") != job) return {{}, "is of another job"};
-    if (word("piece") != name) return {{}, "is another piece"};
+    if (word("job") != job) return {{}, "the piece belongs to another job"};
+    if (word("piece") != name) return {{}, "the file holds another piece"};
     Content content{word("description"), {bytes.begin() + static_cast<std::ptrdiff_t>(header->begin), bytes.end()}};
-    if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0})) return {{}, "is cut"};
-    if (word("description_sha256") != sha256_of(content.description)) return {{}, "is damaged"};
-    if (word("sha256") != hash_of(content.bytes)) return {{}, "is damaged"};
+    if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0})) return {{}, "the piece is cut short"};
+    if (word("description_sha256") != sha256_of(content.description)) return {{}, "the piece is damaged"};
+    if (word("sha256") != hash_of(content.bytes)) return {{}, "the piece is damaged"};
     return {std::move(content), ""};
   } catch (const nlohmann::json::exception&) {
-    return {{}, "is damaged"};
+    return {{}, "the piece is damaged"};
   }
 }
 
@@ -226,7 +227,7 @@ void append_line(const fs::path& file, const std::string& line, bool reaches_dis
   if (!is_written && end >= 0) static_cast<void>(ftruncate(descriptor, end));
   if (descriptor >= 0) close(descriptor);
   if (is_written) return;
-  throw RunError({std::string("cannot write to the ledger (") + std::strerror(error) + ")", file.string(),
+  throw RunError({std::string("the ledger cannot be written (") + std::strerror(error) + ")", file.string(),
                   "check the disk and permissions"});
 }
 
@@ -259,8 +260,8 @@ std::string version_of(const Manifest& manifest) {
 InputFile describe_input(const fs::path& file) {
   const std::string path = fs::absolute(file).string();
   if (to_utf8(path) != path) {
-    throw InputError({"the name of the file or of its folder is not UTF-8, in which a job tells what it is made of",
-                      file.string(), "give it another name"});
+    throw InputError(
+        {"the name of the file or of its folder is not UTF-8, so a job cannot record it", file.string(), "rename it"});
   }
   const std::string hash = sha256_of_file(file);
   return {file.filename().string(), fs::file_size(file), hash};
@@ -275,7 +276,7 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
   std::error_code error;
   // Others may begin the same job at this moment: what they write is the same.
   if (has_strangers(folder) && !fs::exists(manifest_file(folder), error)) {
-    throw UsageError({"the folder has files but no job", folder.string(), "name a new folder, or an empty one"});
+    throw UsageError({"the folder has files but no job", folder.string(), "name a new or an empty folder"});
   }
   if (!fs::exists(manifest_file(folder), error)) {
     write_text_file(manifest_file(folder), text_of(manifest));
@@ -292,18 +293,18 @@ Job Job::open(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     refuse_lost_folder(folder);
-    throw InputError({"there is no such folder", folder.string(), "name that of --job"});
+    throw InputError({"there is no such folder", folder.string(), "name the folder that was given to --job"});
   }
   if (!fs::exists(manifest_file(folder), error)) {
-    throw InputError({"there is no job in the folder", folder.string(), "name that of --job"});
+    throw InputError({"there is no job in the folder", folder.string(), "name the folder that was given to --job"});
   }
   return {folder, read_manifest(folder)};
 }
 
 void Job::check_same(const Manifest& manifest) const {
   if (text_of(manifest_) == text_of(manifest)) return;
-  throw UsageError({"the folder has another job: " + find_difference(manifest_, manifest), folder_.string(),
-                    "take another folder, or the options and files of that one"});
+  throw UsageError({"the folder belongs to another job: " + find_difference(manifest_, manifest), folder_.string(),
+                    "name another folder, or repeat that job's options and files"});
 }
 
 fs::path Job::ledger_file() const {
@@ -326,7 +327,7 @@ PieceState Job::state_of(size_t piece, std::string* why) const {
 Content Job::read(size_t piece) const {
   Reading reading = read_piece(file_of(piece), id_, manifest_.pieces[piece]);
   if (reading.content) return std::move(*reading.content);
-  throw InputError({reading.why, file_of(piece).string(), "run the job again, which makes it anew"});
+  throw InputError({reading.why, file_of(piece).string(), "run the job again to make this piece again"});
 }
 
 Receipt Job::write(size_t piece, const Content& content, double ms, const Maker& maker) const {

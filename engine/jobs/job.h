@@ -15,28 +15,28 @@
 
 namespace promin::jobs {
 
-/// A file that the pieces of a job hang on.
+/// A file that the pieces of a job depend on.
 struct InputFile {
   /// Without its folder.
   std::string name;
   uint64_t size_bytes = 0;
   std::string sha256;
 };
-/// Reads it for its hash. Throws InputError.
+/// Reads and hashes a file. Throws InputError.
 InputFile describe_input(const std::filesystem::path& file);
 
-/// What a job is: all that its pieces hang on. Jobs of equal manifests have equal pieces, to the bit.
+/// All inputs of a job's pieces. Jobs with equal manifests have equal pieces, bit for bit.
 struct Manifest {
-  /// What the pieces are: "render", "cast".
+  /// The kind of the pieces: "render", "cast".
   std::string kind;
-  /// Name and value of whatever else decides their bytes, the program's version too.
+  /// Names and values of all other inputs of their bytes, including the program's version.
   std::vector<std::pair<std::string, std::string>> options;
   std::vector<InputFile> files;
   /// Names of the pieces, all different, of letters, digits, '_' and '-'; by their numbers.
   std::vector<std::string> pieces;
 };
 
-/// What a piece is made of: what its maker says of it, a text, and its bytes.
+/// The content of a piece: a text by its maker, and its bytes.
 struct Content {
   std::string description;
   std::vector<std::byte> bytes;
@@ -44,49 +44,50 @@ struct Content {
 
 enum class PieceState {
   kMissing,
-  /// Whole, of this job and as it was written.
+  /// Complete, undamaged and of this job.
   kDone,
-  /// There, but cut, damaged or of another job.
+  /// Present, but cut short, damaged or of another job.
   kBad,
 };
 
-/// Who makes pieces, for the ledger.
+/// The maker of pieces, as recorded in the ledger.
 struct Maker {
   /// Device and driver in words.
   std::string made_on;
-  /// The hash of its answers to fixed questions (app/fingerprint.h); empty where it was not asked.
+  /// The hash of its results for a fixed test (app/fingerprint.h); empty if the test was not made.
   std::string fingerprint;
 };
 
-/// What is told of a piece once it is written.
+/// The record of a piece that was written.
 struct Receipt {
   size_t number = 0;
   std::string name;
-  /// Of the piece's bytes, without its description.
+  /// SHA-256 of the piece's bytes, without its description.
   std::string sha256;
   uint64_t size_bytes = 0;
-  /// What making it took.
+  /// Milliseconds that it took.
   double ms = 0.0;
   Maker maker;
-  /// The program's.
+  /// Version of the program.
   std::string version;
   std::string host;
   int64_t pid = 0;
 };
 
-/// Work in pieces in a folder: `job.json`, which is the manifest, a file for each piece in `pieces`, and in `ledger`
-/// what happened to them, by those who made them. The folder alone tells what is done: whoever was ended, by whatever,
-/// goes on from there, and several may work on one job, on any machines that see the folder. A piece that two make is
-/// written twice, the same. The ledger informs and decides nothing. docs/jobs.md has the formats of all of it.
+/// Work that is divided into pieces and kept in a folder: the manifest `job.json`, a file for each piece in `pieces`,
+/// and the events recorded by makers in `ledger`. Only the folder determines what is done. Work that was interrupted in
+/// any way continues from it, and several processes may work on one job on all machines that can access the folder. A
+/// piece that two processes make is written twice with the same bytes. The ledger only informs. docs/jobs.md describes
+/// the formats.
 class Job {
  public:
-  /// Makes the folder, or goes on with what is in it. Throws UsageError where that is another job, which says what
-  /// differs; InputError where its manifest is damaged; RunError where it cannot be written.
+  /// Creates the folder, or continues the job in it. Throws UsageError with the difference if it is another job,
+  /// InputError if its manifest is damaged, and RunError if it cannot be written.
   static Job create(const std::filesystem::path& folder, const Manifest& manifest);
-  /// A job that there is. Throws InputError.
+  /// Opens an existing job. Throws InputError.
   static Job open(const std::filesystem::path& folder);
 
-  /// Throws UsageError where this is not the job of that manifest, which says what differs.
+  /// Throws UsageError with the difference if this is not the job of that manifest.
   void check_same(const Manifest& manifest) const;
 
   const Manifest& manifest() const { return manifest_; }
@@ -96,22 +97,23 @@ class Job {
   size_t piece_count() const { return manifest_.pieces.size(); }
   std::filesystem::path file_of(size_t piece) const;
 
-  /// What the disk tells: reads the piece whole. `why` is told what is bad about it: "is cut".
+  /// Reads the whole piece and returns its state. `why` receives the fault of a bad piece: "the piece is cut short".
   PieceState state_of(size_t piece, std::string* why = nullptr) const;
-  /// Throws InputError where the piece is missing or bad.
+  /// Reads a piece. Throws InputError if it is missing or bad.
   Content read(size_t piece) const;
-  /// Writes a piece, and its receipt to the ledger. Throws RunError; the piece is there whole, or as it was before.
+  /// Writes a piece, and its receipt to the ledger. Throws RunError; the piece is then either complete or unchanged.
   Receipt write(size_t piece, const Content& content, double ms, const Maker& maker) const;
 
-  // Further lines of the ledger. A piece that was begun, and of which its maker says no more, was its maker's end.
+  // Further lines of the ledger. If a piece was begun and no further line follows, its maker died or is still working.
 
-  /// Throws RunError where the disk takes no line, as it will take no piece then.
+  /// Records the start of a piece. Throws RunError if the line cannot be written, because the piece could not be
+  /// written either.
   void tell_begun(size_t piece, const Maker& maker) const;
-  /// That no piece came of it, for this reason. It is not told where the disk takes no line.
+  /// Records that making the piece failed, with the reason. Ignores failures to write the line.
   void tell_failed(size_t piece, const Maker& maker, const std::string& why) const;
-  /// That its maker was asked to stop. The same.
+  /// Records that its maker was asked to stop. Ignores failures to write the line.
   void tell_stopped(size_t piece, const Maker& maker) const;
-  /// Removes what writers have left behind that were ended on this machine.
+  /// Removes temporary files of writers that were killed on this machine.
   void clear_leftovers() const;
 
  private:
@@ -134,27 +136,27 @@ struct Share {
 /// A piece that is about to be made.
 struct NextPiece {
   size_t number = 0;
-  /// Of those of the share that are to be made, how many come before it, and all.
+  /// The number of pieces of the share to make before it, and in total.
   size_t before = 0;
   size_t total = 0;
-  /// What is bad about it where it is there: "is cut".
+  /// The fault of an existing bad piece: "the piece is cut short".
   std::string why;
 };
 
-/// Makes a piece, whatever there is of it, and tells the ledger. Throws what `make` does and what Job::write does.
+/// Makes a piece, even if it exists, and records it in the ledger. Throws what `make` and Job::write throw.
 Receipt make_piece(const Job& job, size_t piece, const Maker& maker, const std::function<Content(size_t piece)>& make);
 
-/// Is told of each piece before it is made; whether to go on.
+/// Called before each piece is made. Returns whether to continue.
 using BeforePiece = std::function<bool(const NextPiece& next)>;
 
 /// Makes the pieces of a share that are not done, in their order. `make` returns a piece's content by its number.
-/// Returns how many it has made; fewer than there were to make where `before` has said so.
+/// Returns the number of pieces made, which is smaller than the number missing if `before` has returned false.
 size_t run_share(const Job& job, const Share& share, const Maker& maker, const BeforePiece& before,
                  const std::function<Content(size_t piece)>& make);
 
-/// The pieces of a share that are not done.
+/// Returns the pieces of a share that are not done.
 std::vector<size_t> find_missing(const Job& job, const Share& share = {});
-/// Of these pieces those that are not done.
+/// Returns those of the given pieces that are not done.
 std::vector<size_t> keep_missing(const Job& job, std::vector<size_t> pieces);
 
 }  // namespace promin::jobs

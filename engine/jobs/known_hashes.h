@@ -11,17 +11,17 @@
 
 namespace promin::jobs {
 
-/// The hashes of a job's large inputs, which its folder keeps in `hashes.json` by the files' paths and stamps: each of
-/// many who work on it would read gigabytes otherwise before its first piece.
+/// A cache of the hashes of a job's large inputs, in `hashes.json` in its folder, by the files' paths and stamps.
+/// Without it every process that works on the job would read gigabytes before its first piece.
 class KnownHashes {
  public:
-  /// Reads what the folder has, if it is there; what is damaged counts as nothing.
+  /// Reads the cache if it exists; damaged entries are ignored.
   explicit KnownHashes(const std::filesystem::path& folder);
 
-  /// What describe_input tells. The file is read where its stamp is not known. Throws InputError, also where the file
-  /// changes meanwhile.
+  /// Returns the same as describe_input. Reads the file only if its stamp is unknown. Throws InputError, also if the
+  /// file changes meanwhile.
   InputFile describe(const std::filesystem::path& file);
-  /// Has the folder keep what was read, for those who come later, if it can.
+  /// Writes the cache for later processes; ignores failures.
   void save();
 
  private:

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "rays and hits lie in the file as in memory");
+static_assert(std::endian::native == std::endian::little,
+              "rays and hits have the same layout in the file as in memory");
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 /// No array of numbers has a larger header.
@@ -156,17 +157,17 @@ constexpr std::string_view kHitType =
 
 RayReader::RayReader(const fs::path& file) : file_(file) {
   if (!fs::is_regular_file(find_input(file)))
-    throw InputError({"not a regular file", file.string(), "name a .npy file"});
+    throw InputError({"the file is not a regular file", file.string(), "name a .npy file"});
   std::error_code error;
   const uint64_t file_bytes = fs::file_size(file, error);
   stream_.open(file, std::ios::binary);
-  if (!stream_ || error) throw InputError({"cannot open the file", file.string(), "check its permissions"});
+  if (!stream_ || error) throw InputError({"the file cannot be opened", file.string(), "check its permissions"});
 
   std::array<char, 12> head{};
   stream_.read(head.data(), 8);
   const char version = head[6];
   if (!stream_ || std::string_view(head.data(), kMagic.size()) != kMagic || version < 1 || version > 3) {
-    throw InputError({"not a NumPy array file", file.string(), kCure});
+    throw InputError({"the file is not a NumPy array", file.string(), kCure});
   }
   const std::streamsize length_bytes = version == 1 ? 2 : 4;
   stream_.read(head.data() + 8, length_bytes);
@@ -183,9 +184,9 @@ RayReader::RayReader(const fs::path& file) : file_(file) {
   begin_ = stream_.tellg();
   const uint64_t data_bytes = file_bytes - (8 + static_cast<uint64_t>(length_bytes) + header_bytes);
   if (data_bytes % ray_bytes_ != 0 || data_bytes / ray_bytes_ != count_) {
-    throw InputError({"the header tells of " + std::to_string(count_) + " rays, the file holds " +
-                          std::to_string(data_bytes) + " bytes of them, " + std::to_string(ray_bytes_) + " each",
-                      file.string(), "let NumPy write the file again"});
+    throw InputError({"the header declares " + std::to_string(count_) + " rays, but the file holds " +
+                          std::to_string(data_bytes) + " bytes of rays, " + std::to_string(ray_bytes_) + " each",
+                      file.string(), "write the file again with NumPy"});
   }
 }
 
@@ -217,7 +218,7 @@ void RayReader::convert(std::span<Ray> rays, const dvec3& center) {
 void RayReader::read_bytes(std::span<std::byte> bytes) {
   if (bytes.empty()) return;
   if (!stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-    throw InputError({"cannot read the file to its end", file_.string(), "check the disk"});
+    throw InputError({"the file cannot be read to its end", file_.string(), "check the disk"});
   }
 }
 
@@ -268,7 +269,7 @@ void ArrayWriter::commit_together(std::initializer_list<ArrayWriter*> writers) {
 
 void ArrayWriter::check() const {
   if (stream_) return;
-  throw RunError({std::string("cannot write the output file (") + std::strerror(errno) + ")", target_.string(),
+  throw RunError({std::string("the output file cannot be written (") + std::strerror(errno) + ")", target_.string(),
                   "check the disk and permissions"});
 }
 

@@ -10,37 +10,37 @@
 #include "core/unset_vector.h"
 #include "promin/ray.h"
 
-// The order in which rays are best traced. No answer depends on it.
+// Orders rays so that they can be traced fast. Results do not depend on the order.
 namespace promin {
 
-/// The place of the scene: a cube around everything that rays may hit, infinite planes aside.
+/// A cube around everything that rays may hit, except infinite planes.
 struct SceneCube {
   vec3 center{0.0F};
   /// Half the cube's side; >= 0.
   float radius = 0.0F;
 };
 
-/// The direction scaled so that its largest component is 1 or -1; NaN where there is no direction.
+/// Returns the direction scaled so that its largest component is 1 or -1; NaN for a direction of 0.
 inline vec3 scaled_direction(const Ray& ray) {
   const vec3 size = glm::abs(ray.direction);
   return ray.direction / std::max(std::max(size.x, size.y), size.z);
 }
 
-/// The first ray of the i-th pair in a sample of all pairs of neighbouring rays. `ray_count` is at least 2. The sample
-/// steps by the golden ratio, because even steps would all fall on the ends of a picture's rows.
+/// Returns the first ray of the i-th pair in a sample of all pairs of neighbouring rays. `ray_count` is at least 2. The
+/// sample steps by the golden ratio, because equal steps could all fall on the ends of a picture's rows.
 inline size_t sampled_pair(size_t i, size_t ray_count) {
   return (i * size_t{0x9E3779B97F4A7C15}) % (ray_count - 1);
 }
 
-/// Whether neighbouring rays mostly begin and go near each other, as those of a camera in pixel order do. A sample of
-/// the pairs decides.
+/// Returns whether most neighbouring rays have similar origins and directions, as those of a camera in pixel order do.
+/// It tests a sample of the pairs.
 bool are_side_by_side(std::span<const Ray> rays, const SceneCube& cube);
 
 /// Sorts rays. It keeps its memory for the next call.
 class RaySorter {
  public:
-  /// The rays' indices in an order in which rays that enter the cube near each other in similar directions lie
-  /// together, along a space-filling curve through entry point and direction (Aila & Karras, "Architecture
+  /// Returns the rays' indices in an order in which rays that enter the cube close together and in similar directions
+  /// are neighbours, along a space-filling curve through entry point and direction (Aila & Karras, "Architecture
   /// Considerations for Tracing Incoherent Rays", HPG 2010). Rays that miss the cube or have no direction come last. At
   /// most 2^32 - 1 rays. The order is stable, and the same with any number of threads. It is valid until the next call.
   std::span<const uint32_t> sort(std::span<const Ray> rays, const SceneCube& cube);

@@ -365,12 +365,13 @@ void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
 
 double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, const ProgressCallback& progress) {
   if (rays.size() != hits.size()) {
-    throw UsageError({"there are " + std::to_string(hits.size()) + " hits for " + std::to_string(rays.size()) + " rays",
-                      "in Caster::cast", "give as many hits as rays"});
+    throw UsageError(
+        {"the call gives " + std::to_string(hits.size()) + " hits for " + std::to_string(rays.size()) + " rays",
+         "in Caster::cast", "give as many hits as rays"});
   }
   if (query != HitQuery::kNearest && query != HitQuery::kAny) {
-    throw UsageError(
-        {"a count or a list is asked of a ray's one hit", "in Caster::cast", "call Caster::count or Caster::list"});
+    throw UsageError({"cast() returns one hit per ray, neither a count nor a list", "in Caster::cast",
+                      "call Caster::count or Caster::list"});
   }
   return impl_->trace_all(rays, hits, query, progress, [&](const HitRecord& record, const Ray* scaled) {
     return hit_of(record, scaled, query, impl_->numbers);
@@ -379,9 +380,9 @@ double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery que
 
 double Caster::occluded(std::span<const Ray> rays, std::span<bool> are_occluded, const ProgressCallback& progress) {
   if (rays.size() != are_occluded.size()) {
-    throw UsageError(
-        {"there are " + std::to_string(are_occluded.size()) + " answers for " + std::to_string(rays.size()) + " rays",
-         "in Caster::occluded", "give as many answers as rays"});
+    throw UsageError({"the call gives " + std::to_string(are_occluded.size()) + " results for " +
+                          std::to_string(rays.size()) + " rays",
+                      "in Caster::occluded", "give as many results as rays"});
   }
   return impl_->trace_all(rays, are_occluded, HitQuery::kAny, progress,
                           [](const HitRecord& record, const Ray*) { return record.a.y != layout::NO_ORDER; });
@@ -390,7 +391,7 @@ double Caster::occluded(std::span<const Ray> rays, std::span<bool> are_occluded,
 double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const ProgressCallback& progress) {
   if (rays.size() != counts.size()) {
     throw UsageError(
-        {"there are " + std::to_string(counts.size()) + " counts for " + std::to_string(rays.size()) + " rays",
+        {"the call gives " + std::to_string(counts.size()) + " counts for " + std::to_string(rays.size()) + " rays",
          "in Caster::count", "give as many counts as rays"});
   }
   if (impl_->counts_by_lists(rays)) {
@@ -401,7 +402,7 @@ double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const
     };
     return list(rays, take, kListBytes, progress);
   }
-  // No ray has 2^31 crossings: there are fewer than 2^27 primitives.
+  // No ray has 2^31 crossings, because a scene has fewer than 2^27 primitives.
   return impl_->trace_all(rays, counts, HitQuery::kCount, progress,
                           [](const HitRecord& record, const Ray*) { return static_cast<int32_t>(record.a.x); });
 }
@@ -425,9 +426,9 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
       size_t end = begin + 1;
       while (end < chunk.size() && total + counts[end] <= most) total += counts[end++];
       if (total > most_listed) {
-        throw RunError({"the ray has " + std::to_string(total) + " hits, of which a buffer of the device holds " +
+        throw RunError({"the ray has " + std::to_string(total) + " hits, and a buffer of the device holds " +
                             std::to_string(most_listed),
-                        "ray " + std::to_string(first + begin), "list parts of it by tmin and tmax"});
+                        "ray " + std::to_string(first + begin), "divide the ray into parts by tmin and tmax"});
       }
       time_ms += impl_->list(chunk.subspan(begin, end - begin), std::span(counts).subspan(begin, end - begin), order,
                              part_of(progress, first + begin, 0, rays.size()));

@@ -5,19 +5,18 @@
 #include "promin/caster.h"
 #include "scene/world_scene.h"
 
-// Access to what is behind Caster, for tests and measurements.
+// Access to the implementation of Caster, for tests and measurements.
 namespace promin {
 
 struct TunedCasterOptions : CasterOptions {
-  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, for cast() alone; empty for promin's
-  /// own.
+  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, only for cast(); empty for promin's own.
   std::span<const uint32_t> spirv = {};
-  /// A BVH file that is to be had in common with others (pack_scene_sharing). Unless `bvh` names one to take.
+  /// A BVH file to share with other processes (pack_scene_sharing), unless `bvh` names a file.
   std::optional<std::filesystem::path> shared_bvh = std::nullopt;
 };
 
 struct CasterAccess {
-  /// Does what Caster's constructor does, for a scene that is in the world already and is valid.
+  /// Does what Caster's constructor does, for a valid scene in world space.
   static Caster make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options);
 };
 

@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// Adds the hits of primitives that are not in the tree, because they are copies of one that is, to lists of hits.
+/// Adds to lists of hits those of primitives that are not in the tree because they are copies of another.
 class CopiedHits {
  public:
   CopiedHits() = default;
@@ -21,17 +21,17 @@ class CopiedHits {
 
   bool empty() const { return copies_.empty(); }
 
-  /// Hands a list on with the hits of copies, in parts of whole rays that have hits of `budget_bytes` together, or of
-  /// one ray. `list` has those of the rays' other hits, in the order of hits.
+  /// Passes a list on with the hits of copies, in parts of whole rays with hits of `budget_bytes` together, but at
+  /// least one ray. `list` has the other hits of the rays in sorted order.
   void list(const HitList& list, const HitListSink& sink, uint64_t budget_bytes) const;
 
  private:
   using Id = std::pair<int32_t, int32_t>;
 
-  /// Appends the hits of a ray with those of copies, in the order of hits.
+  /// Appends the hits of a ray and those of copies in sorted order.
   void append(std::span<const Hit> hits, std::vector<Hit>& all) const;
 
-  /// By object and primitive those that are copies of it.
+  /// The copies of each primitive, by object and primitive.
   std::map<Id, std::vector<Id>> copies_;
 };
 

@@ -23,14 +23,14 @@ struct SampleRange {
   uint32_t end;
 };
 
-/// The pixels of a view that are asked for.
+/// Returns the requested pixels of a view.
 PixelWindow picture_window(const View& view);
 
-/// Tells no progress yet, but whether to go on. `progress` lives longer.
+/// Returns a callback that reports a progress of 0 and only checks whether to continue. `progress` must outlive it.
 ProgressCallback keep_going(const ProgressCallback& progress);
 
-/// What a Renderer is behind its checks: a scene on a device, and the films that its pictures are traced on. Pictures
-/// of fixed samples are in picture_tracer.cpp, those with an error target in refined_pictures.cpp.
+/// The implementation of a Renderer without its checks: a scene on a device, and the films onto which its pictures are
+/// traced. picture_tracer.cpp makes pictures of fixed samples, refined_pictures.cpp those with an error target.
 class PictureTracer {
  public:
   /// As Renderer's constructor.
@@ -39,13 +39,14 @@ class PictureTracer {
   SceneOnDevice& scene() { return scene_; }
   const SceneOnDevice& scene() const { return scene_; }
   const SetupStats& stats() const { return stats_; }
-  /// What has been done since the constructor began.
+  /// Returns counts of the work since the constructor began.
   WorkDone work_done() const;
 
-  /// Is called after a part of the scene has changed. A film that cannot be bound to it is made anew when it is needed.
+  /// Updates the films after a part of the scene has changed. A film that cannot be bound to it is created again when
+  /// it is needed.
   void take_change();
 
-  // As Renderer has them, of views that are valid.
+  // As in Renderer, for valid views.
   RenderResult render(const View& view, const ProgressCallback& progress);
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress);
   void render_progressively(const View& view, double budget_ms,
@@ -53,39 +54,39 @@ class PictureTracer {
   Explanation explain(const View& view, const uvec2& pixel) const;
 
  private:
-  /// Most records of a pixel that a film holds; larger pictures are traced in bands of rows. 64 MiB is half of what
+  /// Largest number of records on a film; larger pictures are traced in bands of rows. 64 MiB is half of the size that
   /// Vulkan guarantees for a storage buffer.
   static constexpr uint32_t kMaxFilmRecords = ((64U << 20) - 4096) / sizeof(uvec4);
 
-  /// Makes the film that a mode needs, unless it is there.
+  /// Creates the film that a mode needs, unless it exists.
   void prepare_film(const RenderMode& mode);
-  /// Of what is told of all samples.
+  /// Returns the features for AOVs of all samples.
   FeatureMask features_of_samples(const RenderMode& mode) const;
-  /// Whether a picture of a fixed number of samples tells how far it may be off: a debug view does not.
+  /// Returns whether a picture of a fixed number of samples estimates its error; a debug view does not.
   bool estimates_errors(const RenderMode& mode) const { return wanted_.error && mode.debug_view == DebugView::kNone; }
-  /// Whether parts of light are told: a debug view has none.
+  /// Returns whether parts of light are computed; a debug view has none.
   bool has_parts(const RenderMode& mode) const {
     return wanted_.has_any(AovSource::kParts) && mode.debug_view == DebugView::kNone;
   }
-  /// Whether Aovs::unlit is wanted and there are unlit surfaces.
+  /// Returns the feature for Aovs::unlit if it is requested and there are unlit surfaces.
   FeatureMask features_of_scene(const RenderMode& mode) const;
   bool tells_unlit(const RenderMode& mode) const;
-  /// The film on which samples of a list are traced.
+  /// Creates the film for samples of a list.
   void prepare_refining_film(const RenderMode& mode);
   void prepare_film(FeatureMask features);
   FilmOptions film_options() const;
   /// Traces samples of a window of the picture, for which the film has room.
   void trace_window(Film& onto, const PixelWindow& window, const View& view, const SampleRange& samples,
                     RenderResult& result, const ProgressCallback& on_progress);
-  /// Traces a band of the picture, samples a pixel as far as there is room for what is told of each, and adds it to
-  /// the result, whose pixel `first` is the band's first.
+  /// Traces a band of the picture, as many samples per pixel at a time as there is room for their AOVs, and adds it to
+  /// the result. The band's first pixel is the result's pixel `first`.
   void trace_band(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
                   const ProgressCallback& on_progress);
   void tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const;
   uint32_t object_of(uint32_t order) const;
-  /// Reads what a film holds of a window; what was read before is gone then.
+  /// Reads the records of a window from a film. This invalidates what was read before.
   ReadFilm read_film(const Film& from, const uvec2& size);
-  /// Cuts a picture into bands of whole blocks that a film has room for.
+  /// Divides a picture into bands of whole blocks that fit on a film.
   template <typename TraceBand>
   void for_each_band(const View& view, uint32_t records_per_pixel, const TraceBand& trace_band) const {
     const PixelWindow window = picture_window(view);
@@ -97,38 +98,38 @@ class PictureTracer {
       trace_band(band, static_cast<size_t>(y - window.lo.y) * width);
     }
   }
-  /// Traces the middle sample once more, without light, for its steps and the surfaces that it has met: steps are of
-  /// single rays, and packets are not; samples of a list have nothing but light.
+  /// Traces the middle sample again without light, for its step counts and surfaces. Step counts must be of single rays
+  /// and not of packets, and samples of a list have only light.
   void trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress);
   RenderMode mode_of_middle(RenderMode mode) const;
   void prepare_middle_film(const RenderMode& mode);
-  /// A picture without pixels yet.
+  /// Returns a picture without pixels.
   RenderResult make_result(const View& view) const;
-  /// A picture of a fixed number of samples a pixel.
+  /// Renders a picture with a fixed number of samples per pixel.
   RenderResult render_samples(const View& view, const ProgressCallback& progress);
-  /// What the samples of a window of a refined picture tell beside their colors, by pixel.
+  /// AOVs of the samples of a window of a refined picture, by pixel.
   struct RefinedAovs {
     PixelWindow window;
     std::vector<LightParts> parts;
     CoverageTally tally;
   };
   RefinedAovs begin_refined_aovs(const PixelWindow& window, const View& view) const;
-  /// Takes those of a list.
+  /// Adds the AOVs of a list.
   void take_aovs(std::span<const ListedSample> list, const ReadFilm& read, RefinedAovs& aovs) const;
-  /// Traces samples until the refinement has what it was asked for. `on_samples` is told how many it has taken.
+  /// Traces samples until the refinement reaches its error. `on_samples` receives the number of samples so far.
   void refine(Refinement& refinement, const View& view, RefinedAovs& aovs, RenderResult& result,
               const ProgressCallback& on_samples);
-  /// Fills a result with what a refinement of a window has come to.
+  /// Fills a result with the refinement of a window.
   void take_refined(const Refinement& refinement, const RefinedAovs& aovs, const View& view,
                     RenderResult& result) const;
-  /// A picture without pixels yet, with what rays through the centres of pixels tell.
+  /// Returns a picture without pixels, but with the AOVs of rays through the centres of pixels.
   RenderResult begin_refined(const View& view, const ProgressCallback& progress);
-  /// Whether AOVs are wanted that rays through the pixels' centers tell.
+  /// Returns whether AOVs of rays through the pixels' centres are requested.
   bool tells_of_centers() const;
-  /// Compiles what is not yet.
+  /// Compiles the missing pipelines.
   void prepare_to_refine(const RenderMode& mode);
   RenderResult render_to_error(const View& view, const ProgressCallback& progress);
-  /// The least error that is foretold to fit into the time, the first in any case.
+  /// Refines to the smallest error that is estimated to fit into the time, but at least to the first.
   RenderResult refine_within(const View& view, double seconds, const ProgressCallback& progress);
 
   const gpu::Device& device_;
@@ -140,10 +141,10 @@ class PictureTracer {
   SceneOnDevice scene_;
   std::optional<Film> film_;
   FeatureMask film_features_;
-  /// Of trace_middle; there as soon as somebody has asked for what it tells.
+  /// The film of trace_middle; created when its AOVs are first requested.
   std::optional<Film> middle_film_;
   UnsetVector<uvec4> film_records_;
-  /// Of the samples of a picture's pixels, where their errors are estimated.
+  /// Color ranges of the samples of each pixel, for estimating errors.
   std::vector<ColorRange> ranges_;
 };
 

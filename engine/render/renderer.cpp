@@ -76,9 +76,10 @@ namespace {
 void check_copies(const std::set<uint32_t>& copied, std::span<const Material> materials) {
   for (const uint32_t i : copied) {
     if (hides_copies(materials[i])) continue;
-    throw InputError({"the material was opaque, so the tree has one of more than " + std::to_string(kMostCopies) +
-                          " identical primitives, and shows no others through it",
-                      "material " + std::to_string(i) + " in set_materials", "make a renderer of the changed scene"});
+    throw InputError({"the material was opaque when the tree was built, so the tree keeps one of more than " +
+                          std::to_string(kMostCopies) +
+                          " identical primitives, and the others cannot be seen through it",
+                      "material " + std::to_string(i) + " in set_materials", "create a renderer of the changed scene"});
   }
 }
 
@@ -87,9 +88,9 @@ void check_copies(const std::set<uint32_t>& copied, std::span<const Material> ma
 void Renderer::set_materials(std::span<const Material> materials) {
   throw_if_invalid(materials);
   if (materials.size() != impl_->tracer.scene().material_count()) {
-    throw InputError({"there are " + std::to_string(materials.size()) + " materials for a scene of " +
+    throw InputError({"the call gives " + std::to_string(materials.size()) + " materials to a scene that has " +
                           std::to_string(impl_->tracer.scene().material_count()),
-                      "in set_materials", "change the scene's own, in their order"});
+                      "in set_materials", "give one for each of the scene's materials, in their order"});
   }
   check_copies(impl_->tracer.scene().copied_materials(), materials);
   gpu::translate_vulkan_errors([&] {
@@ -108,8 +109,8 @@ void Renderer::set_environment(const Environment& environment) {
 
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
   check_view(view);
-  check(pixel.x < view.size.x && pixel.y < view.size.y, "the pixel to explain lies beyond the picture", "pixel",
-        "stay within its size");
+  check(pixel.x < view.size.x && pixel.y < view.size.y, "the pixel to explain lies outside the picture", "pixel",
+        "name a pixel inside");
   Explanation explanation;
   gpu::translate_vulkan_errors([&] { explanation = impl_->tracer.explain(view, pixel); });
   return explanation;
@@ -117,8 +118,8 @@ Explanation Renderer::explain(const View& view, const uvec2& pixel) {
 
 RenderResult Renderer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
   check_view(view);
-  check(view.error_target.has_value(), "there is no error to refine to", "view.error_target", "set one");
-  check(std::isfinite(seconds), "the time is not finite", "seconds", "give a picture some seconds");
+  check(view.error_target.has_value(), "the view has no target error", "view.error_target", "set a target error");
+  check(std::isfinite(seconds), "the time limit is not finite", "seconds", "give a finite number of seconds");
   RenderResult result;
   gpu::translate_vulkan_errors([&] { result = impl_->tracer.render_within(view, seconds, progress); });
   return result;
@@ -134,10 +135,12 @@ RenderResult Renderer::render(const View& view, const ProgressCallback& progress
 void Renderer::render_progressively(const View& view, double budget_ms,
                                     const std::function<bool(const Image&, const View&)>& on_picture) {
   check_view(view);
-  check(!view.crop, "render_progressively takes no crop", "view.crop", "show the whole picture, or render the crop");
+  check(!view.crop, "render_progressively does not support a crop", "view.crop",
+        "show the whole picture, or call render for the crop");
   check(budget_ms > 0.0 && std::isfinite(budget_ms), "the budget is not positive and finite", "budget_ms",
-        "give a picture some milliseconds");
-  check(static_cast<bool>(on_picture), "there is nobody to take the pictures", "on_picture", "give a function");
+        "give a positive number of milliseconds");
+  check(static_cast<bool>(on_picture), "the function that receives the pictures is empty", "on_picture",
+        "give a function");
   gpu::translate_vulkan_errors([&] { impl_->tracer.render_progressively(view, budget_ms, on_picture); });
 }
 

@@ -13,32 +13,32 @@
 #include "trace/film.h"
 #include "trace/picture_shaders.h"
 
-// Access to what is behind Renderer: for the window, which records its frames itself, and for tests and measurements.
+// Access to the implementation of Renderer, for the window, which records its frames itself, and for tests and
+// measurements.
 namespace promin {
 
 /// Options that pictures do not need: for tests and measurements.
 struct TunedRendererOptions : RendererOptions {
-  /// Compile every feature in, whether the scene uses it or not: for measuring what specialisation brings.
+  /// Compile all features, even unused ones, to measure the gain of specialisation.
   bool force_all_features = false;
-  /// The longest time that a single dispatch should take. Where it is empty, the device decides.
+  /// Target for the longest time of a single dispatch. If empty, the device profile decides.
   std::optional<double> target_dispatch_ms = std::nullopt;
-  /// The number of pixels that a lane traces together: 1, 2 or 4. Where it is empty, the device decides. The image's
-  /// bits stay the same.
+  /// The number of pixels that a lane traces together: 1, 2 or 4. If empty, the device profile decides. The image keeps
+  /// its bits.
   std::optional<uint32_t> packet_size = std::nullopt;
   /// A fixed number of 8x8 blocks per dispatch, for tests of tile independence; 0 adapts.
   uint32_t blocks_per_dispatch = 0;
-  /// Read the scene as storage buffers even where texel buffers hold it. The image's bits stay the same.
+  /// Read the scene from storage buffers even if texel buffers can hold it. The image keeps its bits.
   bool avoids_texels = false;
-  /// Other shaders with the same bindings; Renderer::explain does not take them.
+  /// Other shaders with the same bindings; Renderer::explain does not use them.
   PictureShaders shaders = picture_shaders();
-  /// A BVH file that is to be had in common with others (pack_scene_sharing). Unless `bvh` names one to take.
+  /// A BVH file to share with other processes (pack_scene_sharing), unless `bvh` names a file.
   std::optional<std::filesystem::path> shared_bvh = std::nullopt;
-  /// Changes the packed scene before it is uploaded, for shaders that read another layout of it. Empty: nothing is
-  /// changed.
+  /// Changes the packed scene before it is uploaded, for shaders that read another layout. Empty for no change.
   std::function<PackedScene(PackedScene)> repack = {};
 };
 
-/// A scene on a device and the features that its parts use, which decide what pipeline a picture needs.
+/// A scene on a device and the features that its parts use, which determine the pipeline of a picture.
 class SceneOnDevice {
  public:
   SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
@@ -46,15 +46,15 @@ class SceneOnDevice {
 
   const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
   const PrimitiveNumbers& numbers() const { return numbers_; }
-  /// Whether the tree was built here, not taken from a file.
+  /// Returns whether the tree was built here and not read from a file.
   bool is_tree_built() const { return is_tree_built_; }
   size_t material_count() const { return shown_materials_.size(); }
-  /// Those of copies that are not in the tree (device_scene/drop_copies.h).
+  /// Returns the materials of copies that are not in the tree (device_scene/drop_copies.h).
   const std::set<uint32_t>& copied_materials() const { return copied_materials_; }
-  /// Of each object.
+  /// Returns the material of each object.
   std::span<const uint32_t> object_materials() const { return object_materials_; }
 
-  /// The features of a picture in a mode, with the scene's lights and surroundings or with those of others.
+  /// Returns the features of a picture in a mode, with the scene's lights and environment or with others.
   FeatureMask features(const RenderMode& mode) const {
     return features_with(light_features_, environment_features_, mode);
   }
@@ -80,7 +80,7 @@ class SceneOnDevice {
 };
 
 struct RendererAccess {
-  /// Does what Renderer's constructor does, for a scene that is in the world already and is valid.
+  /// Does what Renderer's constructor does, for a valid scene in world space.
   static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
   static SceneOnDevice& scene_of(Renderer& renderer);
   static const SceneOnDevice& scene_of(const Renderer& renderer);

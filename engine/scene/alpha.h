@@ -6,19 +6,20 @@
 
 namespace promin {
 
-// What a material's alpha asks of a picture (docs/model.md, "Alpha").
+// The effects of a material's alpha on a picture (docs/model.md, "Alpha").
 
-/// Whether it is nowhere: textures and vertices make alpha smaller, never larger.
+/// Returns whether the material is absent everywhere: textures and vertices can only reduce alpha.
 inline bool is_absent(const Material& material) {
   return material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff;
 }
 
-/// Whether there may be nothing in places, by the factor or by textures and vertices.
+/// Returns whether the material may be absent in places, because of its factor, textures or vertices.
 inline bool has_holes(const Material& material) {
   return material.alpha_mode != AlphaMode::kOpaque;
 }
 
-/// Whether what is behind it may be seen. Of what is absent triangles are holes; other shapes blend, with alpha 0.
+/// Returns whether surfaces behind it may be visible. Absent triangles are holes; other absent shapes blend with alpha
+/// 0.
 inline bool blends(const Material& material) {
   return material.alpha_mode == AlphaMode::kBlend || is_absent(material);
 }

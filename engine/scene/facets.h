@@ -12,10 +12,10 @@
 
 namespace promin {
 
-/// A triangle in the world, counterclockwise seen from outside; a solid has those of its bounds.
+/// A triangle in the world, counterclockwise seen from outside. Solids are represented by the facets of their bounds.
 struct Facet {
   std::array<dvec3, 3> corners;
-  /// Whether it is seen from behind, too.
+  /// Whether it is also visible from behind.
   bool shows_back = true;
 };
 
@@ -70,7 +70,7 @@ struct FacetFinder {
           p[v] = double{is_high_v ? bounds.hi[v] : bounds.lo[v]};
           return p;
         };
-        // u x v is the axis.
+        // u x v is the direction of the axis.
         if (use(Facet{{corner(false, false), corner(is_high, !is_high), corner(true, true)}})) return true;
         if (use(Facet{{corner(false, false), corner(true, true), corner(!is_high, is_high)}})) return true;
       }
@@ -79,8 +79,8 @@ struct FacetFinder {
   }
 };
 
-/// Calls `use` with the facets of a valid scene, but for those of what has no bounds, until it returns true. Returns
-/// whether it has.
+/// Calls `use` with the facets of a valid scene, except unbounded objects, until it returns true. Returns whether it
+/// has.
 template <class Use>
 bool any_facet(const Scene& scene, const Use& use) {
   for (const Object& object : scene.objects) {

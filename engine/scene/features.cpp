@@ -49,7 +49,7 @@ constexpr bool are_bits_distinct() {
   for (uint bit = 0; bit < 8; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
   return std::ranges::all_of(uses, [](int count) { return count <= 1; });
 }
-static_assert(are_bits_distinct(), "two rows of the tables, or one and the debug view, have the same bit of features");
+static_assert(are_bits_distinct(), "two rows of the tables, or a row and the debug view, have the same feature bit");
 
 /// Leaves are sorted by kind and traversed in the order of the table.
 constexpr bool do_kinds_ascend() {

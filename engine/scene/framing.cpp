@@ -102,7 +102,7 @@ void check_aspect_ratio(float aspect_ratio) {
 
 void check_fit(float fit) {
   if (fit >= kMinFit && fit <= 1.0F) return;
-  throw UsageError({"the share of the picture to cover is out of range", "in a framing", "give 0.05 to 1"});
+  throw UsageError({"the part of the picture to cover is out of range", "in a framing", "give 0.05 to 1"});
 }
 
 /// The axes of a camera's picture, orthonormal.

@@ -8,22 +8,22 @@
 
 namespace promin {
 
-/// The implementation of add_default_lights, for both forms of a scene.
+/// Implements add_default_lights for both forms of a scene.
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
 
-/// The box to look at: the main part of everything finite (scene/stray_geometry.h), or else a box of size 2 around the
-/// first plane's point or the origin. Throws InputError as bounds_of() does.
+/// Returns the box to look at: the main part of everything finite (scene/stray_geometry.h), else a box of size 2 around
+/// the first plane's point or the origin. Throws InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 
-/// The point in the middle of a box that is not empty, without the rounding of Bounds::center().
+/// Returns the middle of a box that is not empty, without the rounding of Bounds::center().
 inline dvec3 middle_of(const Bounds& bounds) {
   return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
 }
 
-/// Bounds of an object that has a geometry, if it is finite; else empty. Throws as bounds_of() does.
+/// Returns the bounds of an object that has a geometry; empty if it is not finite. Throws as bounds_of() does.
 Bounds bounds_of(const Scene& scene, const Object& object);
 
-/// A box of size 2, to look at where nothing is finite.
+/// Returns a box of size 2, to look at if nothing is finite.
 Bounds bounds_around(const vec3& center);
 
 }  // namespace promin

@@ -9,16 +9,16 @@
 
 namespace promin {
 
-/// The solids of glass in a scene, to tell in which of them a camera is.
+/// The solids of glass in a scene, to find those that contain a camera.
 class GlassSolids {
  public:
   GlassSolids() = default;
-  /// Of the objects whose material lets light into a volume.
+  /// Collects the objects whose material transmits light into a volume.
   explicit GlassSolids(const world::Scene& scene);
 
   bool is_empty() const { return solids_.empty(); }
-  /// The materials of the solids around a point, the largest first. A plane's are all points behind it, a mesh's those
-  /// that it goes around (its winding number is above 1/2), be it closed or not.
+  /// Returns the materials of the solids that contain a point, the largest first. A plane contains all points behind
+  /// it; a mesh, closed or not, those with a winding number above 1/2.
   std::vector<uint32_t> materials_around(const vec3& point) const;
 
  private:

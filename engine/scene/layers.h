@@ -5,7 +5,7 @@
 #include "core/rounding.h"
 #include "promin/materials.h"
 
-// What few metallic-roughness materials have; scenes without them pay for none of it.
+// Rare properties of metallic-roughness materials; scenes without them do not pay for them.
 namespace promin {
 
 inline bool has_coat(const MetallicRoughness& material) {
@@ -14,7 +14,7 @@ inline bool has_coat(const MetallicRoughness& material) {
 inline bool has_sheen(const MetallicRoughness& material) {
   return max_component(material.sheen_color) > 0.0F;
 }
-/// Whether some scattered light leaves on the other side. A texture may make a metal a dielectric.
+/// Returns whether some scattered light leaves on the other side. A texture may turn a metal into a dielectric.
 inline bool scatters_through(const MetallicRoughness& material) {
   const bool may_be_dielectric = material.metallic < 1.0F || material.metallic_roughness_texture.exists();
   return material.diffuse_transmission > 0.0F && may_be_dielectric;
@@ -25,11 +25,11 @@ inline bool is_iridescent(const MetallicRoughness& material) {
 inline bool is_anisotropic(const MetallicRoughness& material) {
   return material.anisotropy > 0.0F;
 }
-/// Textures of what the dielectric reflects.
+/// Returns whether there are textures for the dielectric's reflection.
 inline bool has_specular_textures(const MetallicRoughness& material) {
   return material.specular_texture.exists() || material.specular_color_texture.exists();
 }
-/// Whether the material has any of these, which few have.
+/// Returns whether the material has any of these rare properties.
 inline bool is_extended(const MetallicRoughness& material) {
   return has_coat(material) || has_sheen(material) || has_specular_textures(material) || scatters_through(material) ||
          is_iridescent(material) || is_anisotropic(material);

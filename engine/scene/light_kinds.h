@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// Whether a light of the kind stands somewhere in the world. The others shine from infinity, all along one direction.
+/// Returns whether a light of the kind has a position. The others shine from infinity in one direction.
 constexpr bool has_place(LightKind kind) {
   switch (kind) {
     case LightKind::kPoint:

@@ -10,13 +10,13 @@
 
 namespace promin {
 
-/// Whether all coordinates are numbers up to 1e15.
+/// Returns whether all coordinates are numbers up to 1e15.
 inline bool is_in_range(const dvec3& p) {
   // Written so that NaN fails.
   return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
 }
 
-/// Whether fp32 can hold a size of a shape in the world; false for NaN.
+/// Returns whether fp32 can represent a size of a shape in the world; false for NaN.
 inline bool is_valid(const NamedSize& size) {
   return (size.size >= kMinSize || (size.may_be_zero && size.size == 0.0)) && size.size <= kMaxCoordinate;
 }

@@ -19,8 +19,7 @@
 #include "promin/textures.h"
 #include "promin/view.h"
 
-// The members of the library's structs and what they are called outside C++: in Python and in the JSON of `promin
-// info`.
+// The members of the library's structs and their names outside C++: in Python and in the JSON of `promin info`.
 namespace promin {
 
 using Names = std::span<const std::string_view>;
@@ -55,7 +54,7 @@ inline constexpr std::string_view kModelNames[] = {"phong", "metallic_roughness"
 inline constexpr std::string_view kSkyNames[] = {"none", "studio", "gradient", "panorama"};
 inline constexpr std::string_view kShapeNames[] = {"mesh", "sphere", "plane", "cylinder", "cone", "box", "capsule"};
 
-/// Has the visitor see members by their names, which stand in one text with ", " between.
+/// Calls the visitor with members and their names, which are given in one text separated by ", ".
 template <typename Visitor, typename... Members>
 void visit_named_members(Visitor& visitor, std::string_view names, Members&... members) {
   const auto next = [&] {
@@ -66,8 +65,8 @@ void visit_named_members(Visitor& visitor, std::string_view names, Members&... m
   (visitor.field(next(), members), ...);
 }
 
-// PROMIN_MEMBERS(STRUCT, members...): what a struct is made of, for a visitor that reads or writes. All its members are
-// listed, in their order; where one is left out it does not compile.
+// PROMIN_MEMBERS(STRUCT, members...): the members of a struct, for a visitor that reads or writes. All members must be
+// listed in order; a missing one is a compile error.
 #define PROMIN_MEMBERS(STRUCT, ...)                          \
   template <typename Visitor>                                \
   void visit_members(Visitor& visitor, STRUCT& record) {     \

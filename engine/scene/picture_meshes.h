@@ -13,19 +13,19 @@
 
 namespace promin {
 
-/// Meshes with what shading needs of them: normals that agree with the winding (scene/turned_normals.h), tangents where
-/// a texture of normals is shown (textures/tangents.h), texture coordinates near 0 (textures/center_uvs.h). Each is
-/// made once for the objects that need the same of it.
+/// Meshes that are prepared for shading: normals agree with the winding (scene/turned_normals.h), normal textures have
+/// tangents (textures/tangents.h), and texture coordinates lie near 0 (textures/center_uvs.h). Each mesh is made once
+/// for all objects with the same needs.
 class PictureMeshes {
  public:
-  /// The scene is valid and outlives this.
+  /// The scene must be valid and outlive this object.
   explicit PictureMeshes(const Scene& scene);
 
-  /// The mesh that an object shows, or nullopt where the scene's own serves.
+  /// Returns the mesh to use for an object, or nullopt if the scene's own needs no change.
   std::optional<Mesh> find(const Object& object);
 
  private:
-  /// The set of coordinates that tangents are needed for, and what is taken off all coordinates.
+  /// The set of coordinates for which tangents are needed, and the offset that is subtracted from all coordinates.
   struct Needs {
     std::optional<uint32_t> tangents;
     std::array<double, 4> center{};
@@ -37,9 +37,9 @@ class PictureMeshes {
   const std::vector<uint32_t>& find_turned(uint32_t geometry, const Mesh& mesh);
 
   const Scene& scene_;
-  /// Of each geometry, how many objects show it.
+  /// The number of objects that use each geometry.
   std::vector<uint32_t> object_counts_;
-  /// For each geometry that an object has asked for.
+  /// The result for each geometry that an object has requested.
   std::vector<std::optional<std::vector<uint32_t>>> turned_triangles_;
   std::map<std::pair<uint32_t, Needs>, Mesh> made_;
 };

@@ -20,8 +20,8 @@ namespace {
 /// The geometry of an object that has one. Throws InputError if it is not there.
 const Geometry& geometry_of(const Scene& scene, const Object& object) {
   if (object.geometry < scene.geometries.size()) return scene.geometries[object.geometry];
-  throw InputError(
-      {"an object names a geometry that is not there", "object " + object.name, "see what validate() tells"});
+  throw InputError({"an object refers to a geometry that does not exist", "object " + object.name,
+                    "see the problems that validate() returns"});
 }
 
 /// Computes the bounds of an object in the world, without a copy of its mesh.
@@ -44,7 +44,8 @@ struct BoundsInWorld {
     for (int i = 0; i < 3; ++i) {
       const uint32_t vertex = mesh.triangles[triangle][i];
       if (vertex >= mesh.positions.size()) {
-        throw InputError({"a triangle names a position that is not there", "in a mesh", "see what validate() tells"});
+        throw InputError({"a triangle refers to a position that does not exist", "in a mesh",
+                          "see the problems that validate() returns"});
       }
       const vec3& p = mesh.positions[vertex];
       bounds.extend(is_moved ? vec3(world_from_object * dvec4(p, 1.0)) : p);

@@ -15,23 +15,22 @@
 
 namespace promin {
 
-/// How far the main part of a scene reaches along any direction: exact for meshes and for shapes. The scene must
-/// outlive it.
+/// The extent of the main part of a scene in any direction, exact for meshes and shapes. The scene must outlive it.
 class SceneHull {
  public:
   /// Throws InputError as bounds_of() does.
   explicit SceneHull(const Scene& scene);
 
   const MainPart& main_part() const { return part_; }
-  /// The box to look at (frame_of).
+  /// Returns the box to look at (frame_of).
   const Bounds& bounds() const { return bounds_; }
   /// The middle of the bounds.
   const dvec3& center() const { return center_; }
-  /// The point farthest along a direction of any length but 0, less the center.
+  /// Returns the point that lies farthest in a direction of any length except 0, minus the center.
   dvec3 farthest(const dvec3& direction) const;
 
  private:
-  /// Vertices that lie in a file one after the other, and so near to each other.
+  /// Consecutive vertices of a file, which usually lie close together.
   struct Block {
     std::span<const vec3> positions;
     Bounds bounds;

@@ -10,15 +10,15 @@
 
 namespace promin {
 
-/// The triangles, in order, whose three vertex normals all lie against their winding: each has an angle of more than 90
-/// degrees with the normal of the counter-clockwise side. None of a mesh without normals. The mesh is valid.
+/// Returns the triangles, in order, whose three vertex normals all point against their winding: each has an angle of
+/// more than 90 degrees to the normal of the counterclockwise side. Empty for a mesh without normals. The mesh must be
+/// valid.
 std::vector<uint32_t> find_turned_triangles(const Mesh& mesh);
 
-/// Gives these triangles of a mesh the normals and tangents that shade the side which their vertex normals face as a
-/// front: both are negated, as a back negates them once more. Other triangles keep theirs, so vertices which both kinds
-/// share are split; the copies come after the old vertices. Positions and the order of triangles do not change. The
-/// handedness of tangents is that of the vertex normals, or where `tangents_follow_winding`, as those of add_tangents
-/// do, that of the winding.
+/// Negates normals and tangents of these triangles, so that the side that their vertex normals face is shaded as a
+/// front; shading a back negates them once more. Other triangles keep theirs, so vertices that both kinds share are
+/// split; the copies come after the old vertices. Positions and the order of triangles do not change. The handedness of
+/// tangents follows the vertex normals, or with `tangents_follow_winding`, as for add_tangents, the winding.
 void turn_normals(Mesh& mesh, std::span<const uint32_t> turned, bool tangents_follow_winding);
 
 }  // namespace promin

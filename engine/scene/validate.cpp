@@ -103,7 +103,7 @@ class Validation {
   }
 
   void check_share(float share, const Place& where) {
-    check(share >= 0.0F && share <= 1.0F, "a share is not from 0 to 1", where, "stay within");
+    check(share >= 0.0F && share <= 1.0F, "a weight is not between 0 and 1", where, "use a number from 0 to 1");
   }
 
   void check_film(float thickness, const Place& where) {
@@ -127,12 +127,13 @@ class Validation {
     check_share(material.metallic, place + ".metallic");
     check_share(material.roughness, place + ".roughness");
     check_share(material.specular, place + ".specular");
-    check(std::isfinite(material.normal_scale), "the scale is not finite", place + ".normal_scale", "use a finite one");
+    check(std::isfinite(material.normal_scale), "the scale is not finite", place + ".normal_scale",
+          "use a finite number");
     check_share(material.occlusion_strength, place + ".occlusion_strength");
     check_share(material.clearcoat, place + ".clearcoat");
     check_share(material.clearcoat_roughness, place + ".clearcoat_roughness");
     check(std::isfinite(material.clearcoat_normal_scale), "the scale is not finite", place + ".clearcoat_normal_scale",
-          "use a finite one");
+          "use a finite number");
     check_color(material.specular_color, place + ".specular_color");
     for (int i = 0; i < 3; ++i) check_share(material.sheen_color[i], place + ".sheen_color");
     check_share(material.sheen_roughness, place + ".sheen_roughness");
@@ -143,28 +144,27 @@ class Validation {
     }
     check_share(material.iridescence, place + ".iridescence");
     check(material.iridescence_ior >= 1.0F && std::isfinite(material.iridescence_ior),
-          "the index of refraction is not finite or below 1", place + ".iridescence_ior", "use a number from 1 on");
+          "the index of refraction is not finite or below 1", place + ".iridescence_ior", "use a number of 1 or more");
     check_film(material.iridescence_thickness_minimum, place + ".iridescence_thickness_minimum");
     check_film(material.iridescence_thickness_maximum, place + ".iridescence_thickness_maximum");
     check_share(material.anisotropy, place + ".anisotropy");
     check(std::isfinite(material.anisotropy_rotation), "the angle is not finite", place + ".anisotropy_rotation",
-          "use a finite one");
+          "use a finite number");
     check(material.thickness >= 0.0F, "the thickness is negative or not a number", place + ".thickness",
           "use 0 or a positive number");
     for (int i = 0; i < 3; ++i) check_share(material.attenuation_color[i], place + ".attenuation_color");
     check(material.attenuation_distance > 0.0F, "the distance is not positive", place + ".attenuation_distance",
-          "use a positive number, or an infinite one where nothing is absorbed");
+          "use a positive number, or infinity if nothing is absorbed");
     check(material.dispersion >= 0.0F && std::isfinite(material.dispersion), "the dispersion is negative or not finite",
           place + ".dispersion", "use 0 or a positive number");
     check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
-          "the index of refraction is not finite or below 1", place + ".ior", "use 0 or a number from 1 on");
+          "the index of refraction is not finite or below 1", place + ".ior", "use 0, or a number of 1 or more");
   }
 
   void check_model(const Unlit& unlit, const Place& place) { check_color(unlit.color, place + ".color"); }
 
   void check_place(const TextureSlot& slot, const Place& place) {
-    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set",
-          "take one of these");
+    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set", "use 0 or 1");
     check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
   }
 
@@ -178,41 +178,42 @@ class Validation {
         if (slot.exists()) check_place(slot, place + "." + name);
       });
       check(static_cast<uint32_t>(material.alpha_mode) <= static_cast<uint32_t>(AlphaMode::kBlend),
-            "the mode of alpha is none of AlphaMode", place + ".alpha_mode", "name one that there is");
+            "the alpha mode is not a value of AlphaMode", place + ".alpha_mode", "use one of its values");
       check_share(material.alpha, place + ".alpha");
       check(std::isfinite(material.alpha_cutoff) && material.alpha_cutoff >= 0.0F,
-            "the cutoff of alpha is not finite or negative", place + ".alpha_cutoff", "use a number from 0 on");
+            "the alpha cutoff is negative or not finite", place + ".alpha_cutoff", "use a number of 0 or more");
     }
   }
 
   void check_images(const Scene& scene) {
     for (size_t i = 0; i < scene.images.size(); ++i) {
       const Place place("images", i);
-      if (!check(scene.images[i] != nullptr, "there is no image", place, "give an empty one where it is absent"))
+      if (!check(scene.images[i] != nullptr, "the texture's image is missing", place,
+                 "give an empty image if the texture has none"))
         continue;
       const TextureImage& image = *scene.images[i];
-      check(static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal), "the use is none of ImageUse",
-            place + ".use", "name one that there is");
+      check(static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal),
+            "the image's use is not a value of ImageUse", place + ".use", "use one of its values");
       if (image.texels.empty()) continue;
       check(
           image.size.x <= kMaxTextureSide && image.size.y <= kMaxTextureSide,
-          [] { return "an image has a side over " + std::to_string(kMaxTextureSide); }, place + ".size",
+          [] { return "an image has a side longer than " + std::to_string(kMaxTextureSide); }, place + ".size",
           "make it smaller");
       check(
           image.texels.size() == uint64_t{image.size.x} * image.size.y,
           [&] {
-            return "there are " + std::to_string(image.texels.size()) + " texels of another number than the size says";
+            return "there are " + std::to_string(image.texels.size()) +
+                   " texels, a number that does not match the size";
           },
-          place + ".texels", "give one for each pixel, or none");
+          place + ".texels", "give one texel for each pixel, or none");
     }
     for (size_t i = 0; i < scene.textures.size(); ++i) {
       const Texture& texture = scene.textures[i];
       const Place place("textures", i);
-      check(texture.image < scene.images.size(), "the image is out of range", place + ".image",
-            "name one that there is");
+      check(texture.image < scene.images.size(), "the image is out of range", place + ".image", "use one that exists");
       for (const TextureWrap wrap : {texture.wrap_u, texture.wrap_v}) {
         check(static_cast<uint32_t>(wrap) <= static_cast<uint32_t>(TextureWrap::kClampToEdge),
-              "the wrap is none of TextureWrap", place, "name one that there is");
+              "the wrap mode is not a value of TextureWrap", place, "use one that exists");
       }
     }
   }
@@ -220,7 +221,7 @@ class Validation {
   /// How many textures there are is known where there is a scene.
   void check_slot(const TextureSlot& slot, size_t texture_count, const Place& place) {
     if (!slot.exists()) return;
-    check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "name one that there is");
+    check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "use one that exists");
   }
 
   void check_slots(const Scene& scene) {
@@ -239,17 +240,19 @@ class Validation {
       check_color(light.specular, place + ".specular");
       check(is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15", place + ".position",
             "use a smaller coordinate");
-      check(std::abs(glm::length(light.direction) - 1.0F) <= kDirectionTolerance, "the direction is no unit vector",
+      check(std::abs(glm::length(light.direction) - 1.0F) <= kDirectionTolerance, "the direction is not a unit vector",
             place + ".direction", "normalise it");
-      check(static_cast<uint32_t>(light.kind) < kLightKindCount, "the kind is none of LightKind", place + ".kind",
-            "name one that there is");
+      check(static_cast<uint32_t>(light.kind) < kLightKindCount, "the light's kind is not a value of LightKind",
+            place + ".kind", "use one of its values");
       check(light.attenuation == Attenuation::kNone || light.attenuation == Attenuation::kInverseSquare,
-            "the attenuation is none of Attenuation", place + ".attenuation", "name one that there is");
-      check(light.range > 0.0F, "the range is not positive", place + ".range", "use infinity where there is no limit");
+            "the attenuation is not a value of Attenuation", place + ".attenuation", "use one of its values");
+      check(light.range > 0.0F, "the range is not positive", place + ".range",
+            "use a positive number, or infinity for no limit");
       const bool are_angles = light.inner_cone_angle >= 0.0F && light.inner_cone_angle < light.outer_cone_angle &&
                               light.outer_cone_angle <= 1.5707964F;
-      check(light.kind != LightKind::kSpot || are_angles, "the cone's angles are out of order or range",
-            place + ".outer_cone_angle", "use 0 <= inner < outer <= pi/2");
+      check(light.kind != LightKind::kSpot || are_angles,
+            "the cone's angles are out of range, or the inner one is not the smaller", place + ".outer_cone_angle",
+            "use 0 <= inner < outer <= pi/2");
     }
   }
 
@@ -275,7 +278,7 @@ class Validation {
   void check_sky(std::monostate) {}
 
   void check_sky(const Studio& studio) {
-    check(std::isfinite(studio.front), "the front is not finite", "environment.sky.front", "use an angle");
+    check(std::isfinite(studio.front), "the sky's front angle is not finite", "environment.sky.front", "use an angle");
   }
 
   void check_sky(const GradientSky& sky) {
@@ -283,7 +286,8 @@ class Validation {
     check_color(sky.horizon, "environment.sky.horizon");
     check_color(sky.bottom, "environment.sky.bottom");
     const auto check_curve = [&](float curve, const Place& where) {
-      check(curve > 0.0F && std::isfinite(curve), "the curve is not positive", where, "use 1 for an even transition");
+      check(curve > 0.0F && std::isfinite(curve), "the curve is not positive", where,
+            "use a positive number; 1 gives an even transition");
     };
     check_curve(sky.top_curve, "environment.sky.top_curve");
     check_curve(sky.bottom_curve, "environment.sky.bottom_curve");
@@ -291,11 +295,12 @@ class Validation {
 
   void check_sky(const Panorama& panorama) {
     const Place place = "environment.sky.image";
-    if (!check(panorama.image != nullptr, "the panorama has no picture", place, "give it one")) return;
+    if (!check(panorama.image != nullptr, "the panorama has no image", place, "give it an image")) return;
     const Image& image = *panorama.image;
     const uint64_t pixel_count = uint64_t{image.size.x} * image.size.y;
-    if (!check(pixel_count > 0 && pixel_count == image.pixels.size(), "the panorama's pixels do not suit its size",
-               place + ".pixels", "give one for each place") ||
+    if (!check(pixel_count > 0 && pixel_count == image.pixels.size(),
+               "the number of the panorama's pixels does not match its size", place + ".pixels",
+               "give width times height pixels") ||
         !check(image.size.x <= Panorama::kMaxWidth && image.size.y <= Panorama::kMaxHeight,
                "the panorama is larger than 16384x8192", place + ".size", "make it smaller")) {
       return;
@@ -315,7 +320,7 @@ class Validation {
       const uvec2& resolution = cameras[i].resolution;
       const bool is_size = std::min(resolution.x, resolution.y) > 0 && std::max(resolution.x, resolution.y) <= kMaxSide;
       check(resolution == uvec2(0) || is_size, "the resolution has a side of 0 or over 32768", place + ".resolution",
-            "use a size of pictures, or 0 0 for none");
+            "use sides of 1 to 32768, or 0 0 for no resolution");
       check_camera(cameras[i], place);
     }
   }
@@ -324,15 +329,15 @@ class Validation {
     const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::length(camera.up) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::dot(camera.look, camera.up)) <= kBasisTolerance;
-    check(is_basis, "look and up are not orthonormal", place, "normalise them and make them perpendicular");
+    check(is_basis, "look and up are not orthonormal", place, "make them unit vectors at right angles");
     check(camera.projection == Projection::kPerspective || camera.projection == Projection::kOrthographic,
-          "the projection is none of Projection", place + ".projection", "name one that there is");
+          "the projection is not a value of Projection", place + ".projection", "use one of its values");
     check(camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range", place + ".yfov",
           "use an angle in (0, pi)");
     check(camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive", place + ".ymag",
           "use a positive number");
     check(camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye", place + ".near",
-          "use a distance from 0 on");
+          "use a distance of 0 or more");
   }
 
   void check_view(const View& view) {
@@ -340,46 +345,48 @@ class Validation {
     check(is_finite(view.camera.eye), "the eye is not finite", "view.camera.eye", "use finite coordinates");
     check_camera(view.camera, "view.camera");
     check(view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "view.size", "give it a width and a height");
-    check(std::max(view.size.x, view.size.y) <= kMaxSide, "a side of the picture is too long", "view.size",
-          "take at most 32768 pixels a side");
+    check(std::max(view.size.x, view.size.y) <= kMaxSide, "a side of the picture is longer than 32768 pixels",
+          "view.size", "use at most 32768");
     check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
-          "the number of samples a pixel is out of range", "view.samples_per_pixel", "take 1 to 65535");
-    check(static_cast<size_t>(view.filter) < pixel_filter_names().size(), "the filter is none of PixelFilter",
-          "view.filter", "name one that there is");
+          "the number of samples per pixel is out of range", "view.samples_per_pixel", "use 1 to 65535");
+    check(static_cast<size_t>(view.filter) < pixel_filter_names().size(), "the filter is not a value of PixelFilter",
+          "view.filter", "use one of its values");
     check(view.filter_width >= kMinFilterWidth && view.filter_width <= kMaxFilterWidth,
-          "the width of the filter is out of range", "view.filter_width", "take 0.01 to 32 pixels");
-    check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "take 0 to 1000");
-    check(static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(), "the debug view is none of DebugView",
-          "view.mode.debug_view", "name one that there is");
+          "the filter width is out of range", "view.filter_width", "use 0.01 to 32 pixels");
+    check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "use 0 to 1000");
+    check(static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(),
+          "the debug view is not a value of DebugView", "view.mode.debug_view", "use one of its values");
     if (view.error_target) check_error_target(view);
     if (!view.crop) return;
     check(view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y, "the crop is empty", "view.crop",
-          "take a window of pixels with lo < hi");
-    check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop reaches beyond the picture",
-          "view.crop", "stay within its size");
+          "use a window of pixels with lo < hi");
+    check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop extends beyond the picture",
+          "view.crop", "use a crop inside the picture");
   }
 
   void check_error_target(const View& view) {
     const ErrorTarget& target = *view.error_target;
-    check(target.error >= kMinTargetError && target.error <= 1.0F, "the error is out of range",
-          "view.error_target.error", "take 1/65536 to 1");
+    check(target.error >= kMinTargetError && target.error <= 1.0F, "the target error is out of range",
+          "view.error_target.error", "use 1/65536 to 1");
     check(std::has_single_bit(target.min_samples) && target.min_samples >= kMinRefinedSamples,
-          "the least number of samples is wrong", "view.error_target.min_samples", "take a power of two from 4 on");
+          "the smallest number of samples is out of range or not a power of two", "view.error_target.min_samples",
+          "use a power of two of 4 or more");
     check(std::has_single_bit(target.max_samples) && target.max_samples >= target.min_samples &&
               target.max_samples <= kMaxRefinedSamples,
-          "the largest number of samples is wrong", "view.error_target.max_samples",
-          "take a power of two from the least number to 32768");
-    check(target.white > 0.0F && std::isfinite(target.white), "what is shown as white is not positive and finite",
-          "view.error_target.white", "take 1, or 2 to the power of -EV");
+          "the largest number of samples is out of range or not a power of two", "view.error_target.max_samples",
+          "use a power of two from the smallest number to 32768");
+    check(target.white > 0.0F && std::isfinite(target.white),
+          "the radiance that is shown as white is not positive and finite", "view.error_target.white",
+          "use 1, or 2 to the power of -EV");
     if (target.display) {
       check(std::isfinite(target.display->exposure_ev), "the exposure is not finite",
-            "view.error_target.display.exposure_ev", "take 0, or the stops of the picture's display");
+            "view.error_target.display.exposure_ev", "use 0, or the exposure of the picture's display");
       check(static_cast<size_t>(target.display->tone_mapping) < tone_mapping_names().size(),
-            "the tone mapping is none of ToneMapping", "view.error_target.display.tone_mapping",
-            "name one that there is");
+            "the tone mapping is not a value of ToneMapping", "view.error_target.display.tone_mapping",
+            "use one of its values");
     }
-    check(view.mode.debug_view == DebugView::kNone, "a debug view has no error", "view.error_target",
-          "leave the error target out, or show light");
+    check(view.mode.debug_view == DebugView::kNone, "a debug view has no error estimate", "view.error_target",
+          "leave the error target out, or render full shading");
   }
 
   void check_geometry(const Scene& scene, size_t index) {
@@ -400,10 +407,10 @@ class Validation {
     };
     const bool has_material =
         check(object.material < scene.materials.size(), describe("material", object.material, scene.materials.size()),
-              place + ".material", "name one that there is");
+              place + ".material", "use one that exists");
     const bool has_geometry =
         check(object.geometry < scene.geometries.size(), describe("geometry", object.geometry, scene.geometries.size()),
-              place + ".geometry", "name one that there is, or Object::kNoGeometry");
+              place + ".geometry", "use one that exists, or Object::kNoGeometry");
     return has_material && has_geometry;
   }
 
@@ -420,7 +427,7 @@ class Validation {
     const double volume = std::abs(glm::determinant(linear));
     const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
     check(volume > kLeastVolume * lengths && std::isfinite(lengths), "the transform is singular", place,
-          "use scales other than 0 and axes that differ");
+          "use non-zero scales and axes that differ");
   }
 
   /// Checks an object whose references are there.
@@ -442,7 +449,7 @@ class Validation {
       const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
                     (corner & 4) != 0 ? box.hi.z : box.lo.z);
       if (!check(is_in_range(dvec3(object.world_from_object * dvec4(p, 1.0))),
-                 "the mesh reaches beyond 1e15 in the world", place, "use a smaller translation or scale")) {
+                 "the mesh extends beyond 1e15 in the world", place, "use a smaller translation or scale")) {
         return;
       }
     }
@@ -451,8 +458,8 @@ class Validation {
   template <class Shape>
   void check_in_world(const Shape& shape, const Object& object, const Place& place) {
     const Placement placement(object.world_from_object);
-    if (!check(promin::place(shape, placement).has_value(), "the shape does not keep its form under the transform",
-               place + ".world_from_object", "scale it alike, or use a mesh")) {
+    if (!check(promin::place(shape, placement).has_value(), "the transform distorts the shape",
+               place + ".world_from_object", "scale all axes equally, or use a mesh")) {
       return;
     }
     check(is_in_range(center_of(shape, placement)), "the shape lies beyond 1e15 in the world", place,
@@ -461,7 +468,7 @@ class Validation {
       check(
           is_valid(size),
           [&] { return "the " + std::string(size.name) + " is " + std::to_string(size.size) + " in the world"; }, place,
-          "use sizes and scales that leave it between 1e-22 and 1e15");
+          "use sizes and scales that keep it between 1e-22 and 1e15");
     }
   }
 
@@ -488,7 +495,7 @@ class Validation {
         "a vertex colour is negative, beyond 1e15 or not a number", place + ".colors", "use numbers from 0 to 1e15");
     check_each(
         mesh.uvs, [](const vec4& uv) { return is_in_range(dvec3(uv)) && std::abs(uv.w) <= kMaxCoordinate; },
-        "a texture coordinate is not finite or beyond 1e15", place + ".uvs", "use smaller ones");
+        "a texture coordinate is not finite or beyond 1e15", place + ".uvs", "use smaller coordinates");
     check_each(
         mesh.tangents,
         [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },
@@ -496,15 +503,15 @@ class Validation {
         "leave the tangents out, or give each a direction and a side");
     check_each(
         mesh.triangles, [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
-        "a corner is out of range of the positions", place + ".triangles", "use indices of positions");
+        "a corner's index is out of range of the positions", place + ".triangles", "use indices of existing positions");
     check_each(
         mesh.triangle_materials, [&](uint32_t material) { return material < scene.materials.size(); },
-        "a material is out of range", place + ".triangle_materials", "name one that there is");
+        "a material is out of range", place + ".triangle_materials", "use one that exists");
     const auto check_count = [&](size_t count, size_t wanted, const char* array, const char* one) {
       check(
           count == 0 || count == wanted,
           [&] { return "there are " + std::to_string(count) + " where there are " + std::to_string(wanted) + one; },
-          place + array, "give none, or one each");
+          place + array, "give none, or one for each");
     };
     check_count(mesh.normals.size(), vertices, ".normals", " positions");
     check_count(mesh.colors.size(), vertices, ".colors", " positions");
@@ -530,7 +537,7 @@ std::vector<Problem> validate(const Scene& scene) {
   validation.check(scene.object_numbers.empty() || scene.object_numbers.size() == scene.objects.size(),
                    "there are " + std::to_string(scene.object_numbers.size()) + " numbers for " +
                        std::to_string(scene.objects.size()) + " objects",
-                   "object_numbers", "give none, or one each");
+                   "object_numbers", "give none, or one for each");
   for (size_t i = 0; i < scene.geometries.size(); ++i) validation.check_geometry(scene, i);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].geometry == Object::kNoGeometry) continue;

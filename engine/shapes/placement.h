@@ -8,33 +8,33 @@
 
 namespace promin {
 
-/// What an object's transform does to shapes.
+/// The effect of an object's transform on shapes.
 class Placement {
  public:
   explicit Placement(const dmat4& world_from_object);
 
-  /// Where nothing moves: then shapes keep their numbers, each rounded once.
+  /// Returns whether the transform changes nothing; shapes then keep their numbers, each rounded once.
   bool is_identity() const { return is_identity_; }
-  /// Positive scales and right angles to 1e-5: transforms that went through fp32 are off by 1e-6, and a shape that is
-  /// off by 1e-5 of its size is off by less than a pixel.
+  /// Returns whether spheres stay spheres, with scales and right angles accurate to 1e-5: transforms that were stored
+  /// in fp32 are off by 1e-6, and an error of 1e-5 of a shape's size is less than a pixel.
   bool keeps_spheres() const;
-  /// Circles around the axis stay circles around an axis at right angles.
+  /// Returns whether circles around the axis stay circles perpendicular to the transformed axis.
   bool keeps_cylinders(const dvec3& axis) const;
 
-  /// Boxes along the axes stay boxes along three directions.
+  /// Returns whether axis-aligned boxes stay boxes.
   bool keeps_boxes() const;
 
   dvec3 point(const dvec3& p) const { return origin_ + direction(p); }
-  /// Zero components add nothing, not even the sign of a zero.
+  /// Transforms a direction. Components of 0 add nothing, not even the sign of a zero.
   dvec3 direction(const dvec3& v) const;
-  /// A normal, up to its length: by the inverse transpose, as the matrix of cofactors, which needs no inverse: it is
-  /// the same up to the determinant, of which the sign counts.
+  /// Transforms a normal, up to its length, by the cofactor matrix. This is the inverse transpose up to the
+  /// determinant, of which only the sign matters, and it needs no inverse.
   dvec3 normal(const dvec3& n) const;
-  /// By how much a length along a direction grows.
+  /// Returns the scale of lengths along a direction.
   double scale_along(const dvec3& v) const;
-  /// The same of lengths across an axis; only where keeps_cylinders(axis).
+  /// Returns the scale of lengths perpendicular to an axis; requires keeps_cylinders(axis).
   double scale_across(const dvec3& axis) const;
-  /// Whether it turns right hands into left ones.
+  /// Returns whether it reverses the handedness.
   bool is_mirroring() const;
 
  private:

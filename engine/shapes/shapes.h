@@ -16,15 +16,15 @@ namespace layout {
 struct Primitive;
 }
 
-/// A size that a shape has in the world, in double.
+/// A size of a shape in the world, in double.
 struct NamedSize {
   const char* name = "";
   double size = 0.0;
-  /// Where 0 is a size too: an apex.
+  /// Whether 0 is allowed: an apex.
   bool may_be_zero = false;
 };
 
-/// The sizes of a shape, at most three, without memory of their own: every shape of a scene is asked for them.
+/// The sizes of a shape, at most three, without heap allocation, because they are computed for every shape of a scene.
 class NamedSizes {
  public:
   NamedSizes(std::initializer_list<NamedSize> sizes) : count_(sizes.size()) {
@@ -41,7 +41,7 @@ class NamedSizes {
   size_t count_;
 };
 
-/// From device records back to the numbers they hold; for each shape a specialisation in its own file.
+/// Converts device records back to shapes; each shape has a specialisation in its own file.
 template <class Shape>
 Shape unpack(const layout::Primitive& primitive);
 
@@ -60,11 +60,11 @@ Shape unpack(const layout::Primitive& primitive);
   world::TYPE unpack(const layout::Primitive& primitive);
 #include "promin/kinds/primitives.def"
 
-// Conservative bounds in fp32, tight up to rounding, of each shape that has some.
+// Returns conservative fp32 bounds of each bounded shape, tight up to rounding.
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) Bounds bounds_of(const world::TYPE& shape);
 #include "promin/kinds/primitives.def"
 
-// The point of each shape that has bounds which lies farthest along a direction (of any length but 0).
+// Returns the point of each bounded shape that lies farthest in a direction of any length except 0.
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   dvec3 farthest_of(const world::TYPE& shape, const dvec3& direction);
 #include "promin/kinds/primitives.def"
@@ -79,14 +79,15 @@ struct KindOf;
   };
 #include "promin/kinds/primitives.def"
 
-/// fp32 axes are unit only to rounding, so a shape's true extent may exceed the computed one by a few roundings: 2 ulp
-/// of the largest magnitude that takes part are added.
+/// Rounds a box outward. fp32 axes are unit vectors only up to rounding, so a shape's true extent may exceed the
+/// computed one by a few roundings; 2 ulp of the largest magnitude involved are added.
 Bounds round_outward(const dvec3& lo, const dvec3& hi, const dvec3& magnitude);
 
-/// Of the convex hull of two disks around an axis (of any length but 0), half_height before and behind the center.
+/// Returns the bounds of the convex hull of two disks around an axis (of any length except 0), half_height before and
+/// behind the center.
 Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
                        double radius_top);
-/// The point of the same hull that lies farthest along a direction.
+/// Returns the point of the same hull that lies farthest in a direction.
 dvec3 farthest_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
                         double radius_top, const dvec3& direction);
 

@@ -9,11 +9,11 @@
 
 namespace promin {
 
-/// What can be taken off the texture coordinates of a mesh without a change of what these slots show, which are all
-/// that read them: near 0 fp32 tells more places apart. Each component of both sets has a whole number near its mean,
-/// or 0 where no slot reads it, where the largest coordinate would not come down to half, and where a picture would
-/// move: one that repeats may move by its width, a mirrored one by two, one that is clamped by nothing, each as its
-/// slot's transform has it.
+/// Returns an offset that can be subtracted from the texture coordinates of a mesh without changing the appearance of
+/// these slots, which are all that read them. Near 0, fp32 resolves coordinates better. Each component of both sets is
+/// a whole number near the mean, or 0 in these cases: no slot reads it; the largest coordinate would not shrink to
+/// half; or a picture would move. A repeated picture may move by its width, a mirrored one by two widths, a clamped one
+/// not at all, each after its slot's transform.
 dvec4 find_uv_center(const Mesh& mesh, std::span<const TextureSlot> slots, std::span<const Texture> textures);
 
 /// Subtracts `center` from all coordinates, in double.

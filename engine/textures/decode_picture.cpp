@@ -65,7 +65,7 @@ class PngReader {
     png_set_add_alpha(png_, 0xFF, PNG_FILLER_AFTER);
     const int passes = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
-    if (png_get_rowbytes(png_, info_) != size_t{4} * size.x) png_error(png_, "its rows have another length");
+    if (png_get_rowbytes(png_, info_) != size_t{4} * size.x) png_error(png_, "its rows have the wrong length");
     for (int pass = 0; pass < passes; ++pass) {
       for (uint32_t row = 0; row < size.y; ++row) {
         png_read_row(png_, reinterpret_cast<png_bytep>(texels + size_t{row} * size.x), nullptr);
@@ -147,7 +147,7 @@ class PluginReader {
     ProminPicturesReader* opened = nullptr;
     check(plugin_.open_bytes(file_.data(), file_.size(), format_.name, &opened, &info, &message_));
     reader_.reset(opened);
-    if (info.is_flat == 0) throw PictureError("it is not a flat picture", false);
+    if (info.is_flat == 0) throw PictureError("it is not a two-dimensional picture", false);
     check_size(info.width, info.height);
     return {static_cast<uint32_t>(info.width), static_cast<uint32_t>(info.height)};
   }
@@ -180,7 +180,7 @@ class PluginReader {
 template <typename Task>
 auto with_reader(std::span<const std::byte> file, const Task& task) {
   const PictureFormat* format = find_picture_format(file);
-  if (format == nullptr) throw PictureError("it is of no known format");
+  if (format == nullptr) throw PictureError("its format is unknown");
   if (std::string_view(format->name) == "png") {
     PngReader reader(file);
     return task(reader);

@@ -13,39 +13,40 @@
 
 namespace promin {
 
-/// Why a picture is no use as a texture, in a few words.
+/// The reason why a picture cannot be used as a texture, in a few words.
 class PictureError : public std::runtime_error {
  public:
   explicit PictureError(const std::string& why, bool is_file_at_fault = true)
       : std::runtime_error(why), is_file_at_fault_(is_file_at_fault) {}
 
-  /// Whether the file is broken. False for what its format allows and promin does not read.
+  /// Returns whether the file is damaged; false for valid features that promin does not support.
   bool is_file_at_fault() const { return is_file_at_fault_; }
 
  private:
   bool is_file_at_fault_;
 };
 
-/// A picture of 8 bits a channel.
+/// A picture with 8 bits per channel.
 struct DecodedPicture {
   uvec2 size{0};
   /// As TextureImage::texels.
   std::vector<uint32_t> texels;
-  /// What the library complains about while it decodes a damaged file; empty where it does not.
+  /// The library's warning about a damaged file; empty if there is none.
   std::string warning = {};
 };
 
-/// The size of a picture, whose first bytes tell its format: one of image/picture_formats.h; for any but PNG and
-/// JPEG the plugin for pictures is opened. Throws PictureError where it is of none, is broken, is larger than
-/// kMaxTextureSide or kMaxTextureTexels, or the plugin is missing.
+/// Returns the size of a picture. Its first bytes determine its format, one of image/picture_formats.h; formats other
+/// than PNG and JPEG need the plugin for pictures. Throws PictureError if the format is unknown, the file is damaged,
+/// the picture is larger than kMaxTextureSide or kMaxTextureTexels, or the plugin is missing.
 uvec2 read_picture_size(std::span<const std::byte> file);
 
-/// The texels of such a file: grey ones in three channels, without alpha 1, numbers of more bits rounded to 8, what is
-/// beyond 0...1 clamped. What is missing of a JPEG that ends early is grey. Profiles and gamma of the file are ignored,
-/// as glTF 2.0, section 3.8.3, asks for. Throws PictureError, before it takes memory for a picture that is too large.
+/// Returns the texels of such a file. Grey is expanded to three channels, missing alpha is 1, values of more bits are
+/// rounded to 8, and values outside 0...1 are clamped. The missing part of a truncated JPEG is grey. Colour profiles
+/// and gamma of the file are ignored, as glTF 2.0, section 3.8.3, requires. Throws PictureError, for a picture that is
+/// too large before it allocates memory.
 DecodedPicture decode_picture(std::span<const std::byte> file);
 
-/// Most texels of an image: 512 MiB.
+/// The largest number of texels of an image: 512 MiB.
 inline constexpr uint64_t kMaxTextureTexels = uint64_t{1} << 27;
 
 }  // namespace promin

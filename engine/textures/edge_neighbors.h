@@ -9,7 +9,7 @@
 
 namespace promin {
 
-// Corners of triangles are numbered 3 * triangle + (0, 1, 2), and edges as the corners that they start at.
+// Corners of triangles are numbered 3 * triangle + (0, 1, 2), and edges like the corners at which they start.
 
 /// The value for no corner and no edge.
 inline constexpr uint32_t kNoCorner = std::numeric_limits<uint32_t>::max();
@@ -21,10 +21,10 @@ inline uint32_t last_corner(uint32_t corner) {
   return corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
-/// For each edge the one of another triangle that runs the other way between the same vertices; kNoCorner where there
-/// is none. Where several do, the first goes with the first, the second with the second. `vertices` has the vertex of
-/// each corner, below `vertex_count`; kNoCorner at all three of a triangle that is left out. No other triangle has a
-/// vertex twice. The same for any number of threads.
+/// Returns for each edge the edge of another triangle that runs in the opposite direction between the same vertices;
+/// kNoCorner if there is none. If there are several, the first is paired with the first, the second with the second.
+/// `vertices` has the vertex of each corner, below `vertex_count`; kNoCorner at all three corners excludes a triangle.
+/// No other triangle has a vertex twice. The result does not depend on the number of threads.
 std::vector<uint32_t> find_edge_neighbors(std::span<const uint32_t> vertices, uint32_t vertex_count);
 
 }  // namespace promin

@@ -171,7 +171,7 @@ std::string to_mib(uint64_t bytes) {
 
 /// Words of the buffer that images lie in are numbered in 32 bits.
 constexpr uint64_t kMostBytes = uint64_t{8} << 30;
-constexpr const char* kCure = "raise the memory of textures, or make images smaller";
+constexpr const char* kCure = "raise the memory for textures, or make images smaller";
 
 }  // namespace
 
@@ -196,7 +196,7 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
     auto& [words, image] = heap.back();
     const uint64_t fewer = sizes.words(image, ++fit.halvings[image]);
     if (fewer == words) {
-      throw RunError({"the scene's " + std::to_string(images.size()) + " images take more than " + to_mib(most_bytes) +
+      throw RunError({"the scene's " + std::to_string(images.size()) + " images need more than " + to_mib(most_bytes) +
                           " even as single texels",
                       "", kCure, Setting::kTextureMemory});
     }

@@ -12,10 +12,11 @@
 
 namespace promin {
 
-/// What tells vertices apart for tangents: position, normal and a pair of texture coordinates.
+/// The attributes that distinguish vertices for tangents: position, normal and a pair of texture coordinates.
 using VertexKey = std::array<float, 8>;
 
-/// For each i below `count` the lowest j whose key_of(j) equals key_of(i); 0 and -0 are equal. Takes linear time.
+/// Returns for each i below `count` the lowest j whose key_of(j) equals key_of(i); 0 and -0 are equal. Takes linear
+/// time.
 template <typename KeyOf>
 std::vector<uint32_t> weld(uint32_t count, const KeyOf& key_of) {
   constexpr uint32_t kEmpty = std::numeric_limits<uint32_t>::max();

@@ -6,12 +6,12 @@
 
 namespace promin {
 
-/// What is done about loops that the driver cuts (shaders/loop_check.glsl), the one place for all that traces: what a
-/// shader wrote then is not all. Throws RunError if loops were cut.
+/// Throws RunError if the driver has cut loops (shaders/loop_check.glsl), because the output of the shaders is then
+/// incomplete. All callers that trace use this function.
 inline void refuse_cut_loops(bool were_loops_cut) {
   if (!were_loops_cut) return;
-  throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 turns", "on this device",
-                  "take another device, or leave out surfaces that lie in one another", Setting::kDevice});
+  throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 iterations", "on this device",
+                  "use another device, or remove surfaces that coincide", Setting::kDevice});
 }
 
 }  // namespace promin

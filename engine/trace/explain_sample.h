@@ -11,8 +11,8 @@
 
 namespace promin {
 
-/// Makes a sample from the log that a device wrote of it. `light_numbers` has the index in Scene::lights of each light
-/// on the device.
+/// Converts a device's log of a sample to an ExplainedSample. `light_numbers` has the index in Scene::lights of each
+/// light on the device.
 ExplainedSample explain_sample(std::span<const layout::RayLog> log, const PrimitiveNumbers& numbers,
                                std::span<const uint32_t> light_numbers);
 

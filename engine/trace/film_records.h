@@ -13,10 +13,10 @@
 #include "scene/features.h"
 #include "trace/pixel_estimate.h"
 
-// What a film's records tell of pixels (shaders/layout.h, AOV_* and what follows there). Vulkan-free.
+// Decodes a film's records of pixels (shaders/layout.h, from AOV_* on). Does not use Vulkan.
 namespace promin {
 
-/// The records of a pixel on a film with these features, which lie `pixel_count` apart.
+/// The layout of a pixel's records on a film with these features; they lie `pixel_count` apart.
 struct FilmRecords {
   explicit FilmRecords(FeatureMask features);
 
@@ -24,59 +24,56 @@ struct FilmRecords {
   uint32_t first_part;
   uint32_t first_ids;
   uint32_t first_range;
-  /// With FEATURE_UNLIT_SHARE.
+  /// Record of unlit surfaces, with FEATURE_UNLIT_SHARE.
   uint32_t unlit;
   uint32_t count;
 
   bool has_unlit() const { return unlit < count; }
 };
 
-/// A film that has been read, of a window of a picture.
+/// The records of a window of a picture, read from a film.
 struct ReadFilm {
   std::span<const uvec4> records;
   size_t pixel_count;
   FilmRecords layout;
 
   const uvec4& record(uint32_t which, size_t pixel) const { return records[which * pixel_count + pixel]; }
-  /// Of its parts, the sum over samples.
+  /// Returns the sum of a part of light over all samples.
   dvec3 part(uint32_t which, size_t pixel) const;
-  /// Of its samples, with FEATURE_SAMPLE_RANGES.
+  /// Returns the color range of its samples, with FEATURE_SAMPLE_RANGES.
   ColorRange range(size_t pixel) const;
-  /// What the camera sees of unlit surfaces, as Aovs::unlit but summed over samples, with FEATURE_UNLIT_SHARE.
+  /// Returns the unlit surfaces that the camera sees, as Aovs::unlit but summed over samples, with FEATURE_UNLIT_SHARE.
   vec4 unlit(size_t pixel) const;
 };
 
-/// Reads the AOVs that surfaces tell, and those that only steps do, into those that are there. The film's first pixel
-/// is pixel `first` of theirs.
+/// Reads AOVs of surfaces and steps into those members that have values. The film's first pixel is their pixel `first`.
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
                    Aovs& aovs);
 void read_steps(const ReadFilm& film, size_t first, Aovs& aovs);
 
-/// Reads what the camera sees of unlit surfaces in the first pixels of a film with FEATURE_UNLIT_SHARE; nothing from
-/// another film.
+/// Reads the unlit surfaces in the first pixels of a film with FEATURE_UNLIT_SHARE; nothing from other films.
 void read_unlit(const ReadFilm& film, size_t pixel_count, std::vector<vec4>& unlit);
 
 /// The parts of a pixel's light, summed over samples.
 struct LightParts {
   dvec3 sums[layout::LIGHT_PARTS] = {};
-  /// In how many samples the background is seen.
+  /// Number of samples that see the background, weighted by transparency.
   double background_share = 0.0;
 
-  /// Adds those of a pixel of the film.
+  /// Adds the parts of a pixel of the film.
   void add(const ReadFilm& film, size_t pixel);
-  /// Takes their averages for a pixel, where there are AOVs to take them. With Aovs::alpha takes the background out of
-  /// its `color`.
+  /// Stores their averages for a pixel in the selected AOVs. With Aovs::alpha removes the background from its `color`.
   void put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) const;
 };
 
-/// Counts of which objects the samples of pixels see.
+/// Counts the objects that the samples of pixels see.
 class CoverageTally {
  public:
-  /// `material_of_object` by the numbers of objects; lives longer.
+  /// `material_of_object` is indexed by object and must outlive this.
   CoverageTally(size_t pixel_count, std::span<const uint32_t> material_of_object)
       : material_of_object_(material_of_object), counts_(pixel_count) {}
 
-  /// Takes note of a sample; `object` may be Coverage::kNoId. Several threads may, each of other pixels.
+  /// Counts a sample; `object` may be Coverage::kNoId. Several threads may call it for different pixels.
   void add(size_t pixel, uint32_t object);
   void put(size_t tallied, uint32_t samples, size_t pixel, Aovs& aovs) const;
 
@@ -85,7 +82,7 @@ class CoverageTally {
     uint32_t id = Coverage::kNoId;
     uint32_t samples = 0;
   };
-  /// By id. Most pixels show few objects, for which they take no memory of their own.
+  /// Counts by id. Most pixels show few objects, for which no heap memory is needed.
   class Counts {
    public:
     void add(uint32_t id, uint32_t samples);

@@ -12,54 +12,55 @@
 
 namespace promin {
 
-/// Where the stream of a film lies (shaders/stream.glsl), and what it takes.
+/// The layout and size of the stream of a film (shaders/stream.glsl).
 struct StreamShape {
-  /// For a scene of so many lights, of at most so many paths, within kMostBytes; with glass for pictures of this depth.
+  /// Returns the stream for a scene of this number of lights and at most this number of paths, within kMostBytes; with
+  /// glass for pictures of this depth.
   static StreamShape of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth);
 
-  /// Of a path: its records, what it asks for, its places in the lists.
+  /// Returns the bytes of a path: its records, its shadow rays, and its entries in the lists.
   uint64_t path_bytes() const;
-  /// Of all of them, and the bins.
+  /// Returns the bytes of all paths and the bins.
   uint64_t bytes() const;
 
   uint32_t first_record = 0;
   /// A multiple of the lanes of a workgroup.
   uint32_t most_paths = 0;
-  /// Whose shadow rays a turn takes at most; 0 where nothing casts shadows.
+  /// Largest number of lights whose shadow rays are traced in a turn; 0 if nothing casts shadows.
   uint32_t sources = 0;
   uint32_t turns_of_bounce = 1;
-  /// How many rays of a path may wait; only with glass.
+  /// Largest number of waiting rays of a path; only with glass.
   uint32_t waiting_rays = 0;
   bool has_glass = false;
   /// Whether shadow rays may begin behind a surface.
   bool scatters_through = false;
 
-  /// Of a path, its sources among them.
+  /// Returns the number of records of a path, including its light sources.
   uint32_t records_of_path() const;
 
   static constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-  /// Beside the pixels of a film it is less than what Vulkan guarantees for a storage buffer.
+  /// Together with the pixels of a film it is less than the size that Vulkan guarantees for a storage buffer.
   static constexpr uint64_t kMostBytes = 48U << 20;
 };
 
-/// Traces the paths of a piece of a picture that a mirror leads on, turn by turn, each by kernels of one kind of work.
-/// It keeps nothing: all state is on the film.
+/// Traces the paths of a piece of a picture after the first mirror or glass surface, turn by turn, with a kernel for
+/// each kind of work. It has no state of its own: all state is on the film.
 class PathStream {
  public:
-  /// Compiles unless the device has compiled the same already. `buffers` are those of the camera stage, and the film
-  /// as texels.
+  /// Compiles the kernels unless the device has already compiled the same. `buffers` are those of the camera stage, and
+  /// the film as texels.
   PathStream(const gpu::Device& device, FeatureMask features, std::span<const gpu::SpecializationConstant> constants,
              std::span<const gpu::BoundBuffer> buffers, const PictureShaders& shaders);
 
   void bind(const gpu::BoundBuffer& buffer);
 
-  /// Records that the stream is emptied, before the camera stage puts paths there.
+  /// Records emptying the stream, before the camera stage adds paths.
   void record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape) const;
-  /// Records all turns that paths of so many steps take: bounces, and surfaces that they go through.
+  /// Records all turns for paths of this number of steps: bounces, and surfaces that they pass through.
   void record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape,
                     uint32_t steps) const;
-  /// Records a workgroup of each kernel, after record_begin and a dispatch whose numbers the film's head has. They have
-  /// nothing to do, but drivers compile late.
+  /// Records a workgroup of each kernel, after record_begin and a dispatch whose constants are in the film's head. They
+  /// have no work, but make drivers compile now.
   void record_warm_up(const vk::raii::CommandBuffer& commands) const;
 
  private:

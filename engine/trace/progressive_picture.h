@@ -15,7 +15,7 @@
 
 namespace promin {
 
-/// A scene and the device that it is on, which lives as long.
+/// A scene and its device, which is kept alive with it.
 struct SceneOn {
   std::shared_ptr<const gpu::Device> device;
   std::shared_ptr<DeviceScene> scene;
@@ -26,72 +26,73 @@ struct ShownPicture {
   /// The index of its film, below kFilmCount.
   size_t film = 0;
   uvec2 size{0};
-  /// What the film's sums are over: 1 where the film has means, of a picture with an error target.
+  /// Number of samples in the film's sums; 1 for a picture with an error target, whose film has means.
   uint32_t samples_per_pixel = 1;
-  /// Of a picture with an error target.
+  /// Set for a picture with an error target.
   std::optional<PictureError> error;
 
-  /// The view that gives this picture, where `view` is what it shows.
+  /// Returns the view that gives this picture, if `view` is the view that it shows.
   View view_of(View view) const;
 };
 inline constexpr size_t kFilmCount = 2;
 
-/// The picture of a view that may change any time, traced in pieces of about a frame's time each. A new view comes at
-/// once in as few pixels as a frame has time for; while it stands still it comes in full size, then with less and less
-/// error until that of its target (RefiningPicture) or, without one, with 4, 16 and 64 samples a pixel, each as
-/// `promin render` gives it. One film is traced while the other, complete, is shown.
+/// The picture of a view that may change at any time, traced in pieces of about a frame's time. A new view first
+/// appears with as many pixels as fit into a frame's time. If it does not change, it then appears in full size, then
+/// with decreasing error down to its target (RefiningPicture) or, without a target, with 4, 16 and 64 samples per
+/// pixel, each with the bits of `promin render`. One film is traced while the other, complete one is shown.
 class ProgressivePicture {
  public:
-  /// `options` are those of the first pictures' films. `set_apart`, where there is one, gives the same scene, perhaps
-  /// on a device of its own: the samples that refine are traced there. It is called on another thread.
+  /// `options` are those of the first pictures' films. `set_apart`, if given, returns the same scene, possibly on a
+  /// separate device, where the samples for refinement are traced. It is called on another thread.
   ProgressivePicture(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, FeatureMask features,
                      double budget_ms, std::function<SceneOn()> set_apart = {}, const FilmOptions& options = {});
 
-  /// Makes room for a window; the device must be idle. Afterwards film(i) may be another buffer, and nothing is shown.
+  /// Makes room for a window; the device must be idle. Afterwards film(i) may be another buffer, and no picture is
+  /// shown.
   void resize(const uvec2& size);
-  /// The largest size that a picture can have: that of the window, if the device's buffers can be large enough.
+  /// Returns the largest possible size of a picture: that of the window, if the device's buffers can be large enough.
   const uvec2& full_size() const { return full_size_; }
   const gpu::Buffer& film(size_t index) const { return films_[index].buffer(); }
-  /// Whether films have a second record of each pixel, Aovs::unlit summed over samples: with FEATURE_UNLIT_SHARE.
+  /// Returns whether films have a second record for each pixel, Aovs::unlit summed over samples, with
+  /// FEATURE_UNLIT_SHARE.
   bool has_unlit() const { return films_[0].records().has_unlit(); }
 
-  /// The view to show from now on, in full size.
+  /// Sets the view to show from now on, in full size.
   void want(View view);
   const View& wanted() const { return wanted_; }
-  /// Fixes the scale of a view's first picture, in its pixels for one of the window; nullopt adapts it to the time of a
-  /// frame.
+  /// Sets the scale of a view's first picture, in pixels of the window per pixel of the picture; nullopt adapts it to
+  /// the time of a frame.
   void fix_scale(std::optional<double> scale) { fixed_scale_ = scale; }
-  /// While paused, nothing is refined beyond a view's first picture.
+  /// Pauses or resumes refinement after a view's first picture.
   void pause(bool is_paused) { is_paused_ = is_paused; }
   bool is_paused() const { return is_paused_; }
 
-  /// Whether there is nothing to trace.
+  /// Returns whether there is nothing to trace.
   bool is_settled() const;
-  /// Whether the wanted view is shown in full size.
+  /// Returns whether the requested view is shown in full size.
   bool is_complete() const;
   const std::optional<ShownPicture>& shown() const { return shown_; }
-  /// How many pictures have been shown so far; resize() starts anew.
+  /// Returns the number of pictures shown so far; resize() resets it.
   uint64_t shown_count() const { return shown_count_; }
-  /// The fraction of the current picture that is traced; 1 where there is none.
+  /// Returns the traced fraction of the current picture; 1 if there is none.
   double fraction_done() const;
-  /// Whether the pipeline that refines pictures to an error is being compiled.
+  /// Returns whether the pipeline for refinement is being compiled.
   bool is_compiling() const;
-  /// Whether the destructor would wait for another thread.
+  /// Returns whether the destructor would wait for another thread.
   bool is_busy_beside() const;
 
-  /// Records the next pieces, for about the budget. Returns their units; 0 where there was nothing to trace, or
-  /// nothing yet: see awaits_samples(). The commands are for the picture's device, or where refines_next() for
-  /// refining_device().
+  /// Records the next pieces, for about the budget. Returns their units; 0 if there was nothing to trace, or nothing
+  /// yet: see awaits_samples(). The commands are for the picture's device or, if refines_next(), for refining_device().
   double record(const vk::raii::CommandBuffer& commands);
-  /// Whether the next record() refines. It needs that the picture's device is idle with respect to the films.
+  /// Returns whether the next record() refines. The picture's device must not be using the films.
   bool refines_next() const;
-  /// The device that refines; null, and it is being made, before that is known.
+  /// Returns the device for refinement; null while it is being created.
   std::shared_ptr<const gpu::Device> refining_device();
-  /// Compiles what traces the first pictures, and waits.
+  /// Compiles the kernels of the first pictures, and waits.
   void warm_up() { films_[0].warm_up(); }
-  /// Whether the next pieces hang on those that are under way, or on a pipeline that is being compiled.
+  /// Returns whether the next pieces depend on pieces that are being traced, or on a pipeline that is being compiled.
   bool awaits_samples() const;
-  /// Whether the last record() recorded samples that take_finished() must be told of.
+  /// Returns whether the last record() recorded samples that must be reported to take_finished().
   bool has_recorded_list() const { return has_recorded_list_; }
   /// Records a copy of the ray counts of what record() recorded, and resets them.
   void record_take_counts(const vk::raii::CommandBuffer& commands, const gpu::Buffer& target) const;
@@ -100,34 +101,33 @@ class ProgressivePicture {
     double units = 0.0;
     double time_ms = 0.0;
     bool has_cut_loops = false;
-    /// What has_recorded_list() was.
+    /// The value of has_recorded_list().
     bool has_list = false;
   };
-  /// Learns from their time, so that the next budget is met. Throws RunError where the driver cut loops.
+  /// Adjusts the next budget by their time. Throws RunError if the driver has cut loops.
   void take_finished(const Finished& finished);
   void set_budget(double budget_ms);
 
-  /// Takes note that the scene has changed parts that need no other pipeline: all is traced again. The device must be
-  /// idle with respect to the films.
+  /// Restarts tracing after a change of the scene that needs no other pipeline. The device must not be using the films.
   void take_scene_change();
 
-  // For callers without frames of their own.
+  // For callers that do not record their own frames.
   /// Records the next pieces, runs them and waits.
   void trace();
-  /// The pixels of what is shown.
+  /// Returns the pixels of the shown picture.
   Image read() const;
 
   static constexpr uint32_t kMostSamples = 64;
 
  private:
-  /// The view to trace now; nullopt where all is done.
+  /// Returns the view to trace now; nullopt if everything is done.
   std::optional<View> next_view() const;
-  /// Whether what is shown is refined to an error, now or when the pause is over.
+  /// Returns whether the shown picture can be refined to an error, now or after the pause.
   bool is_refinable() const;
-  /// Whether that is yet to be done.
+  /// Returns whether refinement is not finished.
   bool is_refining() const;
   double record_refinement(const vk::raii::CommandBuffer& commands, double most_units);
-  /// Makes refined_ that of the wanted view, with its next samples. False where that is still under way.
+  /// Sets refined_ to the requested view with its next samples. Returns false if that is still being prepared.
   bool prepare_refined();
   void show_refined();
   uvec2 first_size() const;
@@ -136,31 +136,31 @@ class ProgressivePicture {
 
   const gpu::Device* device_;
   std::vector<Film> films_;
-  /// The film that samples are refined on, and its device.
+  /// The film for refinement, and its device.
   struct ListFilm {
     std::shared_ptr<const gpu::Device> device;
     std::unique_ptr<Film> film;
   };
-  /// Makes it; it is there as soon as somebody has needed it.
+  /// Creates the film, which exists after its first use.
   std::function<ListFilm()> make_list_film_;
   ListFilm list_film_;
   std::future<ListFilm> list_film_to_come_;
-  /// Whether what takes the host long is done on other threads: only for callers with frames of their own.
+  /// Whether long host work runs on other threads; only for callers that record their own frames.
   bool works_beside_ = false;
-  /// The picture that is refined, of the view of refined_version_; null while it prepares its next samples.
+  /// The picture being refined, of the view of refined_version_; null while it prepares its next samples.
   std::unique_ptr<RefiningPicture> refined_;
   uint64_t refined_version_ = 0;
   std::future<std::unique_ptr<RefiningPicture>> refined_to_come_;
-  /// Whether refined_ has prepared what is to be recorded or shown.
+  /// Whether refined_ has prepared samples to record or a picture to show.
   bool is_prepared_ = false;
   /// Whether its samples are being traced.
   bool is_list_under_way_ = false;
-  /// The part of refined_'s next picture that is traced.
+  /// The traced fraction of refined_'s next picture.
   double refined_fraction_ = 0.0;
   bool has_recorded_list_ = false;
-  /// The buffer that trace() takes the counts into.
+  /// The buffer into which trace() copies the counts.
   std::optional<gpu::Buffer> counters_;
-  /// The longest time of one dispatch; a longer budget takes several.
+  /// The longest time of one dispatch; a longer budget uses several.
   double longest_piece_ms_;
   double budget_ms_;
   Pacer pacer_;
@@ -174,7 +174,7 @@ class ProgressivePicture {
   std::optional<ShownPicture> shown_;
   uint64_t shown_version_ = 0;
   uint64_t shown_count_ = 0;
-  /// The current picture, on the film that is not shown.
+  /// The current picture, which is traced onto the film that is not shown.
   std::optional<TileScheduler> picture_;
   ShownPicture picture_when_done_;
   uint64_t picture_version_ = 0;

@@ -150,8 +150,8 @@ struct RayKernel::Impl {
     hits->read(head_bytes, sizeof(layout::Dispatch));
     for (size_t i = 0; i < input.size(); ++i) {
       if (heads[i].a.x != counts[i]) {
-        throw RunError({"the device lists other crossings of a ray than it counts", "on this device",
-                        "take another device", Setting::kDevice});
+        throw RunError({"the device lists other crossings of a ray than it has counted", "on this device",
+                        "use another device", Setting::kDevice});
       }
     }
     hits->read(std::as_writable_bytes(crossings), hits_size(input.size()));

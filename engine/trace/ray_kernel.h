@@ -21,61 +21,62 @@ namespace gpu {
 class Device;
 }
 
-/// SPIR-V of shaders/cast.comp, for the nearest hit and any.
+/// Returns the SPIR-V of shaders/cast.comp, for the nearest hit and any hit.
 std::span<const uint32_t> cast_spirv();
-/// SPIR-V of shaders/crossings.comp, for counts and lists.
+/// Returns the SPIR-V of shaders/crossings.comp, for counts and lists.
 std::span<const uint32_t> crossings_spirv();
 
 struct RayKernelOptions {
   /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; its workgroups take
-  /// the work that shaders/group_rows.glsl gives them. Empty: promin's own for the query.
+  /// their work from shaders/group_rows.glsl. Empty for promin's own kernel of the query.
   std::span<const uint32_t> spirv = {};
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;
-  /// Rays in a row that a lane traces together. It changes no answer, but step counts are then of the packet.
+  /// Number of consecutive rays that a lane traces together. It does not change results, but step counts are then those
+  /// of the packet.
   uint32_t packet_size = 1;
-  /// Read nodes and primitives as storage buffers even where texel buffers hold them, for tests and measurements.
+  /// Read nodes and primitives from storage buffers even if texel buffers can hold them, for tests and measurements.
   bool avoids_texels = false;
-  /// Where empty, as suits the device.
+  /// If empty, the device profile decides.
   std::optional<gpu::TraversalForm> traversal = std::nullopt;
-  /// A single dispatch is not meant to take longer. Where empty, as suits the device.
+  /// Target for the longest time of a dispatch. If empty, the device profile decides.
   std::optional<double> target_dispatch_ms = std::nullopt;
-  /// Fixed number of rays a dispatch, for tests; 0 adapts.
+  /// Fixed number of rays per dispatch, for tests; 0 adapts it.
   uint32_t rays_per_dispatch = 0;
 };
 
-/// A kernel that takes rays and gives a record for each; under Caster, and the bare device for tests.
+/// A kernel that traces rays and writes a record for each. Caster uses it; tests use it directly.
 class RayKernel {
  public:
-  /// Compiles; throws RunError.
+  /// Compiles the kernel. Throws RunError.
   RayKernel(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, const RayKernelOptions& options);
   ~RayKernel();
   RayKernel(RayKernel&&) noexcept;
   RayKernel& operator=(RayKernel&&) noexcept;
 
-  /// Most rays that one call of run takes.
+  /// The largest number of rays of one call of run().
   static constexpr size_t kMaxRays = size_t{1} << 20;
 
-  /// Fills as many records as there are rays, at most kMaxRays; what layout.h says is not told of any hit stays as it
-  /// was before. Of kCount a.x of each record is the ray's number of crossings. Returns device milliseconds. Not for
-  /// kAll. `progress` is called between dispatches; throws Cancelled, and then no record is filled.
+  /// Fills one record for each ray, at most kMaxRays; members that layout.h does not define for any-hit rays keep their
+  /// values. For kCount a.x of each record is the ray's number of crossings. Not for kAll. Calls `progress` between
+  /// dispatches. Returns device milliseconds. Throws Cancelled, and then fills no record.
   double run(std::span<const layout::RayRecord> rays, std::span<layout::HitRecord> records,
              const ProgressCallback& progress = {});
-  /// The same without copies between: `fill` writes `count` rays, and `take` is shown as many records, both where the
-  /// device has them if the host can map that.
+  /// Does the same without extra copies: `fill` writes `count` rays and `take` reads as many records, both directly in
+  /// the device's memory if the host can map it.
   double run(size_t count, const std::function<void(std::span<layout::RayRecord>)>& fill,
              const std::function<void(std::span<const layout::HitRecord>)>& take,
              const ProgressCallback& progress = {});
 
-  /// For kAll: fills the crossings of the rays, of which each has `counts` at the same place, as kCount told; ray by
-  /// ray, a ray's in whatever order the tree has them. At most most_listed(rays.size()) of them. Throws RunError where
-  /// a ray has another number. `progress` as in run().
+  /// For kAll: fills the crossings of the rays, ray by ray; those of a ray are in the order of the tree. `counts` has
+  /// the number for each ray, as kCount returned it. At most most_listed(rays.size()) crossings in all. Throws RunError
+  /// if a ray has another number. `progress` as in run().
   double list(std::span<const layout::RayRecord> rays, std::span<const uint32_t> counts,
               std::span<layout::HitRecord> crossings, const ProgressCallback& progress = {});
-  /// How many crossings of so many rays a buffer of the device can hold.
+  /// Returns the number of crossings of this number of rays that a buffer of the device can hold.
   uint64_t most_listed(size_t ray_count) const;
 
-  /// Time that compiling took.
+  /// Returns the milliseconds of compilation.
   double pipeline_ms() const;
 
  private:

@@ -16,74 +16,76 @@ namespace promin {
 
 /// A sample to trace.
 struct ListedSample {
-  /// In the whole picture.
+  /// The pixel in the whole picture.
   uvec2 pixel{0};
-  /// In pixels from the pixel's upper left corner.
+  /// Position in pixels from the pixel's upper left corner.
   vec2 place{0.5F};
 };
 
-/// Samples that are traced between two looks at what they bring.
+/// Number of samples that are traced before their results are evaluated.
 inline constexpr size_t kMostListedSamples = size_t{1} << 19;
 
-/// An error from which on a picture is coarse.
+/// The error from which a picture counts as coarse.
 inline constexpr float kCoarseError = 1.0F / 32.0F;
 
-/// What programs take for ErrorTarget::min_samples where the user does not say: fewer from kCoarseError on.
+/// Returns the programs' default of ErrorTarget::min_samples; fewer from kCoarseError on.
 uint32_t usual_min_samples(float error);
 
-/// The errors that a picture comes to on its way to that of a target: the first, and the next less than that by the
-/// root of 2. `error` is more than the target's.
+/// Return the intermediate errors of a picture on its way to a target: the first, and the next, which is smaller by the
+/// square root of 2. `error` is larger than the target's.
 float first_error(const ErrorTarget& target);
 float next_error(const ErrorTarget& target, float error);
 
-/// How many pixels a window has.
+/// Returns the number of pixels of a window.
 size_t area_of(const PixelWindow& window);
 
-/// A window and the pixels around it that are in a picture of this size.
+/// Returns a window extended by the adjoining pixels that are in a picture of this size.
 PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size);
 
-/// The parts in which a picture is refined, one after the other, row by row: whoever has them traced each by itself has
-/// the same done as with the whole.
+/// Returns the parts in which a picture is refined, one after the other, row by row. Refining each of them separately
+/// gives the same result and work as refining the whole.
 std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
 
-/// Refines a window of a picture until each of its pixels is within View::error_target or has its most samples: hands
-/// out samples to trace, takes what was seen, doubles the samples of pixels whose claim is too large. Of the pixels
-/// around the window it takes the first samples, for those next to them; so a pixel hangs on what is within one pixel
-/// of it alone, and no crop or cut reaches a bit. Vulkan-free.
+/// Refines a window of a picture until each of its pixels is within View::error_target or has the largest number of
+/// samples: it returns samples to trace, takes their results, and doubles the samples of pixels whose claim is too
+/// large. It also takes the first samples of the pixels around the window, which their neighbours need. A pixel thus
+/// depends only on pixels within a distance of one, and crops and divisions do not change its bits. Does not use
+/// Vulkan.
 class Refinement {
  public:
-  /// The view has an error target, and the window is not empty. With `has_unlit` take() gets what samples see of unlit
-  /// surfaces.
+  /// The view must have an error target, and the window must not be empty. With `has_unlit` take() also receives the
+  /// unlit surfaces of samples.
   Refinement(const View& view, const PixelWindow& window, bool has_unlit = false);
 
-  /// The samples to trace next, at most about `most`, whose colors take() gets before the next call. Empty where the
-  /// window is as exact as it is asked for.
+  /// Returns the samples to trace next, at most about `most`. take() must receive their colors before the next call.
+  /// Empty if the window has reached its error.
   std::span<const ListedSample> next(size_t most);
-  /// `unlit` has as many values, as Aovs::unlit of a picture of one sample, or none without unlit surfaces.
+  /// Takes the results of the samples. `unlit` has as many values, like Aovs::unlit of a picture of one sample, or none
+  /// without unlit surfaces.
   void take(std::span<const vec3> radiance, std::span<const vec4> unlit = {});
 
-  /// Goes on with a smaller error, where all is as exact as was asked for. What this brings is what the smaller error
-  /// would have brought at once.
+  /// Continues with a smaller error after the current one is reached. The result is the same as if it had started with
+  /// the smaller error.
   void aim(float error);
 
-  /// How many samples it has taken, and about how many more it takes for a smaller error.
+  /// Returns the number of samples taken.
   uint64_t sample_count() const { return sample_count_; }
   double foretell_samples(float error) const;
 
-  /// About how many samples the error takes that was asked for, with those that it has taken.
+  /// Returns an estimate of the number of samples that the requested error needs, including those already taken.
   double foretell_total() const { return total_; }
 
-  /// Of the window's pixels, row by row.
+  /// Results of the window's pixels, in row order.
   size_t pixel_count() const { return claims_.size(); }
   const PixelEstimate& estimate(size_t pixel) const { return estimates_[apron_index(pixel)]; }
-  /// The mean of what its samples see of unlit surfaces, as Aovs::unlit; 0 without any.
+  /// Returns the mean of the unlit surfaces of its samples, as Aovs::unlit; 0 without any.
   vec4 unlit(size_t pixel) const { return mean_unlit(apron_index(pixel)); }
   const vec3& claim(size_t pixel) const { return claims_[pixel]; }
-  /// The claim as the target measures errors (claimed_error).
+  /// Returns the claim as the target measures errors (claimed_error).
   float claimed_error(size_t pixel) const { return errors_[pixel]; }
-  /// Whether the claim is within the error that is asked for; else samples were too few.
+  /// Returns whether the claim is within the requested error; if not, there were too few samples.
   bool is_near_enough(size_t pixel) const;
-  /// Adds what the window's pixels have come to, but for the target.
+  /// Adds the results of the window's pixels to a picture's, except the target.
   void add_to(PictureError& whole) const;
 
  private:
@@ -94,8 +96,8 @@ class Refinement {
   void add_unlit(size_t apron_index, const vec3& radiance, const vec4& unlit);
   float judge_error(size_t apron_index, const vec3& claim) const;
   void judge_stage();
-  /// Begins to double the samples of pixels that have `sample` of them or more, the fewest first; without any all is
-  /// done.
+  /// Starts to double the samples of pixels that have `sample` samples or more, those with the fewest first; without
+  /// such pixels everything is done.
   void begin_stage_from(uint32_t sample);
 
   ErrorTarget target_;
@@ -103,19 +105,20 @@ class Refinement {
   /// The window and the pixels around it that are in the picture.
   PixelWindow apron_;
   FilterPlaces filter_;
-  /// By apron; beyond the window with the first samples alone.
+  /// Indexed by apron; outside of the window with only the first samples.
   std::vector<PixelEstimate> estimates_;
-  /// By apron, with unlit surfaces: sums of what samples see of them and, with ErrorTarget::display, what each sample
-  /// alone would show, as linear light.
+  /// Indexed by apron, with unlit surfaces: sums of the samples' unlit colours and, with ErrorTarget::display, the
+  /// displayed color of each sample alone, as linear light.
   std::vector<dvec4> unlit_sums_;
   std::vector<PixelEstimate> shown_;
-  /// Of the first samples.
+  /// Color ranges of the first samples.
   std::vector<ColorRange> first_ranges_;
-  /// By window.
+  /// Claims, indexed by window.
   std::vector<vec3> claims_;
-  /// The same as the target measures them, which takes some time of those that are shown.
+  /// The same as the target measures them; computing displayed ones takes some time.
   std::vector<float> errors_;
-  /// The stage at hand: pixels by apron, samples [first, end) of each, how many pixels have been handed out.
+  /// The current stage: pixels indexed by apron, samples [first, end) of each, and the number of pixels already
+  /// returned.
   std::vector<uint32_t> pixels_;
   uint32_t first_sample_ = 0;
   uint32_t end_sample_;

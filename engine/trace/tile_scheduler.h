@@ -11,14 +11,14 @@
 
 namespace promin {
 
-/// A sample of each pixel of some blocks: one dispatch of the camera stage, and of what follows.
+/// One sample of each pixel of some blocks: one dispatch of the camera stage and of the stages after it.
 struct TileSample {
   layout::Dispatch dispatch{};
   /// Workgroups of shaders/camera_stage.comp; y = rows.
   uvec2 group_count{0};
-  /// The most rays that follow a camera ray.
+  /// The largest number of rays that follow a camera ray.
   uint32_t steps = 0;
-  /// Of the view.
+  /// Depth of the view.
   uint32_t depth = 0;
   /// The amount of its work, counted in blocks of 8x8 pixels.
   double units = 0.0;
@@ -28,55 +28,56 @@ struct TileSample {
 
 struct TileOptions {
   static constexpr uint32_t kMaxBlocks = 8192;
-  /// They keep a device's cores busy.
+  /// Enough blocks to keep a device's cores busy.
   static constexpr uint32_t kLeastBlocks = 64;
-  /// With glass a piece takes many turns of the stream, most of few rays.
+  /// The same with glass, where a piece takes many turns of the stream, most with few rays.
   static constexpr uint32_t kLeastBlocksOfTrees = 1024;
 
-  /// The number of pixels that a lane of the camera stage takes together (PACKET_SIZE): 1, 2 or 4.
+  /// The number of pixels that a lane of the camera stage traces together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
   /// See trace/group_rows.h.
   uint32_t most_group_rows = 1;
-  /// The least and the largest piece, kMaxBlocks at most.
+  /// The smallest and the largest piece, at most kMaxBlocks.
   uint32_t least_blocks = kLeastBlocks;
   uint32_t most_blocks = kMaxBlocks;
-  /// How many surfaces a ray goes through at most.
+  /// Largest number of surfaces that a ray passes through.
   uint32_t most_layers = 0;
-  /// How many rays a surface may send through itself (refracted_rays).
+  /// Largest number of rays that a surface transmits (refracted_rays).
   uint32_t refracted_rays = 0;
-  /// The samples of each pixel that are traced, of those that the view has: [first, end).
+  /// The range of the view's samples of each pixel to trace: [first, end).
   uint32_t first_sample = 0;
   uint32_t end_sample = kMaxSamplesPerPixel;
   /// Whether each pixel is a sample of a list (FEATURE_LISTED_SAMPLES), which is traced once.
   bool is_listed = false;
-  /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the units asked for.
+  /// A fixed number of blocks per piece, for tests of tile independence; 0 follows the requested units.
   uint32_t blocks_per_piece = 0;
 };
 
-/// How many rays a surface may send through itself, beside its mirror ray: of glass one, or one of each color
-/// (shaders/tree.glsl).
+/// Returns the largest number of rays that a surface transmits, in addition to its mirror ray: one for glass, or one
+/// for each color (shaders/tree.glsl).
 uint32_t refracted_rays(FeatureMask features);
 
-/// The most rays of a sample that follow the camera's: mirrors', refracted ones, and those from behind surfaces.
+/// Returns the largest number of rays of a sample after the camera ray: mirror rays, refracted rays, and continuations
+/// behind surfaces.
 uint32_t most_steps(uint32_t depth, uint32_t refracted_rays, uint32_t most_layers);
 
-/// Cuts a picture into pieces: it takes a range of blocks at a time, and of that range a sample at a time. Every cut
-/// gives the same bits. Vulkan-free.
+/// Divides a picture into pieces: a range of blocks at a time, and one sample of that range at a time. Every division
+/// gives the same bits. Does not use Vulkan.
 class TileScheduler {
  public:
-  /// Cuts `window` of the view's picture.
+  /// Divides `window` of the view's picture.
   TileScheduler(const SceneConstants& scene, const View& view, const PixelWindow& window,
                 const TileOptions& options = {});
 
-  /// The constants that all pieces share.
+  /// Returns the constants that all pieces share.
   layout::ViewConstants view_constants() const { return make_view_constants(scene_, view_); }
   uint32_t pixel_count() const { return pixel_count_; }
-  /// Whether the first of its pixels' samples are among those that are traced.
+  /// Returns whether the first samples of its pixels are traced.
   bool begins_sums() const { return options_.first_sample == 0; }
   bool is_done() const { return first_block_ == block_total_; }
   double fraction_done() const;
 
-  /// The next piece, of about `units`, but not less than the least. Must not be called when done.
+  /// Returns the next piece, of about `units`, but not smaller than the smallest. Must not be called when done.
   TileSample next(double units);
 
   static constexpr uint32_t kMinBlocks = TileOptions::kLeastBlocks;

@@ -15,16 +15,16 @@ namespace promin {
 
 class DeviceScene;
 
-/// Chooses how much work the next dispatch takes so that it lasts about the target, because drivers kill dispatches of
-/// seconds.
+/// Chooses the amount of work of the next dispatch so that it takes about the target time, because drivers kill
+/// dispatches of seconds.
 class Pacer {
  public:
   Pacer(double target_ms, double first_units) : target_ms_(target_ms), units_(first_units) {}
 
   double units() const { return units_; }
-  /// Sets another target; what was learnt stays.
+  /// Sets another target; measurements are kept.
   void aim(double target_ms);
-  /// Learns that the last dispatch covered `units` in `time_ms`.
+  /// Records that the last dispatch processed `units` in `time_ms`.
   void learn(double units, double time_ms);
 
  private:
@@ -32,15 +32,15 @@ class Pacer {
   double units_;
 };
 
-/// Of the profile's forms the one for packets of so many rays. Where the scene has more solids than triangles its
-/// solids do not wait, as most leaves hold nothing else.
+/// Returns the profile's traversal form for packets of this size. In a scene with more solids than triangles solids do
+/// not wait, because most leaves hold nothing else.
 gpu::TraversalForm traversal_form(const gpu::DeviceProfile& profile, const DeviceScene& scene, uint32_t packet_size);
 
-/// What every pipeline that traces is specialised to.
+/// Returns the specialisation constants of every pipeline that traces.
 std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::TraversalForm& form, FeatureMask features,
                                                              uint32_t stack_size, bool fetches_texels);
 
-/// A pipeline that traces, timed by the device's clock where it has one.
+/// A pipeline that traces, timed by the device's clock if it has one.
 class TracingKernel {
  public:
   TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,
@@ -48,15 +48,15 @@ class TracingKernel {
 
   void bind(const gpu::BoundBuffer& buffer);
 
-  /// Records that `constants` go to the head of `head` and the workgroups run, after all that compute shaders and
-  /// transfers recorded before.
+  /// Records writing `constants` to the head of `head` and running the workgroups, after all earlier work of compute
+  /// shaders and transfers.
   void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
               const uvec2& group_count) const;
 
-  /// Runs what `record` records and waits. Returns device milliseconds (waiting time on the host where the queue has no
+  /// Runs the commands of `record` and waits. Returns device milliseconds (the host's waiting time if the queue has no
   /// timestamps).
   double run(const layout::Dispatch& constants, const gpu::Buffer& head, const uvec2& group_count) const;
-  /// Does the same with all that `record_all` records, which calls `record` as often as it likes.
+  /// Does the same with all commands of `record_all`, which may call `record` any number of times.
   double run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const;
 
  private:

@@ -10,10 +10,10 @@
 
 namespace promin {
 
-/// What a picture shows of each camera ray instead of light, by the names that debug_view_names() has; docs/shadings.md
-/// tells what each shows.
+/// A property of camera rays that a picture shows in place of light. debug_view_names() has the names, docs/shadings.md
+/// describes each view.
 enum class DebugView : uint32_t {
-  /// Light: the picture as it is meant.
+  /// No debug view: the picture shows light.
   kNone = 0,
 /// @cond
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) ENUMERATOR = NUMBER,
@@ -21,7 +21,7 @@ enum class DebugView : uint32_t {
   /// @endcond
 };
 
-/// Names for people, by the value of the DebugView; the first is "full".
+/// Returns names for people, indexed by DebugView; the first is "full".
 PROMIN_EXPORT std::span<const std::string_view> debug_view_names();
 
 }  // namespace promin

@@ -10,31 +10,31 @@
 
 namespace promin::gpu {
 
-/// A Vulkan device in words.
+/// A description of a Vulkan device.
 struct DeviceInfo {
-  /// Its place in list_devices, by which open_device takes it too.
+  /// Its index in list_devices, which open_device accepts too.
   uint32_t index = 0;
-  /// As its driver calls it.
+  /// The name that its driver gives.
   std::string name;
   /// "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other".
   std::string type;
-  /// Driver's name and version as it says, e.g. "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".
+  /// Name and version that the driver gives, e.g. "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".
   std::string driver;
-  /// By which a device is found again, on other days and beside others: 32 hexadecimal digits. Lavapipes all have the
-  /// same; empty where the device does not tell.
+  /// Identifies the device permanently and among several: 32 hexadecimal digits. All lavapipe devices have the same
+  /// one. Empty if the device reports none.
   std::string uuid;
-  /// The version of Vulkan that it speaks, e.g. "1.3.230".
+  /// The Vulkan version that it supports, e.g. "1.3.230".
   std::string api_version;
-  /// Why the device cannot be used; empty for a usable one.
+  /// Reasons why the device cannot be used; empty for a usable one.
   std::vector<std::string> obstacles;
-  /// Optional features that it does not have and what promin does without them.
+  /// Optional features that it lacks, and what promin does without them.
   std::vector<std::string> lacks;
-  /// Whether open_device takes it where it is not told which.
+  /// Whether open_device opens this device by default.
   bool is_default = false;
 };
 
-/// Every Vulkan device that the loader finds, in its order. Empty if there is no driver; throws DeviceError if there
-/// is not even a loader.
+/// Returns all Vulkan devices that the loader finds, in its order; empty if there is no driver. Throws DeviceError if
+/// there is no loader.
 PROMIN_EXPORT std::vector<DeviceInfo> list_devices();
 
 }  // namespace promin::gpu

@@ -11,10 +11,10 @@
 
 namespace promin {
 
-/// How radiance beyond what a display can show is brought into its range (docs/model.md, "Showing a picture"), by the
-/// names that tone_mapping_names() has: kNone cuts it off; kNeutral, Khronos PBR Neutral, keeps base colours and
-/// compresses only what is brighter; kAces, Narkowicz's fit of a film's curve, has more contrast and changes hues;
-/// kReinhard compresses luminance alone and keeps hues; kAgx, Sobotka's curve, lets bright colours go to white softly.
+/// How radiance is mapped into the range of a display (docs/model.md, "Showing a picture"). kNone clips it. kNeutral,
+/// Khronos PBR Neutral, keeps base colours and compresses only brighter values. kAces, Narkowicz's fit of a film curve,
+/// has more contrast and changes hues. kReinhard compresses only luminance and keeps hues. kAgx, Sobotka's curve, fades
+/// bright colours softly to white. tone_mapping_names() has the names.
 enum class ToneMapping : uint32_t {
 /// @cond
 #define PROMIN_TONE_MAPPING(KIND, ENUMERATOR, NUMBER, NAME) ENUMERATOR = NUMBER,
@@ -22,36 +22,37 @@ enum class ToneMapping : uint32_t {
   /// @endcond
 };
 
-/// Names for people, by the value of the ToneMapping; the first is "none".
+/// Returns names for people, indexed by ToneMapping; the first is "none".
 PROMIN_EXPORT std::span<const std::string_view> tone_mapping_names();
 
-/// How linear radiance is shown, in PNG files and windows. By default as it is; EXR files always have it as it is.
+/// How PNG files and windows show linear radiance. By default it is not changed. EXR files always store it unchanged.
 struct DisplayTransform {
-  /// Stops, finite: before all else radiance is multiplied by 2 to this power.
+  /// Exposure in stops, finite: radiance is first multiplied by 2 to this power.
   float exposure_ev = 0.0F;
-  /// Comes after the exposure.
+  /// Applied after the exposure.
   ToneMapping tone_mapping = ToneMapping::kNone;
-  /// Whether the codes of 8 bits get noise before they are rounded, so that gradients show no bands; apply() knows
-  /// nothing of it. The noise hangs on the place of the pixel in the whole picture, so it has the same bits always.
+  /// Whether 8-bit values get noise before they are rounded, which hides bands in gradients. apply() ignores this. The
+  /// noise depends only on the pixel's position in the whole picture, so it is reproducible.
   bool dithers = false;
 
-  /// Whether both are the same.
+  /// Returns whether both are equal.
   bool operator==(const DisplayTransform&) const = default;
 };
 
-/// Stops that bring a picture's luminance to a middle grey of 0.18: of its pixels the mean of log(1e-4 + luminance)
-/// counts (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation 1). `objects` are
-/// Aovs::object: pixels that hit nothing, and those whose luminance is not finite, do not count; where `objects` is
-/// empty all hit. Where there is `unlit`, which is Aovs::unlit, each counts with its share that is not unlit. 0 where
-/// none counts.
+/// Returns the exposure in stops that brings a picture's average luminance to a middle grey of 0.18. The average is the
+/// mean of log(1e-4 + luminance) (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation
+/// 1). `objects` is Aovs::object: pixels without a hit do not count, nor do pixels whose luminance is not finite; if
+/// `objects` is empty, every pixel counts as a hit. If `unlit` (Aovs::unlit) is given, each pixel is weighted by its
+/// share that is not unlit. Returns 0 if no pixel counts.
 PROMIN_EXPORT float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t> objects,
                                         std::span<const vec4> unlit = {});
 
-/// What is shown of a radiance, linear RGB: encode_srgb() (promin/image.h) cuts it to 0...1 and encodes it. Computed in
-/// double; the default transform gives the same bits back. Under a tone mapping negative components and NaN count as 0.
+/// Returns the linear RGB that is displayed for a radiance; encode_srgb() (promin/image.h) then clamps it to 0...1 and
+/// encodes it. Computes in double. The default transform returns its argument bit for bit. Tone mappings treat negative
+/// components and NaN as 0.
 PROMIN_EXPORT vec3 apply(const DisplayTransform& display, const vec3& radiance);
 
-/// The same of a pixel in part of which the camera sees unlit surfaces, which are shown as they are. `unlit` is its
+/// Does the same for a pixel that partly shows unlit surfaces, whose colours are not changed. `unlit` is the pixel's
 /// Aovs::unlit: linear RGB, which `radiance` includes, and the share of the pixel.
 PROMIN_EXPORT vec3 apply(const DisplayTransform& display, const vec3& radiance, const vec4& unlit);
 

@@ -12,23 +12,23 @@
 namespace promin {
 
 /// The built-in surroundings for scenes without light (docs/model.md, "Studio"): a grey gradient, dark below the
-/// horizon, with four soft lamps in it, made to show form and gloss. The studio stands by the viewer, in the
-/// direction `front`. A separate light casts its shadows: make_studio_light (promin/lighting.h).
+/// horizon, with four soft lamps that show form and gloss. The studio is oriented to the viewer by `front`. A separate
+/// light casts the shadows: make_studio_light (promin/lighting.h).
 struct Studio {
-  /// The azimuth from which the scene is looked at, radians about +Y from +Z towards +X: where its front is. Finite.
+  /// The azimuth from which the viewer looks at the scene, in radians about +Y from +Z towards +X. Finite.
   float front = 0.0F;
 
-  /// Whether both look the same.
+  /// Returns whether both look the same.
   bool operator==(const Studio&) const = default;
 };
 
 /// A gradient of colours, linear RGB, finite and not negative, over the elevation (OMI_environment_sky): from `horizon`
-/// up to `top` and down to `bottom`. The way there is 1 - (1 - e)^(1 / curve), where e is the part of the right angle
-/// between horizon and top or bottom: a curve of 1 is linear, with a smaller one the horizon is narrower.
+/// up to `top` and down to `bottom`. The weight of top or bottom is 1 - (1 - e)^(1 / curve), where e is the elevation
+/// as a part of the right angle. A curve of 1 is linear; a smaller one makes the horizon narrower.
 struct GradientSky {
   /// The colour at +Y.
   vec3 top{0.3F, 0.5F, 1.0F};
-  /// The colour of all that is level.
+  /// The colour at the horizon.
   vec3 horizon{0.8F, 0.8F, 0.9F};
   /// The colour at -Y.
   vec3 bottom{0.2F, 0.2F, 0.2F};
@@ -37,61 +37,60 @@ struct GradientSky {
   /// The curve from horizon to bottom, > 0 and finite.
   float bottom_curve = 0.02F;
 
-  /// Whether both look the same.
+  /// Returns whether both look the same.
   bool operator==(const GradientSky&) const = default;
 };
 
-/// A picture of all directions: the top row is at +Y, the middle of a row at -Z, a quarter to the right of it is +X,
-/// and equal steps in it are equal angles (equirectangular). Linear RGB, finite and not negative.
+/// An equirectangular picture of all directions: equal steps are equal angles. The top row lies at +Y, the middle of a
+/// row at -Z, and a quarter of the width to its right lies +X. Linear RGB, finite and not negative.
 struct Panorama {
-  /// The most pixels of a row.
+  /// The largest width in pixels.
   static constexpr uint32_t kMaxWidth = 16384;
-  /// The most rows.
+  /// The largest height in pixels.
   static constexpr uint32_t kMaxHeight = 8192;
 
-  /// Shared, because skies are copied; not null, and not empty.
+  /// Neither null nor empty. Shared, because skies are copied.
   std::shared_ptr<const Image> image;
 
-  /// Whether both show the same picture; one of the same pixels is another.
+  /// Returns whether both refer to the same image object; equal pixels are not enough.
   bool operator==(const Panorama&) const = default;
 };
 
-/// What the camera sees behind all: an even gradient over the height of the picture, which is shown as it is, without
-/// exposure and tone mapping (docs/model.md, "Backdrop").
+/// The background that the camera sees: a linear gradient over the height of the picture, displayed without exposure
+/// and tone mapping (docs/model.md, "Backdrop").
 struct Backdrop {
   /// The colour at the picture's upper edge, linear RGB, finite and not negative; 1 is the display's white.
   vec3 top{1.0F};
-  /// The colour at its lower edge, likewise.
+  /// The same at the lower edge.
   vec3 bottom{1.0F};
-  /// The factor by which mirrors and glass see it as light, finite and not negative.
+  /// Factor that turns its colours into radiance in mirrors and behind glass, finite and not negative.
   float radiance = 1.0F;
 
-  /// Whether both look the same.
+  /// Returns whether both look the same.
   bool operator==(const Backdrop&) const = default;
 };
 
-/// What there is beside objects and lights.
+/// The surroundings of the scene: everything except objects and lights.
 struct Environment {
-  /// Linear RGB, finite and not negative. Where there is no sky it is the radiance of all directions, as materials see
-  /// it; rays that leave the scene see the background.
+  /// Ambient light, linear RGB, finite and not negative. Without a sky it is the radiance that materials receive from
+  /// all directions; rays that leave the scene return the background.
   vec3 ambient{0.0F};
-  /// Linear RGB, finite and not negative: what a ray brings that leaves the scene. Black by default.
+  /// Radiance of rays that leave the scene, linear RGB, finite and not negative. Black by default.
   vec3 background{0.0F};
-  /// What surrounds the scene instead of ambient light; rays from the camera see the background all the same, unless
-  /// `shows_sky`.
+  /// The sky, which replaces ambient light. Camera rays still see the background unless `shows_sky` is set.
   std::variant<std::monostate, Studio, GradientSky, Panorama> sky{};
-  /// Whether rays from the camera see the sky after all, where there is one.
+  /// Whether camera rays see the sky, if there is one.
   bool shows_sky = false;
-  /// How far the sky is turned about +Y, radians, from +Z towards +X; finite.
+  /// Rotation of the sky about +Y from +Z towards +X, in radians, finite.
   float rotation = 0.0F;
-  /// A factor of the sky's radiance, finite and not negative.
+  /// Factor of the sky's radiance, finite and not negative.
   float intensity = 1.0F;
-  /// Takes the background's place in pictures without Aovs::alpha.
+  /// Replaces the background in pictures without Aovs::alpha.
   std::optional<Backdrop> backdrop{};
 
-  /// Whether a sky surrounds the scene.
+  /// Returns whether there is a sky.
   bool has_sky() const { return !std::holds_alternative<std::monostate>(sky); }
-  /// Whether the backdrop is what the camera sees.
+  /// Returns whether the camera sees the backdrop.
   bool shows_backdrop() const { return backdrop && !(shows_sky && has_sky()); }
 };
 }  // namespace promin

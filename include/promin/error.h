@@ -10,9 +10,9 @@
 
 namespace promin {
 
-/// What of the caller's choices a problem speaks of, for programs that have a name of their own for it, as an option.
+/// The caller's setting that a problem concerns. Programs use it to name their own option for that setting.
 enum class Setting {
-  /// Of none.
+  /// No setting.
   kNone,
   /// View::max_depth.
   kDepth,
@@ -24,7 +24,7 @@ enum class Setting {
   kTextureMemory,
 };
 
-/// One thing that is wrong, in words for people.
+/// Describes one problem in words for people.
 struct PROMIN_EXPORT Problem {
   /// What is wrong.
   std::string what;
@@ -32,21 +32,21 @@ struct PROMIN_EXPORT Problem {
   std::string where;
   /// What to do about it. May be empty.
   std::string cure;
-  /// What `where` or `cure` would have changed.
+  /// The setting that `where` or `cure` refers to.
   Setting setting = Setting::kNone;
 
-  /// "WHAT, WHERE; CURE" without the parts that are empty, in one line: control characters are question marks.
+  /// Returns "WHAT, WHERE; CURE" on one line, without empty parts. Control characters become question marks.
   std::string sentence() const;
 };
 
-/// Base of what promin throws; of the standard library's there is std::bad_alloc beside. what() is the first problem's
-/// sentence, with the count where there are several, and the others after it, each on an indented line of its own. Any
-/// thread may throw and catch it, across the border of a shared library too.
+/// Base class of promin's exceptions; promin also throws std::bad_alloc. what() is the sentence of the first problem
+/// and, if there are several, their number; the other sentences follow, each on an indented line. Any thread may throw
+/// and catch it, also across the boundary of a shared library.
 class PROMIN_EXPORT Error : public std::runtime_error {
  public:
   /// A failure for one reason.
   explicit Error(const Problem& problem) : Error(std::vector<Problem>{problem}) {}
-  /// A failure for several reasons, the first first.
+  /// A failure for several reasons.
   explicit Error(const std::vector<Problem>& problems);
 
   /// The reasons, at least one.
@@ -66,19 +66,19 @@ struct PROMIN_EXPORT InputError : Error {
   using Error::Error;
 };
 
-/// There is no usable Vulkan device, or none that was asked for; the programs exit with code 4.
+/// There is no usable Vulkan device, or the requested one is missing; the programs exit with code 4.
 struct PROMIN_EXPORT DeviceError : Error {
   using Error::Error;
 };
 
-/// Two pictures differ by more than was allowed; the programs exit with code 5.
+/// Two pictures differ by more than is allowed; the programs exit with code 5.
 struct PROMIN_EXPORT DifferenceError : Error {
   using Error::Error;
 };
 
-/// A ProgressCallback wanted an end (promin/progress.h). What was asked to do the work stays usable.
+/// A ProgressCallback returned false (promin/progress.h). The object that did the work stays usable.
 struct PROMIN_EXPORT Cancelled : Error {
-  /// Its one problem says no more than that.
+  /// Its only problem is the word "cancelled".
   Cancelled() : Error(Problem{"cancelled", "", ""}) {}
 };
 

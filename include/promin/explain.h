@@ -10,81 +10,81 @@
 
 namespace promin {
 
-/// A light at a point that it may light.
+/// A light's contribution at a hit point.
 struct ExplainedSource {
   /// Index into Scene::lights.
   uint32_t light = 0;
-  /// There is none where the light adds nothing, seen or not, and where nothing in the scene can throw a shadow.
+  /// Empty if the light contributes nothing even when unblocked, or if nothing in the scene can cast a shadow.
   std::optional<Ray> shadow_ray;
-  /// What the shadow ray met, not always the nearest; as Hit on a miss where it met nothing. Without a normal.
+  /// A hit of the shadow ray, not always the nearest, without a normal; a miss if the ray hits nothing.
   Hit blocker;
-  /// What the light adds to the light that the point sends; 0 where it is blocked.
+  /// The radiance that the light adds at the point; 0 if it is blocked.
   vec3 contribution{0.0F};
 
-  /// Whether its light reaches the point, be it through surfaces that blend.
+  /// Returns whether its light reaches the point, directly or through surfaces that blend.
   bool is_visible() const { return contribution != vec3(0.0F); }
 };
 
-/// Where a ray of a path comes from.
+/// The origin of a ray of a path.
 enum class RayKind : uint32_t {
   kCamera = 0,
   kReflection = 1,
   kRefraction = 2,
-  /// The same ray as its parent, from behind a surface that blends on.
+  /// The continuation of its parent behind a surface that blends.
   kThrough = 3,
 };
 
-/// A ray of the path: the camera's, that of the mirror at the hit before, or the same from behind that hit on.
+/// A ray of the path: the camera ray, a ray that left the previous hit, or the continuation of a ray behind its hit.
 struct ExplainedRay {
-  /// What the ray comes from.
+  /// The origin of the ray.
   RayKind kind = RayKind::kCamera;
-  /// The number in ExplainedSample::rays of the ray whose hit it leaves; of the camera's its own.
+  /// Index in ExplainedSample::rays of the ray whose hit it leaves; the camera ray has its own index.
   uint32_t parent = 0;
-  /// As traced: the largest component of its direction is in [1, 2), and t is in its units.
+  /// The ray as traced: the largest component of its direction is in [1, 2), and t is in units of that direction.
   Ray ray;
-  /// What it met. The members from `position` to `material` are of a hit alone.
+  /// The hit. The members from `position` to `material` are valid only if there is one.
   Hit hit;
-  /// The point that was hit, in the world.
+  /// The hit point in the world.
   vec3 position{0.0F};
-  /// A bound on the error of `position`; shadow and mirror rays start so far off the surface.
+  /// A bound on the error of `position`. Shadow and mirror rays start at this distance from the surface.
   float lift = 0.0F;
-  /// The unit normal that the point is shaded with; it faces the ray.
+  /// The unit shading normal, which faces the ray.
   vec3 shading_normal{0.0F};
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Weight of what is seen at its end: the product of the mirrors and the glass so far, and of what surfaces that
-  /// blend and media on the way leave.
+  /// Weight of the radiance at its hit: the product of the factors of mirrors, glass, surfaces that blend and media
+  /// along the path.
   vec3 weight{1.0F};
-  /// How much of what is behind it the hit covers, 0...1: the rest of the weight is the next ray's, which is this one
-  /// from behind the hit on. 1 unless the material blends.
+  /// Opacity of the hit, 0...1; 1 unless the material blends. The remainder of the weight goes to the next ray, which
+  /// continues this one behind the hit.
   float coverage = 1.0F;
-  /// Ambient and emitted light of the point; on a miss the background.
+  /// Ambient and emitted light of the point; the background on a miss.
   vec3 own{0.0F};
-  /// The lights at the point, in the scene's order.
+  /// The contributions of all lights, in the scene's order.
   std::vector<ExplainedSource> sources;
-  /// The path's sum up to here, to the bit in fp32: that of the ray before + coverage * weight * (own + contributions
-  /// in their order). With glass the environment in place of rays that were not followed comes before that.
+  /// The path's sum up to this ray, bit for bit in fp32: the sum of the previous ray + coverage * weight * (own +
+  /// contributions in their order). With glass, the environment is added first in place of rays that were not traced.
   vec3 radiance{0.0F};
 };
 
 /// The path of one sample.
 struct ExplainedSample {
-  /// The camera's ray, then those that follow from it, in the order in which they are summed: of the two that leave
-  /// glass the mirror's with all that follows from it, then the refracted. At least one.
+  /// The camera ray, then its secondary rays in the order of summation; at least one. At glass the reflected ray and
+  /// all its descendants come before the refracted one.
   std::vector<ExplainedRay> rays;
-  /// Light that the path brings to the sample: the last ray's sum.
+  /// Returns the radiance of the sample: the sum of the last ray.
   const vec3& radiance() const { return rays.back().radiance; }
 };
 
-/// Where a pixel's colour comes from.
+/// All rays and contributions that make up a pixel's colour.
 struct Explanation {
   /// Coordinates in the whole picture.
   uvec2 pixel{0};
-  /// In the order in which they are summed.
+  /// The samples in the order of summation.
   std::vector<ExplainedSample> samples;
-  /// Sum of the samples' radiances, to the bit.
+  /// Sum of the samples' radiances, bit for bit.
   vec3 sum{0.0F};
-  /// `sum` over the number of samples: what the picture has, to the bit.
+  /// `sum` divided by the number of samples: the picture's pixel, bit for bit.
   vec3 color{0.0F};
 };
 

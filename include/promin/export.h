@@ -2,6 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Marks what promin's shared libraries show; the rest of them is compiled hidden. Exceptions carry the mark because a
-/// program catches what the library throws only where both know the type by one name.
+/// Marks the symbols that promin's shared libraries export; all others are hidden. Exceptions are marked because a
+/// program can catch them only if it shares the type's symbol with the library.
 #define PROMIN_EXPORT __attribute__((visibility("default")))

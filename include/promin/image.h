@@ -17,35 +17,35 @@
 
 namespace promin {
 
-/// A linear RGB picture; row 0 is the top.
+/// A linear RGB picture. Row 0 is at the top.
 struct Image {
   /// Width and height.
   uvec2 size{0};
-  /// Row by row, size.x * size.y of them.
+  /// size.x * size.y pixels in row order.
   std::vector<vec3> pixels;
 
-  /// A pixel, x from the left and y from the top. Coordinates beyond the picture are not checked.
+  /// Returns a pixel; x counts from the left, y from the top. The coordinates are not checked.
   const vec3& at(uint32_t x, uint32_t y) const { return pixels[static_cast<size_t>(y) * size.x + x]; }
-  /// The same, to change.
+  /// The same for writing.
   vec3& at(uint32_t x, uint32_t y) { return pixels[static_cast<size_t>(y) * size.x + x]; }
 };
 
-/// A channel of a picture beside R, G and B, with a value for each pixel.
+/// A channel of a picture in addition to R, G and B, with a value for each pixel.
 struct Channel {
-  /// As the EXR names it: "Z", "N.X".
+  /// Its name in an EXR, e.g. "Z" or "N.X".
   std::string name;
-  /// Whether the values are integers of 32 bits and not floats.
+  /// Whether the values are 32-bit integers and not floats.
   bool is_integer = false;
-  /// The integers, or the bits of the floats; as many as the picture has pixels.
+  /// The integers, or the bits of the floats; one for each pixel.
   std::vector<uint32_t> values;
-  /// Whether it is there only to show the picture: an EXR leaves it out.
+  /// Whether the channel is only used to display the picture, so that an EXR leaves it out.
   bool is_hidden = false;
 };
 
-/// Name and value pairs that an EXR carries in its header, e.g. {"promin:scene", "showcase.gltf"}.
+/// Pairs of name and value in the header of an EXR, e.g. {"promin:scene", "showcase.gltf"}.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/// Where a crop lies in the whole picture.
+/// The position of a crop in the whole picture.
 struct CropPlacement {
   /// The crop's upper left pixel in the whole picture.
   uvec2 lo{0};
@@ -53,54 +53,57 @@ struct CropPlacement {
   uvec2 full_size{0};
 };
 
-/// Whether write_image knows the file's ending: .exr, .png, .jpg, .jpeg, .webp, .tif, .tiff or .hdr.
+/// Returns whether write_image supports the file's ending: .exr, .png, .jpg, .jpeg, .webp, .tif, .tiff or .hdr.
 PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 
-/// Whether a file of this ending holds channels beside R, G and B: .exr.
+/// Returns whether a file with this ending can store channels in addition to R, G and B: .exr.
 PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
-/// How an EXR is compressed, always without loss: kZip by blocks of 16 rows, kPiz of 32, kRle and kZips by rows. Where
-/// 16 rows have more than 8 MiB, kZip is kZips.
+/// The compression of an EXR, always lossless. kZip compresses blocks of 16 rows, kPiz blocks of 32, kRle and kZips
+/// single rows. kZip acts as kZips if 16 rows have more than 8 MiB.
 enum class ExrCompression : uint32_t { kNone, kRle, kZips, kZip, kPiz };
 
-/// Names for people, by the value of the ExrCompression.
+/// Returns names for people, indexed by ExrCompression.
 PROMIN_EXPORT std::span<const std::string_view> exr_compression_names();
 
-/// How an EXR keeps its numbers.
+/// Options for writing an EXR.
 struct ExrOptions {
-  /// Halves in place of floats for colours, normals and shares: off by 2^-11 of the value at most, 65504 at most.
-  /// Distances, places, errors and what tells one thing from another stay as they are.
+  /// Whether colours, normals and coverage are stored as 16-bit floats, with a relative error of at most 2^-11 and a
+  /// largest value of 65504. Distances, positions, errors and ids are not affected.
   bool is_half = false;
   /// See ExrCompression.
   ExrCompression compression = ExrCompression::kZip;
-  /// A part for each group of channels in place of one for all: some programs read single groups faster, and others
-  /// cannot read such files.
+  /// Whether each group of channels becomes a part of its own. Some programs read single groups faster, others cannot
+  /// read such files.
   bool is_multipart = false;
 };
 
-/// Writes .exr (R, G, B linear fp32, then `channels`, zip, with `metadata`; a crop is the data window of the whole
-/// picture's display window), .png (as `display` shows it, sRGB, 8 bit, clamped, without `channels` but for one named
-/// "A", by which the pixels are taken as multiplied, and those of Aovs::unlit, which are shown as they are; a crop is a
-/// picture of its own; it names the scene of `metadata`), .jpg and .jpeg (the same without "A", by libjpeg-turbo,
-/// quality 92, 4:4:4), .webp (with "A", by libwebp, quality 92), .tif and .tiff (with "A") or .hdr (R, G, B linear).
-/// Equal arguments give equal bytes. The last three kinds are written by the plugin for pictures. Atomic: the picture
-/// is written to a temporary file beside the target and renamed; on failure the target is as it was. Any thread may
-/// call it. Throws UsageError for another ending, for a picture without pixels and where the pixels, a channel's values
-/// or the crop do not suit the size; RunError where the file cannot be written.
+/// Writes a picture; the ending determines the format. An .exr stores R, G and B as linear fp32, then `channels`, with
+/// `metadata`; a crop is the data window inside the display window of the whole picture. A .png stores 8-bit sRGB,
+/// clamped, after the transform `display`. Of `channels` it uses only "A", by which the pixels are premultiplied, and
+/// those of Aovs::unlit, which are displayed unchanged. A crop becomes a picture of its own; `metadata` only provides
+/// the name of the scene. A .jpg or .jpeg is the same without "A" (libjpeg-turbo, quality 92, 4:4:4). A .webp (libwebp,
+/// quality 92), .tif or .tiff is the same with "A". A .hdr stores linear R, G and B. The plugin for pictures writes the
+/// last three formats. Equal arguments give equal bytes. The write is atomic: the picture is written to a temporary
+/// file beside the target, which is then renamed. After a failure the target is unchanged. Any thread may call this
+/// function. Throws UsageError for another ending, for a picture without pixels, and if the pixels, a channel's values
+/// or the crop do not match the size; throws RunError if the file cannot be written.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
                                std::span<const Channel> channels = {}, const DisplayTransform& display = {},
                                const ExrOptions& exr = {});
 
-/// The most pixels that read_image takes; larger pictures are refused before their pixels are read.
+/// The largest number of pixels that read_image accepts. It refuses larger pictures before it reads their pixels.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
-/// Reads R, G, B, or a luminance as all three, of any format OpenImageIO knows, as fp32 without conversion, not
-/// multiplied by alpha but of WebP and EXR; of an EXR the data window. Any thread may call it. Throws InputError where
-/// the file is no such picture, RunError where libpromin_pictures.so, the plugin that reads pictures, is missing.
+/// Reads a picture of any format that OpenImageIO supports: R, G and B, or a luminance for all three, as fp32 without
+/// conversion. It reads the data window of an EXR. Colours of WebP and EXR files are multiplied by alpha, others are
+/// not. Any thread may call this function. Throws InputError if the file is not such a picture, and RunError if the
+/// plugin that reads pictures, libpromin_pictures.so, is missing.
 PROMIN_EXPORT Image read_image(const std::filesystem::path& file);
 
-/// Linear light to the sRGB transfer curve, in double on the host (IEC 61966-2-1); clamps to [0, 1], NaN becomes 0.
+/// Returns linear light encoded by the sRGB transfer curve (IEC 61966-2-1), computed in double on the host. Clamps to
+/// [0, 1]; NaN becomes 0.
 PROMIN_EXPORT float encode_srgb(float linear);
 
 }  // namespace promin

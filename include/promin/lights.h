@@ -11,8 +11,8 @@
 
 namespace promin {
 
-/// Where a light comes from: kPoint, kDirectional, kSpot or kHeadlight, a directional light that shines along the view
-/// of whatever camera looks.
+/// The kind of a light: kPoint, kDirectional, kSpot or kHeadlight, a directional light that shines in the current
+/// camera's direction of view.
 enum class LightKind : uint32_t {
 /// @cond
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) ENUMERATOR = NUMBER,
@@ -20,44 +20,45 @@ enum class LightKind : uint32_t {
   /// @endcond
 };
 
-/// How a light's power falls with the distance d to the point that it lights.
+/// How a light's power decreases with the distance d to the lit point.
 enum class Attenuation {
-  /// Not at all: classic lights.
+  /// It does not decrease: classic lights.
   kNone,
-  /// As clamp(1 - (d / range)^4, 0, 1) / d^2: physical lights.
+  /// By the factor clamp(1 - (d / range)^4, 0, 1) / d^2: physical lights.
   kInverseSquare,
 };
 
-/// A light with its own diffuse and specular power. By default it is a classic point light of power 1 at the origin.
-/// validate() (promin/validate.h) checks the ranges that are given here.
+/// A light with separate diffuse and specular power. The default is a classic point light of power 1 at the origin.
+/// validate() (promin/validate.h) checks the ranges below.
 struct Light {
-  /// For people; empty where there is none.
+  /// A name for people; empty if there is none.
   std::string name;
-  /// Which of the members below count.
+  /// Determines which of the members below are used.
   LightKind kind = LightKind::kPoint;
-  /// Of point and spot lights: where they are in the world.
+  /// Position of point and spot lights in the world.
   vec3 position{0.0F};
-  /// Of directional and spot lights: unit vector in which the light travels.
+  /// Unit vector in which the light of directional and spot lights travels.
   vec3 direction{0.0F, 0.0F, -1.0F};
-  /// Linear RGB power in the diffuse term, finite and not negative; candela where the light falls off.
+  /// Power in the diffuse term, linear RGB, finite and not negative; in candela for lights with attenuation.
   vec3 diffuse{1.0F};
-  /// The same in the specular term.
+  /// The same for the specular term.
   vec3 specular{1.0F};
-  /// Of point and spot lights: none by default.
+  /// Attenuation of point and spot lights; none by default.
   Attenuation attenuation = Attenuation::kNone;
-  /// Distance beyond which a light that falls off brings nothing, in world units, > 0; infinite: no limit.
+  /// Distance beyond which a light with attenuation contributes nothing, in world units, > 0; infinite for no limit.
   float range = std::numeric_limits<float>::infinity();
-  /// Half angle of the cone in which a spot has its whole power, radians, from 0 on. Between it and the outer cone the
-  /// power falls as in KHR_lights_punctual. Where the angles' cosines are closer than 1e-5 (an outer angle under 0.0045
-  /// with inner 0) the spot brings less: fp32 cannot tell where in so narrow a cone a point is.
+  /// Half the angle of the cone in which a spot has its full power, in radians, >= 0. Between this and the outer cone
+  /// the power decreases as in KHR_lights_punctual. If the cosines of the angles differ by less than 1e-5 (an outer
+  /// angle below 0.0045 with inner 0), the spot is darker, because fp32 cannot resolve positions in so narrow a cone.
   float inner_cone_angle = 0.0F;
-  /// Half angle of the cone beyond which a spot brings nothing, radians, inner_cone_angle < outer_cone_angle <= pi / 2.
+  /// Half the angle of the cone outside of which a spot contributes nothing, in radians, inner_cone_angle <
+  /// outer_cone_angle <= pi / 2.
   float outer_cone_angle = 0.785398163F;
-  /// A light that is off keeps its number, costs nothing and brings nothing.
+  /// A light that is off keeps its index, costs nothing and contributes nothing.
   bool is_on = true;
 };
 
-/// The light of a scene without lights: a headlight of power 1 in both terms.
+/// Returns the light for scenes without lights: a headlight of power 1 in both terms.
 PROMIN_EXPORT Light make_headlight();
 
 }  // namespace promin

@@ -10,28 +10,28 @@
 
 namespace promin {
 
-/// How a scene is read.
+/// Options for reading a scene.
 struct LoadOptions {
-  /// Whether a file is refused for anything that its format forbids, and for each extension that it requires and promin
-  /// does not know (glTF 2.0, section 3.12). Otherwise geometry that can be drawn is drawn: a fault of what only
-  /// colours, shades, views or lights it costs one warning (docs/usage.md, "What is read").
+  /// Whether to refuse a file that breaks any rule of its format or requires an extension that promin does not know
+  /// (glTF 2.0, section 3.12). Otherwise all geometry that can be drawn is drawn, and a fault in its colours, shading,
+  /// cameras or lights only causes a warning (docs/usage.md, "What is read").
   bool is_strict = false;
-  /// A folder besides the scene's own in which files may lie that the scene names, links resolved; empty: none. It
-  /// widens what a trusted scene may read: files whose links lead into a store, textures in "../textures".
+  /// A further folder, besides the scene's own, whose files the scene may refer to; links are resolved first. Empty for
+  /// none. A trusted scene may thus read files that are links into a store, or textures in "../textures".
   std::filesystem::path root = {};
-  /// The variant of materials that is shown (KHR_materials_variants), one of Scene::variants; empty: the materials that
-  /// hold without any.
+  /// The material variant to use (KHR_materials_variants), one of Scene::variants; empty for the file's default
+  /// materials.
   std::string material_variant = {};
-  /// Whether images of materials get their texels. Without them only their sizes are read, from the heads of their
-  /// files: enough to tell what a scene holds, in a fraction of the time. OBJ files have them always, because some of
-  /// their images are made of the texels of two pictures.
+  /// Whether to decode the texels of images. Otherwise only their sizes are read from the file headers, which is enough
+  /// to describe a scene and takes a fraction of the time. Images of OBJ files are always decoded, because some of them
+  /// combine the texels of two pictures.
   bool decodes_images = true;
 };
 
-/// Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. The scene comes back valid (promin/validate.h).
-/// A scene without lights stays without, see light_scene (promin/lighting.h). Throws InputError with every problem
-/// found, each with place and cure, and UsageError where it has no such variant of materials or the root is no folder;
-/// warnings lie in Scene::warnings. Any thread may call it.
+/// Reads a scene file; its ending determines the format: .gltf, .glb, .obj, .ply, .stl or .nff. Returns a valid scene
+/// (promin/validate.h). No lights are added to a scene without lights, see light_scene (promin/lighting.h). Warnings
+/// are stored in Scene::warnings. Throws InputError with all problems found, each with place and cure, and UsageError
+/// if the material variant does not exist or the root is not a folder. Any thread may call this function.
 PROMIN_EXPORT Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace promin

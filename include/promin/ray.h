@@ -9,23 +9,23 @@
 
 namespace promin {
 
-/// The points origin + t * direction with tmin < t < tmax, in the world. The direction has any length but 0, and t is
-/// in its units. A negative tmin, -infinity too, counts as 0; tmax may be infinite. NaN anywhere, an infinity elsewhere
-/// or an origin beyond 10^38 makes a ray that misses everything.
+/// The points origin + t * direction with tmin < t < tmax, in the world. The direction has any length except 0, and t
+/// is in units of that length. A negative tmin, including -infinity, counts as 0; tmax may be infinite. A ray misses
+/// everything if it contains a NaN or another infinity, or if its origin lies beyond 10^38.
 struct Ray {
-  /// Where t is 0.
+  /// The point at t = 0.
   vec3 origin{0.0F};
-  /// Hits at this t and before are none.
+  /// Only hits with a larger t count.
   float tmin = 0.0F;
-  /// The unit of t; a ray with the default of 0 misses everything.
+  /// The unit of t. A ray with the default of 0 misses everything.
   vec3 direction{0.0F};
-  /// Hits at this t and beyond are none.
+  /// Only hits with a smaller t count.
   float tmax = std::numeric_limits<float>::infinity();
 };
 
-/// The answer to a ray. To a HitQuery::kAny ray only t: 0 on a hit, infinite on a miss.
+/// The result of casting a ray. For HitQuery::kAny only t is set: 0 on a hit, infinite on a miss.
 struct Hit {
-  /// Where on the ray, in units of its direction; infinite on a miss.
+  /// The ray's parameter at the hit, in units of its direction; infinite on a miss.
   float t = std::numeric_limits<float>::infinity();
   /// Index into Scene::objects; -1 on a miss.
   int32_t object = -1;
@@ -40,16 +40,16 @@ struct Hit {
   vec3 normal{0.0F};
 };
 
-// As they lie in RAYS.npy and HITS.npy.
+// The layout is that of RAYS.npy and HITS.npy.
 static_assert(sizeof(Ray) == 32 && sizeof(Hit) == 32);
 
-/// What is asked of a ray.
+/// The question that a ray answers.
 enum class HitQuery {
-  /// The hit with the least t; of several at the same t the one with the lower (object, primitive).
+  /// The hit with the smallest t; of several with the same t the one with the lower (object, primitive).
   kNearest,
-  /// Whether there is any hit (occlusion), which is answered faster.
+  /// Whether there is any hit (occlusion); this is faster.
   kAny,
-  /// How many crossings the ray has with all primitives (Caster::count).
+  /// The number of crossings with all primitives (Caster::count).
   kCount,
   /// All of these crossings (Caster::list).
   kAll,

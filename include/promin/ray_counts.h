@@ -6,25 +6,25 @@
 
 namespace promin {
 
-/// How many rays a picture took.
+/// Numbers of rays that a picture took.
 struct RayCounts {
-  /// From the camera.
+  /// Camera rays.
   uint64_t primary = 0;
-  /// To lights.
+  /// Rays to lights.
   uint64_t shadow = 0;
-  /// From mirrors.
+  /// Mirror rays.
   uint64_t reflection = 0;
-  /// Through the faces of glass.
+  /// Rays refracted at the faces of glass.
   uint64_t refraction = 0;
-  /// How often any of these went on behind a surface: one that blends (AlphaMode::kBlend), and shadow rays through
+  /// How often any of these rays continued behind a surface that blends (AlphaMode::kBlend), or as shadow rays through
   /// glass.
   uint64_t passed = 0;
-  /// How many of the camera's have met something.
+  /// Camera rays that hit something.
   uint64_t primary_hits = 0;
-  /// All rays, each once, however often it went through a surface.
+  /// Returns the number of all rays. A ray counts once even if it continues behind surfaces.
   uint64_t total() const { return primary + shadow + reflection + refraction; }
 
-  /// Adds those of another picture.
+  /// Adds the rays of another picture.
   RayCounts& operator+=(const RayCounts& other) {
     primary += other.primary;
     shadow += other.shadow;

@@ -21,95 +21,95 @@
 
 namespace promin {
 
-/// A geometry in its place, with a material. Its index in Scene::objects is the number that hits and AOVs give.
+/// A geometry with a transform and a material. Hits and AOVs identify it by its index in Scene::objects.
 struct Object {
-  /// The `geometry` of an object that shows none.
+  /// The value of `geometry` for an object without geometry.
   static constexpr uint32_t kNoGeometry = std::numeric_limits<uint32_t>::max();
 
-  /// For people; empty where there is none.
+  /// A name for people; empty if there is none.
   std::string name;
-  /// Index into Scene::geometries, which several objects may share. kNoGeometry: nothing is drawn, the object only
-  /// takes its number (points, lines, something hidden).
+  /// Index into Scene::geometries; several objects may share a geometry. kNoGeometry draws nothing and only reserves
+  /// the object's index (for points, lines or hidden objects).
   uint32_t geometry = kNoGeometry;
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Affine, not singular; the identity by default. A shape must keep its form under it (promin/shapes.h says how);
-  /// meshes take any that is not singular.
+  /// Affine and not singular; the identity by default. It must not distort an analytic shape (see promin/shapes.h); a
+  /// mesh allows any such matrix.
   dmat4 world_from_object{1.0};
 };
 
-/// An extension of the format that a scene's file has.
+/// A format extension that a scene's file uses.
 struct FileExtension {
-  /// As "KHR_materials_ior".
+  /// Its name, e.g. "KHR_materials_ior".
   std::string name;
-  /// Whether the scene has what it says, or is as without it.
+  /// Whether promin applies the extension or ignores it.
   bool is_used = true;
-  /// Whether the file says that it cannot be shown without.
+  /// Whether the file declares it as required.
   bool is_required = false;
 };
 
-/// A description of what is to be rendered, in a world whose unit of length is anything. It has no tree and nothing of
-/// a device. Renderer and Caster read it while they are made and keep nothing of it: a later change takes effect by
-/// Renderer::set_lights and its like, or with a new Renderer. load_scene gives a valid scene, validate() checks any
-/// other. As any plain value it may be read by several threads while none changes it.
+/// A description of the objects, materials, lights and cameras to render. The world's unit of length is arbitrary. A
+/// Scene has neither a tree nor device data. The constructors of Renderer and Caster read it and keep no reference to
+/// it: later changes take effect through Renderer::set_lights and similar functions, or in a new Renderer. load_scene
+/// returns a valid scene; validate() checks any other. Several threads may read a Scene while none changes it.
 struct Scene {
-  /// Where it was read from; empty for a scene made in memory.
+  /// The file that it was read from; empty for a scene made in memory.
   std::filesystem::path file;
-  /// Where the origin of the scene lies in the world: places in the scene are those in the world less this, which was
-  /// subtracted in double. load_scene moves what lies so far from the world's origin that fp32 is too coarse for it;
-  /// 0 otherwise. Nothing but the programs and Python's module adds it.
+  /// The world coordinates of the scene's origin. Positions in the scene are world positions minus this, subtracted in
+  /// double. load_scene sets it for scenes so far from the world's origin that fp32 is too coarse; else it is 0. Only
+  /// the programs and the Python module add it back.
   dvec3 center{0.0};
-  /// What objects are made of, each once.
+  /// The geometries of the objects, each stored once.
   std::vector<Geometry> geometries;
-  /// What is in the scene, in the order that hits and AOVs number.
+  /// The objects in the order by which hits and AOVs number them.
   std::vector<Object> objects;
-  /// The number that the file has for each object, where one object of the file is several here, as in NFF; promin's
-  /// commands show these. Empty where the file numbers objects as they lie here.
+  /// For each object its number in the file, if one object of the file becomes several here, as in NFF; promin's
+  /// commands print these numbers. Empty if the file numbers its objects as they are here.
   std::vector<uint32_t> object_numbers;
-  /// Not empty where there are objects with a geometry.
+  /// The materials; not empty if there are objects with a geometry.
   std::vector<Material> materials;
-  /// What textures show; shared, because images are large. Not null.
+  /// The images of textures. Not null; shared, because images are large.
   std::vector<std::shared_ptr<const TextureImage>> images;
-  /// What materials name.
+  /// The textures that materials refer to.
   std::vector<Texture> textures;
-  /// Any number, none too: see light_scene (promin/lighting.h) and add_default_lights.
+  /// Any number of lights, including 0: see light_scene (promin/lighting.h) and add_default_lights.
   std::vector<Light> lights;
-  /// In depth-first order of the nodes that carry them. Empty where the file has none: see frame_scene
-  /// (promin/framing.h).
+  /// The cameras in depth-first order of their nodes. Empty if the file has none: see frame_scene (promin/framing.h).
   std::vector<Camera> cameras;
   /// Ambient light and background.
   Environment environment;
-  /// Whether it was written for classic light: an NFF file, or a glTF file all of whose materials are Phong's as
-  /// written (PROMIN_materials_phong). Without lights such a scene gets a headlight, any other a studio.
+  /// Whether the scene was made for classic light: an NFF file, or a glTF file whose materials are all declared as
+  /// Phong materials (PROMIN_materials_phong). If it has no lights, such a scene gets a headlight and any other a
+  /// studio.
   bool is_classic = false;
-  /// The names of the variants of materials that the file has (LoadOptions::material_variant).
+  /// Names of the file's material variants (LoadOptions::material_variant).
   std::vector<std::string> variants;
-  /// The extensions of the file, in its order; empty for a format that has none.
+  /// The extensions of the file in its order; empty for formats without extensions.
   std::vector<FileExtension> extensions;
-  /// What the file asks for and the renderer does not model, and what it assumed instead; one sentence each.
+  /// Features of the file that the renderer does not model, and the assumptions made instead; one sentence each.
   std::vector<std::string> warnings;
 
-  /// Adds a geometry and an object that shows it, with the material of this index. The reference is valid until objects
-  /// are added or removed.
+  /// Adds a geometry and an object that uses it, with the material of this index. Returns the object; the reference is
+  /// valid until objects are added or removed.
   PROMIN_EXPORT Object& add(std::string name, Geometry geometry, uint32_t material = 0,
                             const dmat4& world_from_object = dmat4(1.0));
 };
 
-/// Bounds of everything finite in the world; empty if there is nothing finite. Throws InputError where an object or a
-/// triangle names what is not there.
+/// Returns the bounds in the world of everything finite; empty if there is nothing finite. Throws InputError if an
+/// object refers to a geometry, or a triangle to a position, that does not exist.
 PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 
-/// Number of an object's primitives: that of its geometry, or 0 where it has none. Throws InputError where the object
-/// names a geometry that is not there.
+/// Returns the number of an object's primitives: that of its geometry, or 0 without one. Throws InputError if the
+/// object refers to a geometry that does not exist.
 PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
 
-/// The number that the scene's file has for the object at this index (Scene::object_numbers).
+/// Returns the number of the object at this index in the scene's file (Scene::object_numbers).
 PROMIN_EXPORT uint32_t object_number(const Scene& scene, uint32_t object);
 
-/// The bounces that show a scene well (View::max_depth): more where it has glass.
+/// Returns the number of bounces that suits a scene (View::max_depth); it is larger for scenes with glass.
 PROMIN_EXPORT uint32_t default_max_depth(const Scene& scene);
 
-/// What add_default_lights has added.
+/// The lights that add_default_lights has added.
 struct AddedLights {
   /// Whether a headlight was added.
   bool has_headlight = false;
@@ -117,8 +117,8 @@ struct AddedLights {
   bool has_ambient = false;
 };
 
-/// Gives a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient light
-/// of kDefaultAmbient where it has none. A scene with lights or with a sky stays as it is.
+/// Adds to a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient
+/// light of kDefaultAmbient if it has none. A scene with lights or a sky does not change.
 PROMIN_EXPORT AddedLights add_default_lights(Scene& scene);
 /// Each component of the ambient light that add_default_lights adds.
 inline constexpr float kDefaultAmbient = 0.1F;

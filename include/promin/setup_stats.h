@@ -13,29 +13,29 @@
 
 namespace promin {
 
-/// Names of the builders of bounding volume hierarchies, the default first.
+/// Returns the names of the builders of bounding volume hierarchies, the default first.
 PROMIN_EXPORT std::span<const std::string_view> builder_names();
 
-/// A bounding volume hierarchy in figures.
+/// Statistics of a bounding volume hierarchy.
 struct BvhStats {
-  /// Which of builder_names() built it.
+  /// The builder, one of builder_names().
   std::string builder;
-  /// Nodes of the binary tree, leaves among them.
+  /// Number of nodes of the binary tree, including leaves.
   uint64_t nodes = 0;
-  /// Nodes that hold primitives.
+  /// Number of leaves.
   uint64_t leaves = 0;
-  /// Nodes on the longest way from the root to a leaf, both counted; 0 for an empty tree.
+  /// Number of nodes on the longest path from the root to a leaf, including both; 0 for an empty tree.
   uint32_t depth = 0;
-  /// Most primitives in a leaf.
+  /// The largest number of primitives in a leaf.
   uint32_t max_leaf_size = 0;
-  /// Expected cost of a random ray that meets the root, by the surface area heuristic (Goldsmith & Salmon 1987): a sum
-  /// over the inner nodes that it visits and the primitives that it tests.
+  /// Expected cost of a random ray that hits the root, by the surface area heuristic (Goldsmith & Salmon 1987): a
+  /// weighted sum of the inner nodes that it visits and the primitives that it tests.
   double sah_cost = 0.0;
-  /// Its size on the device; 0 until it is uploaded.
+  /// Its size in bytes on the device; 0 before it is uploaded.
   uint64_t bytes = 0;
 };
 
-/// What setting a scene up on a device cost and made.
+/// Cost and results of setting up a scene on a device.
 struct SetupStats {
   /// Milliseconds of building the tree, or of reading and checking its file.
   double bvh_ms = 0.0;
@@ -47,23 +47,23 @@ struct SetupStats {
   BvhStats bvh;
   /// Size of the scene in device memory.
   uint64_t device_bytes = 0;
-  /// Names for people of the features that the pipeline is specialised to.
+  /// Names for people of the features that the pipeline is specialised for.
   std::vector<std::string> features;
-  /// Triangles without area, which are never hit.
+  /// Number of triangles without area, which are never hit.
   uint64_t degenerate_triangles = 0;
-  /// What is shown otherwise than the scene has it, and what would help.
+  /// Parts of the scene that are shown differently than described, with cures.
   std::vector<Problem> warnings;
 };
 
-/// Counts of what takes long. Their differences tell what a change of the scene took.
+/// Counts of expensive work. Differences of two counts show the cost of a change of the scene.
 struct WorkDone {
-  /// Bounding volume hierarchies built; one taken from a file is none.
+  /// Number of trees built; trees read from a file do not count.
   uint64_t trees_built = 0;
-  /// Bytes of nodes, primitives and surfaces.
+  /// Uploaded bytes of nodes, primitives and surfaces.
   uint64_t geometry_bytes_uploaded = 0;
-  /// Bytes of materials and lights.
+  /// Uploaded bytes of materials and lights.
   uint64_t shading_bytes_uploaded = 0;
-  /// Pipelines that the device compiled, for others that use it too.
+  /// Number of pipelines that the device compiled, including those for other users of the device.
   uint64_t pipelines_compiled = 0;
 };
 

@@ -12,24 +12,24 @@
 
 namespace promin {
 
-/// Coordinates and sizes in the world beyond this are refused, because fp32 would overflow.
+/// The largest coordinate and size in the world. Larger ones are refused, because fp32 would overflow.
 inline constexpr double kMaxCoordinate = 1e15;
-/// Sizes in the world under this are refused, because fp32 would underflow.
+/// The smallest size in the world. Smaller ones are refused, because fp32 would underflow.
 inline constexpr double kMinSize = 1e-22;
 
-/// Everything that is wrong with a scene built in memory, each with its place ("objects[3].material") and its cure;
-/// empty for a valid one. What load_scene returns is valid. Of arrays of vertices the first wrong element is told.
+/// Returns all problems of a scene, each with its place ("objects[3].material") and its cure; empty for a valid scene.
+/// Scenes from load_scene are valid. For arrays of vertices only the first wrong element is reported.
 PROMIN_EXPORT std::vector<Problem> validate(const Scene& scene);
-/// The same of lights alone.
+/// Does the same for lights.
 PROMIN_EXPORT std::vector<Problem> validate(std::span<const Light> lights);
-/// The same of materials alone.
+/// Does the same for materials.
 PROMIN_EXPORT std::vector<Problem> validate(std::span<const Material> materials);
-/// The same of ambient light and background alone.
+/// Does the same for ambient light and background.
 PROMIN_EXPORT std::vector<Problem> validate(const Environment& environment);
-/// Everything in which a view breaks the rules of promin/view.h: what render() throws UsageError for.
+/// Returns all problems of a view: the rules of promin/view.h that it breaks, for which render() throws UsageError.
 PROMIN_EXPORT std::vector<Problem> validate(const View& view);
 
-/// Throws InputError with all that validate() finds, if it finds anything.
+/// Throws InputError with all problems that validate() finds, if any.
 template <class Part>
 void throw_if_invalid(const Part& part) {
   if (const std::vector<Problem> problems = validate(part); !problems.empty()) throw InputError(problems);

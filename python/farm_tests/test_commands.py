@@ -58,7 +58,7 @@ def test_a_scene_or_a_job_in_a_wrong_place_is_answered_with_the_command(farm: Fa
 
 def test_frames_need_files_of_their_own_and_outputs_a_folder(farm: Farm) -> None:
     farm.write_scene(4, names="frames")
-    assert "put #### where their numbers go" in farm.render(code=2)
+    assert "write #### in its name for the number of a frame" in farm.render(code=2)
     words = ("render", farm.scene, "-o", "nowhere/out.####.exr", "--job", farm.job)
     assert "cannot write to the folder" in farm.run(*words, code=1)
     assert not farm.events("begun")

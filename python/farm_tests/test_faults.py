@@ -117,7 +117,7 @@ def test_folders_of_other_versions_are_refused(farm: Farm) -> None:
     manifest = farm.job / "job.json"
     manifest.write_text(manifest.read_text().replace('"fake_job": 1', '"fake_job": 9'))
     for command in ("resume", "work"):
-        assert "is a job of another version" in farm.run(command, farm.job, code=3)
+        assert "the job was made by another version of promin" in farm.run(command, farm.job, code=3)
     assert "there is no job in the folder" in farm.run("resume", farm.root, code=3)
 
 

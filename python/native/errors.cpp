@@ -47,7 +47,8 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
 
 }  // namespace
 
-ForkError::ForkError() : std::runtime_error("opened before a fork; open it in the child or start with spawn") {}
+ForkError::ForkError()
+    : std::runtime_error("the device was opened before a fork; open it in the child or start with spawn") {}
 
 void register_errors() {
   nb::register_exception_translator(translate);

@@ -89,7 +89,7 @@ class Reader {
   void field(const std::string& name, std::shared_ptr<const Image>& value) const {
     PictureArray pixels;
     if (!nb::try_cast(find(name), pixels, false)) {
-      throw UsageError({name + " is no array of (rows, columns, 3) float32", "", ""});
+      throw UsageError({name + " is not an array of (rows, columns, 3) float32", "", ""});
     }
     value = std::make_shared<const Image>(read_image_array(pixels));
   }

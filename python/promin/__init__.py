@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""promin: a Whitted ray tracer in Vulkan compute shaders, for NumPy.
+"""promin renders 3D scenes and casts rays at them, with NumPy arrays, on any Vulkan device.
 
     import promin
 
     promin.render("scene.gltf", size=640).save("picture.png")
     hits = promin.Caster("scene.gltf").cast(origins, directions)
 
-Importing it needs no Vulkan driver. docs/python.md tells the rest."""
+Importing the package needs no Vulkan driver. docs/python.md describes all of it."""
 
 from promin._arrays import HIT_DTYPE, Hits, RaysLike, positions
 from promin._caster import Caster, Progress

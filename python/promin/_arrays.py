@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays as the device takes them: rays rounded to float32 once, hits as they lie in HITS.npy."""
+"""Arrays in the layout that the device uses: rays rounded to float32 once, hits as in HITS.npy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HIT_DTYPE = np.dtype(
 
 
 class Hits(np.ndarray[Any, np.dtype[Any]]):
-    """An array of HIT_DTYPE that shows itself in one line. Its fields are plain arrays."""
+    """An array of HIT_DTYPE whose repr is one line. Its fields are plain arrays."""
 
     def __getitem__(self, key: Any) -> Any:
         part = super().__getitem__(key)
@@ -48,22 +48,22 @@ or (origins, directions, tmin, tmax), whose leading shapes are broadcast, with t
 
 
 _RAYS_A_PART = 2**15
-"""So many rays a thread packs at a time: with what they are made of they lie in its core's cache."""
+"""Number of rays that a thread packs at a time: they and their sources fit into the core's cache."""
 
 
 def to_numbers(value: object, what: str) -> NDArray[Any]:
-    """An array of real numbers; float32 and float64 stay what they are, all else becomes float64."""
+    """Returns an array of real numbers. float32 and float64 keep their type; all others become float64."""
     try:
         array = np.asarray(value)
         if array.dtype.kind in "biuf":
             return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise UsageError(f"{what} are no array of numbers ({error})") from None
+        raise UsageError(f"{what} are not an array of numbers ({error})") from None
     raise UsageError(f"{what} are of {array.dtype}, not real numbers")
 
 
 def to_vectors(value: object, what: str, width: int = 3) -> NDArray[Any]:
-    """Numbers whose last axis has this width."""
+    """Returns numbers whose last axis has this width."""
     array = to_numbers(value, what)
     if array.ndim == 0 or array.shape[-1] != width:
         raise UsageError(f"{what} have the shape {array.shape}; give (..., {width})")
@@ -71,7 +71,7 @@ def to_vectors(value: object, what: str, width: int = 3) -> NDArray[Any]:
 
 
 def round_once(array: NDArray[Any]) -> Float32s:
-    """To float32, silently: what is beyond it becomes infinite."""
+    """Rounds to float32 without a warning; numbers beyond its range become infinite."""
     with np.errstate(over="ignore", invalid="ignore"):
         return np.ascontiguousarray(array, dtype=np.float32)
 
@@ -79,20 +79,24 @@ def round_once(array: NDArray[Any]) -> Float32s:
 def join_rays(
     rays: RaysLike, directions: ArrayLike | None, tmin: ArrayLike | None, tmax: ArrayLike | None
 ) -> object:
-    """Rays in one of the forms of RaysLike, of arguments that may hold each part by itself. Raises UsageError."""
+    """Combines arguments that may hold each part of rays separately into one of the forms of RaysLike. Raises
+    UsageError."""
     if directions is None and tmin is None and tmax is None:
         return rays
     if directions is None and isinstance(rays, tuple) and len(rays) == 2:
         rays, directions = rays
     if directions is None:
-        raise UsageError("tmin and tmax go with origins and directions; give (origins, directions, tmin=..., tmax=...)")
+        raise UsageError("tmin and tmax need origins and directions; give (origins, directions, tmin=..., tmax=...)")
     if isinstance(rays, tuple) and len(rays) != 3:
-        raise UsageError("rays is a tuple beside directions; give it alone, or origins (..., 3) and directions (..., 3)")
+        raise UsageError(
+            "rays is a tuple, but directions are given too; "
+            "give only the tuple, or origins (..., 3) and directions (..., 3)"
+        )
     return rays, directions, 0.0 if tmin is None else tmin, np.inf if tmax is None else tmax
 
 
 def split_rays(rays: object) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Origins, tmin, directions and tmax of rays in either form; the leading shapes may differ."""
+    """Returns origins, tmin, directions and tmax of rays in either form. Their leading shapes may differ."""
     if isinstance(rays, tuple) and 2 <= len(rays) <= 4 and not np.isscalar(rays[0]):
         origins = to_vectors(rays[0], "origins")
         directions = to_vectors(rays[1], "directions")
@@ -104,7 +108,7 @@ def split_rays(rays: object) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], 
 
 
 def to_whole_rays(rays: object) -> NDArray[Any]:
-    """Numbers (..., 8). Raises UsageError."""
+    """Returns rays as one array (..., 8). Raises UsageError."""
     array = to_numbers(rays, "rays")
     if array.ndim == 0 or array.shape[-1] != 8:
         points = "these are points without directions; " if array.ndim and array.shape[-1] == 3 else ""
@@ -116,8 +120,8 @@ def to_whole_rays(rays: object) -> NDArray[Any]:
 
 
 def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]]:
-    """Rays as (n, 8) float32 in C order, with the center taken off their origins in float64 before all is rounded; and
-    their leading shape. An array that is so already is not copied."""
+    """Returns rays as (n, 8) float32 in C order, and their leading shape. The center is subtracted from the origins in
+    float64 before they are rounded. An array that needs no change is not copied."""
     is_moved = bool(center.any())
     if isinstance(rays, np.ndarray) and rays.dtype == np.float32 and not is_moved:
         array = to_whole_rays(rays)
@@ -127,8 +131,8 @@ def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]
         shape = np.broadcast_shapes(origins.shape[:-1], directions.shape[:-1], tmin.shape, tmax.shape)
     except ValueError:
         raise UsageError(
-            f"origins {origins.shape}, directions {directions.shape}, tmin {tmin.shape} and tmax {tmax.shape} do not "
-            "go together; their leading shapes must broadcast"
+            f"origins {origins.shape}, directions {directions.shape}, tmin {tmin.shape} and tmax {tmax.shape} "
+            "have different shapes; their leading shapes must broadcast"
         ) from None
     packed = np.empty((*shape, 8), np.float32)
     origins, directions = np.broadcast_to(origins, (*shape, 3)), np.broadcast_to(directions, (*shape, 3))
@@ -149,8 +153,8 @@ def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]
 
 
 def _for_each_part(shape: tuple[int, ...], task: Callable[[tuple[slice, ...]], None]) -> None:
-    """Calls task(part) for parts of an array that together are all of it, cut along its longest axis. Large ones go to
-    threads, as many as there are cores: NumPy lets Python's lock go where it copies."""
+    """Divides an array along its longest axis and calls task(part) for each part. Parts of a large array run on
+    threads, one per core, because NumPy releases Python's lock while it copies."""
     count = math.prod(shape)
     if count <= _RAYS_A_PART:
         task(())
@@ -159,18 +163,18 @@ def _for_each_part(shape: tuple[int, ...], task: Callable[[tuple[slice, ...]], N
     length = max(1, _RAYS_A_PART * shape[axis] // count)
     parts = [axis * (slice(None),) + (slice(at, at + length),) for at in range(0, shape[axis], length)]
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        # What a part raises is raised here.
+        # Raises here what a part has raised.
         for _ in threads.map(task, parts):
             pass
 
 
 def positions(rays: RaysLike, hits: NDArray[Any]) -> Float64s:
-    """Where rays hit, in float64: origin + t * direction of the rays as they were given.
+    """Returns the hit points in float64: origin + t * direction of the rays as given.
 
-    rays: as `Caster.cast` took them. hits: (...) what it answered. Returns (..., 3), NaN on a miss. The hit's t is a
-    float32, so a position is off by up to 2^-24 of the way along the ray and the bound on hits (docs/accuracy.md);
-    `promin.compat.trimesh` and `Scene.positions` set it on the plane of the triangle. Raises UsageError where the
-    shapes do not suit."""
+    rays: as passed to `Caster.cast`. hits: (...) as it returned them. Returns (..., 3), NaN on a miss. The hit's t is a
+    float32, so the error of a point is up to 2^-24 of the distance along the ray plus the bound on hits
+    (docs/accuracy.md). `promin.compat.trimesh` and `Scene.positions` put it on the plane of the triangle. Raises
+    UsageError if the shapes do not match."""
     origins, _, directions, _ = split_rays(rays)
     hits = check_hits(hits)
     t = np.where(hits["object"] >= 0, hits["t"].astype(np.float64), np.nan)
@@ -181,7 +185,7 @@ def positions(rays: RaysLike, hits: NDArray[Any]) -> Float64s:
 
 
 def check_hits(hits: object) -> NDArray[Any]:
-    """An array of HIT_DTYPE."""
+    """Returns the hits if they are an array of HIT_DTYPE."""
     if not isinstance(hits, np.ndarray) or hits.dtype != HIT_DTYPE:
-        raise UsageError("hits are no array of promin.HIT_DTYPE; give what Caster.cast answered")
+        raise UsageError("hits are not an array of promin.HIT_DTYPE; give the array that Caster.cast returned")
     return hits

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Rays in, hits out."""
+"""Casting rays at a scene."""
 
 from __future__ import annotations
 
@@ -22,20 +22,21 @@ from promin._scene import Scene, SceneLike, to_scene
 PROBE = np.array((0.4375, 0.625, 0.65625), np.float32)
 """The direction of rays that find what is inside: no component is small or a simple ratio of another."""
 _RAYS_AT_A_TIME = 2**20
-"""As many as the library asks for at a time."""
+"""The number of rays that the library requests at a time."""
 
 Progress = Union[Callable[[float], object], None]
-"""Is told the fraction that is done about twenty times a second, on the caller's thread; where it returns False the
-call ends with `promin.Cancelled`, and where it raises with that."""
+"""Receives the fraction that is done about twenty times a second, on the caller's thread. If it returns False, the call
+raises `promin.Cancelled`; if it raises an exception, the call raises that."""
 
 
 class Caster:
-    """A scene on a device that answers rays.
+    """Casts rays at a scene on a device.
 
-    Making one builds a bounding volume hierarchy. The scene may change afterwards: the Caster keeps what it was. Any
-    threads may use it, one at a time; without Python's lock, so others run meanwhile. Ctrl-C ends a call before its
-    next dispatch and leaves the Caster usable. It is pickled as scene, options and choice of device, and opens these at
-    its first use. After a fork, use raises RuntimeError in the child."""
+    The constructor builds a bounding volume hierarchy. The scene may change afterwards; the Caster keeps its own
+    snapshot. Any thread may use a Caster, one at a time. It releases Python's lock, so other threads run meanwhile.
+    Ctrl-C ends a call before its next dispatch and leaves the Caster usable. A pickled Caster holds the scene, the
+    options and the choice of the device, and opens them at its first use. After a fork, every use in the child raises
+    RuntimeError."""
 
     _opened: tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]] | None
 
@@ -49,8 +50,8 @@ class Caster:
         progress: Progress = None,
     ) -> None:
         """device: a Device, a part of a name, an index, or None for the default one. bvh: a file of `promin-bvh build`
-        to take the tree from. builder: "sah", "median" or "spatial"; hits are the same. Raises UsageError, InputError
-        for a scene that is not valid, DeviceError, RunError, Cancelled."""
+        to read the tree from. builder: "sah", "median" or "spatial"; hits are the same. Raises UsageError, InputError
+        for an invalid scene, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._options = (str(builder), None if bvh is None else os.fsdecode(bvh))
         self._chosen = device
@@ -59,17 +60,17 @@ class Caster:
 
     @property
     def scene(self) -> Scene:
-        """The scene as it was when the Caster was made; change another."""
+        """The scene as it was when the Caster was made. Changing it has no effect."""
         return self._scene
 
     @property
     def device(self) -> Device:
-        """What it runs on."""
+        """The device that it runs on."""
         return self._open()[0]
 
     @property
     def setup(self) -> dict[str, Any]:
-        """What making it has cost, by the names of include/promin/setup_stats.h: milliseconds, bytes, nodes,
+        """The cost of construction, with the names of include/promin/setup_stats.h: milliseconds, bytes, nodes,
         warnings."""
         return self._open()[1].setup()
 
@@ -83,17 +84,17 @@ class Caster:
         out: NDArray[Any] | None = None,
         progress: Progress = None,
     ) -> NDArray[Any]:
-        """The nearest hit of each ray.
+        """Returns the nearest hit of each ray.
 
-        rays, directions, tmin, tmax: origins (..., 3), directions (..., 3) and, where they are not 0 and infinity, tmin
-        and tmax (...), broadcast together; or one array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple
-        (origins, directions) or (origins, directions, tmin, tmax). Any strides and real types; all is rounded to
-        float32 once, and C-contiguous float32 of the first form is not copied. Directions have any length but 0, t is
-        in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses everything. out: the
-        array to fill and return, C-contiguous, of the answer's shape and type; what is there is touched faster than
-        new memory.
+        rays, directions, tmin, tmax: origins (..., 3), directions (..., 3) and optionally tmin and tmax (...), 0 and
+        infinity by default, broadcast together; or one array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a
+        tuple (origins, directions) or (origins, directions, tmin, tmax). Arrays may have any strides and real types.
+        Numbers are rounded to float32 once; C-contiguous float32 of shape (..., 8) is not copied. Directions have any
+        length except 0, t is in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses
+        everything. out: an array to fill and return, C-contiguous and of the result's shape and type; reusing memory is
+        faster than allocating it.
 
-        Returns an array (...) of `promin.HIT_DTYPE`, what `promin cast` writes: t (infinite on a miss), object and
+        Returns an array (...) of `promin.HIT_DTYPE`, which `promin cast` writes too: t (infinite on a miss), object and
         primitive (-1 on a miss), u and v (weights of a triangle's second and third corner), normal (geometric, unit, as
         wound or outward, never flipped to the ray; 0 on a miss). At equal t the lower (object, primitive) wins; a
         triangle's edges belong to it. Raises UsageError, RunError, Cancelled."""
@@ -115,7 +116,8 @@ class Caster:
         out: NDArray[np.bool_] | None = None,
         progress: Progress = None,
     ) -> NDArray[np.bool_]:
-        """Whether each ray hits anything, which is answered faster. rays to tmax and out as for `cast`; returns bool (...)."""
+        """Returns for each ray whether it hits anything, as bool (...); this is faster than `cast`. rays to tmax and
+        out: as for `cast`."""
         _, native, center, _ = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         answers = prepare_answers(out, shape, np.dtype(np.bool_), packed)
@@ -132,11 +134,12 @@ class Caster:
         out: NDArray[np.int32] | None = None,
         progress: Progress = None,
     ) -> NDArray[np.int32]:
-        """How often each ray crosses the scene: int32 (...). rays to tmax and out as for `cast`.
+        """Returns the number of surfaces that each ray crosses, as int32 (...). rays to tmax and out: as for `cast`.
 
-        A ray that meets an edge or a corner of a closed mesh crosses one of the triangles there, and a ray along a
-        silhouette none or two, so the count is odd exactly where the ray begins inside (include/promin/caster.h has the
-        rule). `cast` takes edges as the triangle's instead. Raises UsageError, RunError, Cancelled."""
+        A ray that hits an edge or a corner of a closed mesh crosses exactly one of the triangles there, and a ray along
+        a silhouette crosses none or two. The count is therefore odd exactly if the ray starts inside
+        (include/promin/caster.h has the rule). For `cast` an edge belongs to each of its triangles. Raises UsageError,
+        RunError, Cancelled."""
         _, native, center, _ = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         counts = prepare_answers(out, shape, np.dtype(np.int32), packed)
@@ -172,9 +175,10 @@ class Caster:
         *,
         progress: Progress = None,
     ) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """All crossings of each ray, by the rule of `count`: splits, int64 (n + 1) for the n rays in C order, and hits
-        of `promin.HIT_DTYPE`, where those of ray i are hits[splits[i]:splits[i + 1]], by t, then by (object,
-        primitive). Memory is needed for all of them; see `iter_list`. rays to tmax as for `cast`; raises as it does."""
+        """Returns all crossings of each ray, by the rule of `count`, as (splits, hits). splits is int64 (n + 1) for the
+        n rays in C order; hits is an array of `promin.HIT_DTYPE`. The hits of ray i are hits[splits[i]:splits[i + 1]],
+        sorted by t, then by (object, primitive). All of them are kept in memory; see `iter_list`. rays to tmax: as for
+        `cast`. Raises as it does."""
         _, native, center, numbers = self._open()
         packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         splits, rows = native.list(packed, None, progress)
@@ -190,9 +194,9 @@ class Caster:
         budget: int = 256 << 20,
         progress: Progress = None,
     ) -> Iterator[tuple[int, NDArray[np.int64], NDArray[Any]]]:
-        """`list` part by part, for more hits than memory holds: yields (first, splits, hits), where hits[splits[i]:
-        splits[i + 1]] are those of ray first + i in C order, of as many rays as have hits of `budget` bytes together,
-        or of one. progress is told of each part by itself."""
+        """Does the same as `list` in parts, for more hits than memory can hold. Yields (first, splits, hits), where
+        hits[splits[i]:splits[i + 1]] are the hits of ray first + i in C order. Each part has as many rays as have hits
+        of `budget` bytes together, but at least one. progress: receives the progress of each part separately."""
         if not isinstance(budget, (int, np.integer)) or not 0 < budget < 2**63:
             raise UsageError(f"budget is {budget!r:.80}; give a positive number of bytes")
         _, native, center, numbers = self._open()
@@ -213,7 +217,7 @@ class Caster:
             return self._opened
 
     def _make_private(self) -> None:
-        """What is not pickled: what is open, and what guards it."""
+        """Creates the members that are not pickled: open objects and their locks."""
         self._lock = threading.RLock()
         self._opened = None
 
@@ -228,7 +232,7 @@ class Caster:
 def prepare_answers(
     out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dtype[Any], rays: NDArray[np.float32]
 ) -> NDArray[Any]:
-    """The array that answers go to: the caller's, or a new one. Raises UsageError where the caller's does not suit."""
+    """Returns the array for the results: the caller's, or a new one. Raises UsageError if the caller's does not fit."""
     if out is None:
         return np.empty(shape, dtype)
     if not isinstance(out, np.ndarray) or out.dtype != dtype or out.shape != shape:
@@ -240,18 +244,18 @@ def prepare_answers(
 
 
 def as_bytes(hits: NDArray[Any]) -> NDArray[np.uint8]:
-    """The same memory as (n, 32) bytes."""
+    """Returns a view of the same memory as (n, 32) bytes."""
     return hits.reshape(-1).view(np.uint8).reshape(hits.size, HIT_DTYPE.itemsize)
 
 
 def number_as_in_file(hits: NDArray[Any], numbers: NDArray[np.int32]) -> None:
-    """Gives hits (n,) the numbers that the scene's file has for its objects."""
+    """Replaces object indices in hits (n,) by the numbers of the scene's file."""
     is_hit = hits["object"] >= 0
     hits["object"][is_hit] = numbers[hits["object"][is_hit]]
 
 
 def _to_hits(rows: NDArray[np.uint8], numbers: NDArray[np.int32]) -> NDArray[Any]:
-    """Bytes (n, 32) of the library as hits (n,)."""
+    """Returns bytes (n, 32) from the library as hits (n,)."""
     hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1).view(Hits)
     if len(numbers):
         number_as_in_file(hits, numbers)
@@ -266,5 +270,5 @@ def _list_parts(
         splits, rows = native.list(packed[first : first + count], budget, progress)
         yield first, splits, _to_hits(rows, numbers)
         first += len(splits) - 1
-        # What is asked of more rays than there is a budget for is asked again.
+        # Rays whose hits exceed the budget are requested again.
         count = min(2 * (len(splits) - 1), _RAYS_AT_A_TIME)

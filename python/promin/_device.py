@@ -16,57 +16,58 @@ from promin._errors import UsageError
 
 @dataclass(frozen=True)
 class DeviceInfo:
-    """A Vulkan device in words."""
+    """A description of a Vulkan device."""
 
     index: int
-    """Its place in `Device.list()`."""
+    """Its index in `Device.list()`."""
     name: str
-    """As its driver calls it."""
+    """The name that its driver gives."""
     type: str
     """"discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"."""
     driver: str
     """The driver's name and version."""
     uuid: str
-    """By which it is found again: "uuid:" with these 32 digits names it. Lavapipes all have the same."""
+    """Identifies the device permanently: "uuid:" with these 32 digits selects it. All lavapipe devices have the
+    same."""
     api_version: str
-    """The version of Vulkan that it speaks."""
+    """The Vulkan version that it supports."""
     obstacles: tuple[str, ...] = ()
-    """Why it cannot be used; empty for a usable one."""
+    """Reasons why it cannot be used; empty for a usable one."""
     lacks: tuple[str, ...] = ()
-    """Optional features that it does not have, and what promin does without them."""
+    """Optional features that it lacks, and what promin does without them."""
     is_default: bool = False
-    """Whether it is taken where none is named."""
+    """Whether it is the default device."""
 
 
 class Device:
-    """An open Vulkan device, which any number of Casters and Renderers share, on any threads."""
+    """An open Vulkan device. Any number of Casters and Renderers may share it, on any threads."""
 
     def __init__(self, selection: str | int | None = None) -> None:
         """Opens the device that `selection` names: an index of `Device.list()`, "uuid:" with a UUID, or a part of a
-        name, case ignored; without one a GPU before a CPU. Raises DeviceError where none is usable or none matches, and
-        names the package with Mesa's drivers where there is no driver at all."""
+        name in any case. Without a selection it prefers a GPU to a CPU. Raises DeviceError if no device is usable or
+        none matches; without any driver the message names the package with Mesa's drivers."""
         self._selection = _name(selection)
         self._native = _promin.Device.open(self._selection)
 
     @staticmethod
     def list() -> list[DeviceInfo]:
-        """Every Vulkan device that the loader finds; empty where there is no driver. Raises DeviceError where there is
-        not even a loader."""
+        """Returns all Vulkan devices that the loader finds; empty if there is no driver. Raises DeviceError if there is
+        no loader."""
         return [DeviceInfo(**info) for info in _promin.list_devices()]
 
     @property
     def info(self) -> DeviceInfo:
-        """What `Device.list()` tells of it."""
+        """Its entry in `Device.list()`."""
         return DeviceInfo(**self._native.info())
 
     @property
     def choice(self) -> str:
-        """Why it was picked, a sentence."""
+        """The reason why it was chosen, as a sentence."""
         return self._native.choice()
 
     @property
     def fingerprint(self) -> str:
-        """Name and driver: what decides about the bits of pictures and hits, beside promin's version."""
+        """Name and driver, which together with promin's version determine the bits of pictures and hits."""
         info = self.info
         return f"{info.name}, {info.driver}"
 
@@ -78,11 +79,11 @@ class Device:
 
 
 DeviceLike = Union[Device, str, int, None]
-"""A device, or what `Device()` takes; None is the default device, which is opened once for all that use it."""
+"""A device, or an argument of `Device()`. None is the default device, which all users share."""
 
 
 def find_device(device: DeviceLike) -> Device:
-    """The device itself, or one that this process has open by this name, or a new one."""
+    """Returns the device itself, a device that this process has already opened by this name, or a new one."""
     if isinstance(device, Device):
         return device
     name = _name(device)
@@ -109,5 +110,5 @@ def _renew_lock() -> None:
 
 _opening = threading.Lock()
 _opened: weakref.WeakValueDictionary[tuple[int, str | None], Device] = weakref.WeakValueDictionary()
-# Another thread may have held it at the fork.
+# Another thread may have held the lock at the fork.
 os.register_at_fork(after_in_child=_renew_lock)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What promin raises: the classes of include/promin/error.h, with the same sentences."""
+"""promin's exceptions: the classes of include/promin/error.h, with the same sentences."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from collections.abc import Iterable
 
 
 class Error(Exception):
-    """Base of what promin raises. `str(error)` is the first problem's sentence, and the others on lines after it."""
+    """Base class of promin's exceptions. `str(error)` is the first problem's sentence; the others follow, one on a
+    line."""
 
     problems: tuple[str, ...]
-    """The reasons, at least one; each says what, where, and what to do."""
+    """The reasons, at least one. Each names the problem, its place and a cure."""
 
     def __init__(self, message: str, problems: Iterable[str] = ()) -> None:
         super().__init__(message)
@@ -30,15 +31,15 @@ class InputError(Error):
 
 
 class DeviceError(Error):
-    """There is no usable Vulkan device, or none that was asked for."""
+    """There is no usable Vulkan device, or the requested one is missing."""
 
 
 class DifferenceError(Error, AssertionError):
-    """Two pictures differ by more than was allowed."""
+    """Two pictures differ by more than is allowed."""
 
 
 class Cancelled(Error):
-    """A `progress` wanted an end by returning False. What was asked to do the work stays usable."""
+    """A `progress` callback returned False. The object that did the work stays usable."""
 
 
 class RunError(Error):

@@ -21,34 +21,35 @@ from promin._errors import UsageError
 from promin._records import Display, to_dict
 
 _MATTES = {"cryptomatte_object": "CryptoObject", "cryptomatte_material": "CryptoMaterial"}
-"""Names of arrays, and of the layers that an EXR keeps them in."""
+"""Names of the arrays, and of their layers in an EXR."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """A picture, with all that is known of it."""
+    """A picture with its AOVs and metadata."""
 
     rgb: NDArray[np.float32] = field(repr=False)
     """Linear light, (rows, columns, 3); row 0 is the top."""
     aovs: Mapping[str, NDArray[Any]] = field(repr=False)
-    """Arrays by the names of include/promin/aovs.h, (rows, columns) or (rows, columns, components). Of "cryptomatte" two,
-    "cryptomatte_object" and "cryptomatte_material", (rows, columns, 6, 2) float32: of six ranks, the largest first, id
-    (see `cryptomatte_id`) and share of the pixel, as an EXR has them; id and share are 0 where there is nothing."""
+    """Arrays with the names of include/promin/aovs.h, (rows, columns) or (rows, columns, components). "cryptomatte"
+    gives two arrays, "cryptomatte_object" and "cryptomatte_material", (rows, columns, 6, 2) float32. They hold six
+    ranks, the largest share first, each with the id (see `cryptomatte_id`) and its share of the pixel, as in an EXR;
+    both are 0 in unused ranks."""
     metadata: Mapping[str, str]
-    """What an EXR of it carries in its header: scene, device, size and choices."""
+    """The metadata in the header of its EXR: scene, device, size and options."""
     display: Display = Display()
-    """How it is shown in 8 bits, as `promin render` shows it."""
+    """How it is displayed in 8 bits; the same as `promin render` uses."""
     error: Mapping[str, float] | None = None
     """With an error target: `target`, `largest_claim`, `unmet_pixels` and `samples` of the whole picture."""
     rays: Mapping[str, int] = field(default_factory=dict)
-    """How many rays it took, by kind."""
+    """Numbers of rays traced, by kind."""
     trace_ms: float = 0.0
-    """Device time."""
+    """Milliseconds on the device."""
     placement: tuple[tuple[int, int], tuple[int, int]] | None = None
-    """Of a crop its upper left pixel in the whole picture, and the size of that."""
+    """For a crop its upper left pixel in the whole picture, and the size of the whole picture."""
     unlit: NDArray[np.float32] | None = field(default=None, repr=False)
-    """What `display` leaves alone, (rows, columns, 4): the AOV "unlit" of include/promin/aovs.h. None where the scene does
-    not have unlit materials beside others."""
+    """The part of the picture that `display` does not change, (rows, columns, 4): the AOV "unlit" of
+    include/promin/aovs.h. None unless the scene has both unlit and lit materials."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -64,10 +65,11 @@ class Frame:
         compression: str = "zip",
         multipart: bool = False,
     ) -> None:
-        """Writes an .exr with all AOVs or a .hdr, linear, or a .png, .jpg, .webp or .tif as `display` shows it, None being
-        the picture's own; whole or not at all. Of an .exr: half: keep colours, normals and shares as halves;
-        compression: "none", "rle", "zips", "zip" or "piz", always without loss; multipart: give each AOV a part. Raises
-        UsageError for another ending, RunError where it cannot be written."""
+        """Writes the picture: an .exr with all AOVs or a .hdr in linear light, or a .png, .jpg, .webp or .tif after the
+        transform `display`. display: None is the picture's own. The file is written completely or not at all. These
+        options apply to an .exr. half: store colours, normals and coverage as 16-bit floats. compression: "none",
+        "rle", "zips", "zip" or "piz", always lossless. multipart: write each AOV as a part of its own. Raises
+        UsageError for another ending, RunError if the file cannot be written."""
         file = os.fsdecode(path)
         if _promin.has_named_channels(file):
             channels = list_channels(self.aovs)
@@ -79,20 +81,20 @@ class Frame:
         _promin.write_image(file, self.rgb, list(self.metadata.items()), self.placement, channels, shown, exr)
 
     def matte(self, name: str, of: str = "object") -> NDArray[np.float32]:
-        """How much of each pixel is covered by the objects, or with of="material" the materials, of this name: (rows,
-        columns) float32, 0...1, of pictures with the AOV "cryptomatte". What has no name is called by its number,
-        "object 3". 0 everywhere for a name that nothing has."""
+        """Returns the part of each pixel that objects of this name cover, or with of="material" materials of this name:
+        (rows, columns) float32, 0...1. The picture needs the AOV "cryptomatte". An object without a name is called by
+        its number, "object 3". An unknown name gives 0 everywhere."""
         layer = self.aovs.get(f"cryptomatte_{of}")
         if layer is None:
             raise UsageError(
-                f'there are no mattes of {of!r:.80}; render with aovs=("cryptomatte",) and ask for those of '
-                '"object" or "material"'
+                f'there are no mattes of {of!r:.80}; render with aovs=("cryptomatte",) and use '
+                'of="object" or of="material"'
             )
         ids, shares = layer[..., 0], layer[..., 1]
         return np.asarray(np.where(ids == cryptomatte_id(name), shares, 0).sum(axis=-1), np.float32)
 
     def srgb(self, display: Display | None = None) -> NDArray[np.uint8]:
-        """What a screen shows, (rows, columns, 3) of 8 bits in sRGB, without noise."""
+        """Returns the picture as a screen displays it, (rows, columns, 3) in 8-bit sRGB, without noise."""
         shown = _promin.show(self.rgb, to_dict(display or self.display), self.unlit)
         return np.asarray(np.floor(shown * 255.0 + 0.5), np.uint8)
 
@@ -110,12 +112,12 @@ class Frame:
 
 
 def cryptomatte_id(name: str) -> np.float32:
-    """The number by which Cryptomatte knows the objects or materials of this name."""
+    """Returns the Cryptomatte id of objects or materials with this name."""
     return np.float32(_promin.cryptomatte_id(str(name)))
 
 
 def to_mattes(channels: list[tuple[str, NDArray[np.uint32]]]) -> dict[str, NDArray[np.float32]]:
-    """The arrays that Frame.aovs has of Cryptomatte, of the library's channels; none of none."""
+    """Returns the Cryptomatte arrays of Frame.aovs from the library's channels; empty if there are none."""
     mattes = {}
     for name, layer in _MATTES.items():
         planes = [values for channel, values in channels if channel.startswith(layer)]
@@ -126,7 +128,8 @@ def to_mattes(channels: list[tuple[str, NDArray[np.uint32]]]) -> dict[str, NDArr
 
 
 def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDArray[np.uint32]]]:
-    """The channels of an EXR: name, whether they are integers, the bits of their values; in the order of the table."""
+    """Returns the channels of an EXR in the order of the table: name, whether they are integers, and the bits of their
+    values."""
     channels = []
     for name, channel, letters in _promin.list_aovs():
         if name not in aovs:
@@ -180,8 +183,8 @@ def read_aovs(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
 
 
 def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: Display = Display()) -> None:
-    """Writes linear light (rows, columns, 3) as .exr or .hdr, or as .png, .jpg, .webp or .tif as `display`
-    shows it. Raises UsageError, RunError."""
+    """Writes linear light (rows, columns, 3) as .exr or .hdr, or after the transform `display` as .png, .jpg, .webp or
+    .tif. Raises UsageError, RunError."""
     file = os.fsdecode(path)
     unlit = None if _promin.has_named_channels(file) else unlit_of(rgb)
     channels = [] if unlit is None else list_channels({"unlit": unlit})
@@ -189,17 +192,17 @@ def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: D
 
 
 def unlit_of(picture: object) -> NDArray[np.float32] | None:
-    """What the display of a Frame leaves alone; None for an array."""
+    """Returns the part of a Frame that its display does not change; None for an array."""
     return picture.unlit if isinstance(picture, Frame) else None
 
 
 def to_picture(rgb: object) -> NDArray[np.float32]:
-    """A picture as the native module takes it; of a Frame its light."""
+    """Returns a picture for the native module; for a Frame its light."""
     if isinstance(rgb, Frame):
         return rgb.rgb
     array = to_numbers(rgb, "the pixels")
     if array.ndim != 3 or array.shape[2] != 3 or not 0 < array.size < 3 * 2**28:
         raise UsageError(
-            f"the pixels have the shape {array.shape}; give (rows, columns, 3), neither none nor over 2^28"
+            f"the pixels have the shape {array.shape}; give (rows, columns, 3), with 1 to 2^28 pixels"
         )
     return round_once(array)

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Lights, materials, cameras and surroundings: the structs of include/promin, whose comments say more, as dataclasses.
+"""Lights, materials, cameras and environments: the structs of include/promin as dataclasses. The comments there say
+more.
 
-Colours are linear RGB, angles radians, lengths in units of the world. Ranges are checked where a record is used."""
+Colours are linear RGB, angles are in radians, lengths in world units. Ranges are checked when a record is used."""
 
 from __future__ import annotations
 
@@ -20,45 +21,45 @@ from promin._errors import UsageError
 
 Record = TypeVar("Record")
 Vec3 = tuple[float, float, float]
-"""Three numbers; an array of three will do as well."""
+"""Three numbers, or an array of three."""
 
 
 @dataclass(frozen=True)
 class Light:
-    """A light (promin/lights.h). By default a classic point light of power 1 at the origin."""
+    """A light (promin/lights.h). The default is a classic point light of power 1 at the origin."""
 
     kind: str = "point"
-    """"point", "directional", "spot" or "headlight", which shines along the view."""
+    """"point", "directional", "spot" or "headlight", which shines in the direction of view."""
     position: Vec3 = (0.0, 0.0, 0.0)
-    """Of point and spot lights."""
+    """Position of point and spot lights."""
     direction: Vec3 = (0.0, 0.0, -1.0)
-    """Of directional and spot lights: the unit vector in which the light travels."""
+    """Unit vector in which the light of directional and spot lights travels."""
     diffuse: Vec3 = (1.0, 1.0, 1.0)
-    """Power in the diffuse term; candela where the light falls off."""
+    """Power in the diffuse term; in candela for lights with attenuation."""
     specular: Vec3 = (1.0, 1.0, 1.0)
     """Power in the specular term."""
     attenuation: str = "none"
     """"none" or "inverse_square"."""
     range: float = inf
-    """Beyond it a light that falls off brings nothing."""
+    """Distance beyond which a light with attenuation contributes nothing."""
     inner_cone_angle: float = 0.0
-    """Half angle in which a spot has its whole power."""
+    """Half the angle of the cone in which a spot has its full power."""
     outer_cone_angle: float = 0.785398163
-    """Half angle beyond which it brings nothing, at most pi / 2."""
+    """Half the angle of the cone outside of which a spot contributes nothing, at most pi / 2."""
     is_on: bool = True
-    """A light that is off keeps its number."""
+    """Whether the light is on. A light that is off keeps its index."""
     name: str = ""
     """For people."""
 
 
 @dataclass(frozen=True)
 class TextureSlot:
-    """A texture of the scene's file in its place in a material (promin/textures.h)."""
+    """A reference from a material to a texture of the scene's file (promin/textures.h)."""
 
     texture: int
-    """Which of the scene's."""
+    """Index of the scene's texture."""
     uv_set: int = 0
-    """Which of the mesh's texture coordinates, 0 or 1."""
+    """The set of the mesh's texture coordinates, 0 or 1."""
     to_u: Vec3 = (1.0, 0.0, 0.0)
     """u = to_u . (s, t, 1)."""
     to_v: Vec3 = (0.0, 1.0, 0.0)
@@ -67,20 +68,20 @@ class TextureSlot:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """What materials of all models have (promin/materials.h). Use Phong, MetallicRoughness or Unlit."""
+    """The fields that all material models share (promin/materials.h). Use Phong, MetallicRoughness or Unlit."""
 
     name: str = ""
     """For people."""
     emissive: Vec3 = (0.0, 0.0, 0.0)
-    """Light that the surface sends by itself."""
+    """Light that the surface emits."""
     emissive_texture: TextureSlot | None = None
     """Factors of it."""
     alpha_mode: str = "opaque"
-    """"opaque", "mask" or "blend". Casts see geometry whatever its alpha."""
+    """"opaque", "mask" or "blend". Casts ignore alpha."""
     alpha: float = 1.0
-    """How much of what is behind it the surface covers."""
+    """Opacity of the surface, 0...1."""
     alpha_cutoff: float = 0.5
-    """From which alpha on a masked surface is there."""
+    """The smallest alpha at which a masked surface is present."""
     is_double_sided: bool = True
     """Whether pictures show both sides of triangles."""
 
@@ -98,13 +99,13 @@ class Phong(Material):
     shininess: float = 0.0
     """Phong's exponent; 0 or less: no highlight."""
     reflection: Vec3 = (0.0, 0.0, 0.0)
-    """Weight of what the mirror ray brings."""
+    """Weight of the mirror ray's radiance."""
     transmission: Vec3 = (0.0, 0.0, 0.0)
-    """Weight of what the refracted ray brings."""
+    """Weight of the refracted ray's radiance."""
     ior: float = 1.0
     """Index of refraction."""
     fresnel: bool = False
-    """Whether Fresnel's reflectance weighs both."""
+    """Whether Fresnel's reflectance weights both."""
     diffuse_texture: TextureSlot | None = None
     """Factors of ambient and diffuse."""
     specular_texture: TextureSlot | None = None
@@ -120,7 +121,7 @@ class MetallicRoughness(Material):
     base_color: Vec3 = (1.0, 1.0, 1.0)
     """Albedo of the dielectric and reflectance of the metal, 0...1."""
     metallic: float = 1.0
-    """The share of metal, 0...1."""
+    """Weight of the metal, 0...1."""
     roughness: float = 1.0
     """Perceptual roughness, 0...1."""
     ior: float = 1.5
@@ -130,37 +131,37 @@ class MetallicRoughness(Material):
     specular_color: Vec3 = (1.0, 1.0, 1.0)
     """Its colour."""
     transmission: float = 0.0
-    """The share of light that goes through, 0...1."""
+    """The part of the light that is transmitted, 0...1."""
     thickness: float = 0.0
-    """0: a thin wall; else the surface bounds a volume."""
+    """0 for a thin wall; else the surface bounds a volume."""
     attenuation_color: Vec3 = (1.0, 1.0, 1.0)
-    """What of white light is left after attenuation_distance."""
+    """The colour that white light has after attenuation_distance."""
     attenuation_distance: float = inf
     """See attenuation_color."""
     dispersion: float = 0.0
-    """20 over the Abbe number."""
+    """20 divided by the Abbe number."""
     normal_scale: float = 1.0
     """Factor of x and y of the texture's normals."""
     occlusion_strength: float = 1.0
     """0...1."""
     diffuse_transmission: float = 0.0
-    """The share of scattered light that leaves on the other side, 0...1."""
+    """The part of the scattered light that leaves on the other side, 0...1."""
     diffuse_transmission_color: Vec3 = (1.0, 1.0, 1.0)
     """The colour of the light that leaves on the other side, 0...1, in place of the base colour."""
     clearcoat: float = 0.0
-    """How much of a clear coat there is, 0...1."""
+    """Weight of the clear coat, 0...1."""
     clearcoat_roughness: float = 0.0
     """0...1."""
     clearcoat_normal_scale: float = 1.0
     """Factor of x and y of the coat's normals."""
     sheen_color: Vec3 = (0.0, 0.0, 0.0)
-    """Of cloth; 0: there is none."""
+    """Colour of the sheen of cloth; 0 for no sheen."""
     sheen_roughness: float = 0.0
     """0...1."""
     iridescence: float = 0.0
-    """How strongly a thin film colours the reflection, 0...1."""
+    """Weight of a thin film that colours the reflection, 0...1."""
     iridescence_ior: float = 1.3
-    """The film's index of refraction, from 1 on."""
+    """The film's index of refraction, 1 or more."""
     iridescence_thickness_minimum: float = 100.0
     """The film's thickness in nanometres where its texture is 0, not negative."""
     iridescence_thickness_maximum: float = 400.0
@@ -168,7 +169,7 @@ class MetallicRoughness(Material):
     anisotropy: float = 0.0
     """How much highlights are stretched, 0...1, on meshes with texture coordinates."""
     anisotropy_rotation: float = 0.0
-    """Where to: radians, counterclockwise from the tangent."""
+    """Direction of the stretch in radians, counterclockwise from the tangent."""
     base_color_texture: TextureSlot | None = None
     metallic_roughness_texture: TextureSlot | None = None
     normal_texture: TextureSlot | None = None
@@ -190,7 +191,7 @@ class MetallicRoughness(Material):
 
 @dataclass(frozen=True, kw_only=True)
 class Unlit(Material):
-    """A colour that no light changes."""
+    """A material whose colour does not depend on light."""
 
     color: Vec3 = (1.0, 1.0, 1.0)
     """What is seen."""
@@ -200,26 +201,26 @@ class Unlit(Material):
 
 @dataclass(frozen=True)
 class Camera:
-    """A pose and a projection (promin/camera.h). By default it looks down -Z from the origin."""
+    """A pose and a projection (promin/camera.h). The default camera stands at the origin and looks along -Z."""
 
     eye: Vec3 = (0.0, 0.0, 0.0)
     """Where it is."""
     look: Vec3 = (0.0, 0.0, -1.0)
-    """Unit vector along the view."""
+    """Unit vector in the direction of view."""
     up: Vec3 = (0.0, 1.0, 0.0)
-    """Unit vector to the top of the picture, at a right angle to `look`."""
+    """Unit vector towards the top of the picture, at a right angle to `look`."""
     yfov: float = 0.7
     """Vertical field of view of a perspective camera, in (0, pi)."""
     projection: str = "perspective"
     """"perspective" or "orthographic"."""
     ymag: float = 1.0
-    """Half height of what an orthographic camera sees."""
+    """Half the height of an orthographic camera's view."""
     near: float = 0.0
-    """Nothing nearer is drawn."""
+    """Distance of the near plane. Nothing nearer is drawn."""
     aspect_ratio: float = 0.0
-    """Width over height that the scene's file asks for; 0: it does not."""
+    """Width over height that the scene's file requests; 0 if it requests none."""
     resolution: tuple[int, int] = (0, 0)
-    """The size in pixels that it asks for; 0: it does not."""
+    """The size in pixels that the scene's file requests; 0 if it requests none."""
     name: str = ""
     """For people."""
 
@@ -227,8 +228,8 @@ class Camera:
     def look_at(
         eye: Iterable[float], target: Iterable[float], up: Iterable[float] = (0.0, 1.0, 0.0), **other: Any
     ) -> Camera:
-        """The camera at `eye` that has `target` in its middle, with `up` upwards; `other` are its further fields. Where
-        `up` is along the view, another direction takes its place."""
+        """Returns a camera at `eye` with `target` in the middle of its picture and `up` upwards. `other` are its
+        further fields. If `up` is parallel to the view, another direction is used."""
         start = np.array(tuple(eye), np.float64)
         look = np.array(tuple(target), np.float64) - start
         look /= np.linalg.norm(look)
@@ -244,7 +245,7 @@ class Studio:
     """The built-in surroundings for scenes without light."""
 
     front: float = 0.0
-    """The azimuth from which the scene is looked at, about +Y from +Z."""
+    """The azimuth from which the viewer looks at the scene, about +Y from +Z."""
 
 
 @dataclass(frozen=True)
@@ -268,48 +269,49 @@ class Panorama:
 
 @dataclass(frozen=True)
 class Backdrop:
-    """What the camera sees behind all, from the picture's upper edge to its lower one: linear RGB, shown as it is."""
+    """The background that the camera sees: a gradient from the picture's upper edge to its lower edge, linear RGB,
+    displayed unchanged."""
 
     top: Vec3 = (1.0, 1.0, 1.0)
     bottom: Vec3 = (1.0, 1.0, 1.0)
     radiance: float = 1.0
-    """The factor by which mirrors and glass see it as light."""
+    """Factor that turns its colours into radiance in mirrors and behind glass."""
 
 
 @dataclass(frozen=True)
 class Environment:
-    """What there is beside objects and lights (promin/environment.h)."""
+    """The surroundings of the scene: everything except objects and lights (promin/environment.h)."""
 
     ambient: Vec3 = (0.0, 0.0, 0.0)
-    """Radiance of all directions, where there is no sky."""
+    """Ambient radiance from all directions, if there is no sky."""
     background: Vec3 = (0.0, 0.0, 0.0)
-    """What a ray brings that leaves the scene."""
+    """Radiance of rays that leave the scene."""
     sky: Union[Studio, GradientSky, Panorama, None] = None
-    """What surrounds the scene instead of ambient light."""
+    """The sky, which replaces ambient light."""
     shows_sky: bool = False
     """Whether the camera sees the sky in place of the background."""
     rotation: float = 0.0
-    """How far the sky is turned about +Y."""
+    """Rotation of the sky about +Y."""
     intensity: float = 1.0
-    """A factor of the sky's radiance."""
+    """Factor of the sky's radiance."""
     backdrop: Union[Backdrop, None] = None
-    """Takes the background's place in pictures without alpha."""
+    """Replaces the background in pictures without alpha."""
 
 
 @dataclass(frozen=True)
 class Display:
-    """How linear light is shown in 8 bits (promin/display.h)."""
+    """How linear light is displayed in 8 bits (promin/display.h)."""
 
     exposure_ev: float = 0.0
     """Stops."""
     tone_mapping: str = "none"
     """"none", "neutral", "aces", "reinhard" or "agx"."""
     dithers: bool = False
-    """Whether the 8 bits get noise."""
+    """Whether 8-bit values get noise before they are rounded."""
 
 
 def change(record: Record, fields: Mapping[str, Any]) -> Record:
-    """The record with other values of some fields. Raises UsageError for a field that it does not have."""
+    """Returns the record with other values of some fields. Raises UsageError for a field that it does not have."""
     assert dataclasses.is_dataclass(record)
     known = [f.name for f in dataclasses.fields(record)]
     for name in fields:
@@ -319,7 +321,7 @@ def change(record: Record, fields: Mapping[str, Any]) -> Record:
 
 
 def suggest(name: str, known: list[str]) -> str:
-    """The cure for an unknown name."""
+    """Returns the cure for an unknown name."""
     near = [one for one in known if name in one.split("_") or name in one]
     near = sorted(near, key=len)[:1] or difflib.get_close_matches(name, known, 1)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
@@ -327,8 +329,9 @@ def suggest(name: str, known: list[str]) -> str:
 
 def _refuse_assignment(record: object, name: str, value: object) -> None:
     raise dataclasses.FrozenInstanceError(
-        f"cannot assign to field {name!r} of a {type(record).__name__}: it is a copy; change what a scene has by "
-        f"scene.set_material(name, {name}=...) or scene.set_light, and other records by dataclasses.replace"
+        f"cannot assign to field {name!r} of a {type(record).__name__}: it is a copy; "
+        f"change a scene by scene.set_material(name, {name}=...) or scene.set_light, "
+        "and other records by dataclasses.replace"
     )
 
 
@@ -349,7 +352,7 @@ _KEYS = {
 
 
 def to_dict(record: object) -> dict[str, Any]:
-    """A record as the native module takes it."""
+    """Returns a record as a dict for the native module."""
     assert dataclasses.is_dataclass(record)
     result = {f.name: _plain(getattr(record, f.name)) for f in dataclasses.fields(record)}
     kind = type(record)
@@ -359,7 +362,7 @@ def to_dict(record: object) -> dict[str, Any]:
 
 
 def from_dict(kind: type[Record], values: Mapping[str, Any]) -> Record:
-    """A record of what the native module gives; of a Material the class of its model."""
+    """Returns a record from a dict of the native module; for a Material the class of its model."""
     fields = dict(values)
     if kind is Material:
         kind = _MODELS[fields.pop("model")]  # type: ignore[assignment]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of a scene."""
+"""Rendering pictures of a scene."""
 
 from __future__ import annotations
 
@@ -48,22 +48,22 @@ from promin._view import (
 )
 
 _ASPECT_RATIO = 16 / 9
-"""Of the camera that frames a scene where no size is asked, as `promin render` has it (test_tables.py)."""
+"""Aspect ratio of the camera that frames a scene if no size is given, as in `promin render` (test_tables.py)."""
 _NO_ID = np.uint32(2**32 - 1)
-"""What the AOV `object` is on a miss."""
+"""The value of the AOV `object` on a miss."""
 _MOST_STOPS = 64
-"""The most stops of an exposure, as `promin render` has it."""
+"""The largest exposure in stops, as in `promin render`."""
 
 
 Background = Union[Sequence[float], str, None]
-"""What `promin render --background` takes: three sRGB numbers from 0 to 1, "white", "#80a0ff",
-"linear:0.2,0.4,1", "environment"."""
+"""A background as for `promin render --background`: three sRGB numbers from 0 to 1, "white", "#80a0ff",
+"linear:0.2,0.4,1" or "environment"."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def names_keywords(function: Function) -> Function:
-    """The function, whose TypeError for an unknown keyword names the one that may be meant."""
+    """Wraps a function so that its TypeError for an unknown keyword suggests a similar one."""
     known = [name for name in inspect.signature(function).parameters if name not in ("self", "view")]
 
     @functools.wraps(function)
@@ -103,7 +103,7 @@ _OTHER_KEYWORDS = {
     "shading": "debug_view",
     "width": "size",
 }
-"""What is called otherwise than in the programs."""
+"""Keywords whose names differ from the programs' options."""
 
 
 @dataclass(frozen=True)
@@ -113,16 +113,16 @@ class _Opened:
     device: Device
     native: _promin.Renderer
     lit: _promin.Scene
-    """The scene with its light."""
+    """The scene with its lights."""
     aovs: tuple[str, ...]
-    """What its pictures tell."""
+    """The AOVs of its pictures."""
 
 
 class Renderer:
-    """A scene on a device that pictures are taken of.
+    """Renders pictures of a scene on a device.
 
-    Making one lights the scene, builds a tree and compiles. The scene may change afterwards: the Renderer keeps what it
-    was. Threads, Ctrl-C, pickle and forks: as Caster."""
+    The constructor lights the scene, builds a tree and compiles kernels. The scene may change afterwards; the Renderer
+    keeps its own snapshot. Threads, Ctrl-C, pickling and forks work as for a Caster."""
 
     _opened: _Opened | None
 
@@ -196,30 +196,30 @@ class Renderer:
 
     @property
     def setup(self) -> dict[str, Any]:
-        """What making it has cost, by the names of include/promin/setup_stats.h."""
+        """The cost of construction, with the names of include/promin/setup_stats.h."""
         return self._open().native.setup()
 
     @property
     def lights(self) -> list[Light]:
-        """Copies of the lights, with those that stand in for missing ones."""
+        """Copies of the lights, including those that were added."""
         lights = self._changes.get("lights")
         return list(lights) if lights is not None else [self._back(from_dict(Light, r)) for r in self._lit().lights()]
 
     @property
     def materials(self) -> list[Material]:
-        """Copies of the materials as they are lit."""
+        """Copies of the materials as used for lighting."""
         materials = self._changes.get("materials")
         return list(materials) if materials is not None else [from_dict(Material, r) for r in self._lit().materials()]
 
     @property
     def environment(self) -> Environment:
-        """Ambient light, background and sky, with those that stand in for missing ones."""
+        """Ambient light, background and sky, including those that were added."""
         environment: Environment | None = self._changes.get("environment")
         return environment if environment is not None else from_dict(Environment, self._lit().environment())
 
     @property
     def display(self) -> Display:
-        """How pictures of the scene are shown in 8 bits."""
+        """How pictures of the scene are displayed in 8 bits."""
         shown = from_dict(Display, self._lit().display(self._light))
         return shown if self._exposure is None else replace(shown, exposure_ev=self._exposure)
 
@@ -276,10 +276,10 @@ class Renderer:
         fov: float | None = None,
         near: float | None = None,
     ) -> Frame:
-        """Traces one picture. view: None is the one that the Renderer was made with; what is given beside it takes the
-        place of its fields. aovs: None are those that the Renderer was made with. Of a scene file the picture has the
-        bits of `promin render` with the same options. Raises UsageError for what breaks the rules of
-        include/promin/view.h or contradicts itself, RunError, Cancelled."""
+        """Renders one picture. view: None is the Renderer's own view; further keywords replace its fields. aovs: None
+        selects the Renderer's own AOVs. A picture of a scene file has the same bits as that of `promin render` with the
+        same options. Raises UsageError for arguments that break the rules of include/promin/view.h or contradict each
+        other, RunError, Cancelled."""
         given = locals()  # each field of a view is a keyword of its name
         whole = settle_quality(change_view(self._view if view is None else of_view(view), given))
         names = self._aovs if aovs is None else _names(aovs)
@@ -317,8 +317,8 @@ class Renderer:
         materials: Iterable[Material] | None = None,
         environment: Environment | None = None,
     ) -> None:
-        """Replaces all lights, all materials (as many as there are), or the surroundings, without building a tree.
-        Raises InputError for what is not valid, and changes nothing then."""
+        """Replaces all lights, all materials (by the same number of them) or the environment, without building a tree.
+        Raises InputError for invalid arguments, and then changes nothing."""
         new: dict[str, Any] = {}
         if lights is not None:
             new["lights"] = _all_of(lights, Light)
@@ -339,11 +339,12 @@ class Renderer:
             self._changes.update(new)
 
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
-        """Changes a material of the pictures to come, as Scene.set_material does of a scene, without building a tree."""
+        """Changes a material of all later pictures, as Scene.set_material changes that of a scene, without building a
+        tree."""
         self.update(materials=replace_one(self.materials, material, _one_of(new, Material), fields, "material"))
 
     def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
-        """The same of a light of `lights`."""
+        """Does the same for a light of `lights`."""
         self.update(lights=replace_one(self.lights, light, _one_of(new, Light), fields, "light"))
 
     def _check_background(self, aovs: tuple[str, ...]) -> None:
@@ -357,7 +358,7 @@ class Renderer:
         return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """The AOVs of these names in the world and by the file's numbers."""
+        """Returns the AOVs of these names with positions in the world and the file's object numbers."""
         if self._moves(names):
             is_hit = (aovs["object"] != _NO_ID)[..., np.newaxis]
             aovs["position"] = np.where(is_hit, aovs["position"] + self._scene.native_center, 0.0)
@@ -368,13 +369,13 @@ class Renderer:
             aovs["object"][is_hit] = numbers[aovs["object"][is_hit]]
         return aovs
 
-    # The native renderer, made when it is first needed.
+    # The native renderer, which is made when it is first needed.
 
     def _open(
         self, aovs: tuple[str, ...] | None = None, view: View | None = None, progress: Progress = None
     ) -> _Opened:
-        """One whose pictures tell these AOVs; None: whatever they tell. view: of the picture that it is wanted for;
-        None: the Renderer's own."""
+        """Returns an open renderer whose pictures have these AOVs; None accepts any. view: the view of the picture to
+        render; None: the Renderer's own."""
         opened = self._opened
         if opened is None or aovs not in (None, opened.aovs):
             with self._lock:
@@ -383,8 +384,8 @@ class Renderer:
                     names = self._aovs if aovs is None else aovs
                     opened = self._make(names, view or settle_quality(self._view), progress)
                     self._opened = opened
-        # Without the lock where all is there: whoever changes the scene holds it while a picture is traced, of which
-        # the function for progress may ask for the lights.
+        # No lock if everything exists: a thread that changes the scene holds it while a picture is traced, and the
+        # progress callback of that picture may read the lights.
         return opened
 
     def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
@@ -410,8 +411,8 @@ class Renderer:
         return _Opened(device, native, lit, aovs)
 
     def _moves(self, aovs: tuple[str, ...]) -> bool:
-        """Whether positions are moved by the scene's center. Then the objects are needed too: they tell what was hit,
-        which positions do not, as a hit at the center is at 0 too."""
+        """Returns whether positions must be moved by the scene's center. The AOV `object` is then needed too, because a
+        position of 0 may be a miss or a hit at the center."""
         return "position" in aovs and bool(self._scene.native_center.any())
 
     def _lit(self) -> _promin.Scene:
@@ -426,14 +427,14 @@ class Renderer:
             native.set_environment(to_dict(value))
 
     def _take_back(self, native: _promin.Renderer, names: Iterable[str]) -> None:
-        """Gives the renderer what it had by these names; where that fails, the next use makes another."""
+        """Restores the renderer's parts of these names. If that fails, the next use makes another renderer."""
         lit = self._lit()
         try:
             for name in names:
                 if name in self._changes:
                     self._apply(native, name, self._changes[name])
                 elif name == "lights":
-                    # Without their way to the world and back, which would round them.
+                    # They are not converted to the world and back, which would round them.
                     native.set_lights([to_dict(from_dict(Light, record)) for record in lit.lights()])
                 elif name == "materials":
                     native.set_materials([to_dict(from_dict(Material, record)) for record in lit.materials()])
@@ -444,11 +445,11 @@ class Renderer:
             raise
 
     def _back(self, record: Any) -> Any:
-        """A camera or light of the native scene in the world."""
+        """Returns a camera or light of the native scene in world coordinates."""
         return to_world(record, self._scene.native_center)
 
     def _make_private(self) -> None:
-        """What is not pickled: what is open, and what guards it and the changes."""
+        """Creates the members that are not pickled: open objects, and the locks for them and for changes."""
         self._lock = threading.RLock()
         self._opened = None
 
@@ -477,7 +478,7 @@ def _panorama_words(file: str | os.PathLike[str] | None) -> list[str]:
 
 
 def _stops_of(exposure: float | str) -> float | None:
-    """None where the scene decides."""
+    """Returns the exposure in stops; None if the scene determines it."""
     if exposure == "auto":
         return None
     stops = float(exposure) if isinstance(exposure, (int, float, np.number)) else inf
@@ -487,7 +488,7 @@ def _stops_of(exposure: float | str) -> float | None:
 
 
 def _one_of(record: Any, kind: type[Any]) -> Any:
-    """The record; None of none."""
+    """Returns the record, or None if there is none."""
     return None if record is None else _all_of([record], kind)[0]
 
 
@@ -495,7 +496,7 @@ def _all_of(records: Iterable[Any], kind: type[Any]) -> list[Any]:
     result = list(records)
     for record in result:
         if not isinstance(record, kind):
-            raise UsageError(f"{record!r:.80} is no promin.{kind.__name__}")
+            raise UsageError(f"{record!r:.80} is not a promin.{kind.__name__}")
     return result
 
 
@@ -505,12 +506,12 @@ def _count(value: object, what: str) -> int:
     except TypeError:
         result = -1
     if not 0 <= result < 2**64:
-        raise UsageError(f"{what} is {value!r:.80}; give a whole number from 0 on")
+        raise UsageError(f"{what} is {value!r:.80}; give a whole number of 0 or more")
     return result
 
 
 def _count_samples(view: View) -> int:
-    """About how many samples a picture has, by which kernels are chosen."""
+    """Returns the approximate number of samples of a picture, which determines the kernels."""
     whole = settle_quality(view)
     crop = whole.crop
     if crop is not None and len(crop) == 4:
@@ -565,9 +566,9 @@ def render(
     fov: float | None = None,
     near: float | None = None,
 ) -> Frame:
-    """One picture of a scene or a scene's file, as in promin.render("model.glb", size="hd").save("model.png"): what
-    `promin render` makes without a word, or with options of these names. Of several pictures of one scene make a
-    Renderer, whose __init__ and `render` have these keywords and say what they raise."""
+    """Renders one picture of a scene or a scene file, as in promin.render("model.glb", size="hd").save("model.png").
+    The defaults and keywords are those of `promin render`. For several pictures of one scene use a Renderer, whose
+    __init__ and `render` have these keywords and list the exceptions."""
     view = change_view(View(), locals())
     renderer = Renderer(
         scene,

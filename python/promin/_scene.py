@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: a file, or arrays and shapes, or a file and what is added to it."""
+"""Scenes: from a file, from arrays and shapes, or from a file with additions."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ IDENTITY = np.eye(4)
 
 
 class ObjectInfo(NamedTuple):
-    """What an object is."""
+    """A description of an object."""
 
     name: str
-    """For people; may be empty."""
+    """A name for people; may be empty."""
     primitive_count: int
-    """Triangles, or 1 for an analytic shape; 0 where nothing is drawn."""
+    """Number of triangles, or 1 for an analytic shape; 0 if nothing is drawn."""
     material: int
-    """Which of the scene's materials."""
+    """Index of the scene's material."""
 
 
 @dataclass(frozen=True)
 class _File:
-    """A scene's file, as it was when it was read."""
+    """A scene's file with its content at the time of reading."""
 
     path: str
     sha256: str
@@ -57,7 +57,7 @@ class _Mesh:
     transform: NDArray[np.float64]
 
     def corners(self) -> NDArray[np.float64]:
-        """The vertices in the world, in float64."""
+        """Returns the vertices in the world, in float64."""
         return self.vertices @ self.transform[:3, :3].T + self.transform[:3, 3]
 
     def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> None:
@@ -65,7 +65,7 @@ class _Mesh:
         if transform is IDENTITY:
             vertices = vertices - center if center.any() else vertices
         elif vertices.dtype == np.float64 and len(vertices):
-            # What is rounded are vertices around the mesh's own middle; the transform stays in double.
+            # Vertices are rounded relative to the mesh's own middle; the transform stays in double.
             middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
             vertices = vertices - middle
             transform = _translation(-center) @ transform @ _translation(middle)
@@ -88,29 +88,30 @@ class _Shape:
 
 
 class Scene:
-    """What is to be traced: objects, materials, lights, cameras and surroundings.
+    """A scene to trace: objects, materials, lights, cameras and environment.
 
     Objects are numbered in the order in which they are added, those of a file first. A scene is a plain value: Caster
-    and Renderer take what it is when they are made, and it is pickled as its arrays and its file's path and SHA-256.
+    and Renderer use its state at their construction. A pickled scene holds its arrays and the path and SHA-256 of its
+    file.
 
-    Precision: devices compute in float32. A scene with vertices of float64 keeps a `center`, which vertices, shapes,
-    lights and cameras lose in float64 before they are rounded, and the origins of rays too; hits and pictures are told
-    in the world as it was given. A scene of a file has the center with which it was read: 0 but where the file lies so
-    far from the origin that float32 is too coarse. Scenes of float32 vertices are not moved."""
+    Precision: devices compute in float32. A scene with float64 vertices has a `center`, which is subtracted in float64
+    from vertices, shapes, lights, cameras and the origins of rays before they are rounded. Hits and pictures are
+    returned in the original world coordinates. A scene from a file has the center with which it was read: 0, unless the
+    file lies so far from the origin that float32 is too coarse. Scenes with float32 vertices are not moved."""
 
     _base: _promin.Scene | None
     _native: _promin.Scene | None
     _native_center: NDArray[np.float64]
 
     def __init__(self, *, center: ArrayLike | None = None) -> None:
-        """An empty scene. center: what coordinates lose before they are rounded, (3,); None: the middle of the bounds
-        of all vertices if some are float64, rounded to eighths of their size and less, so that a scene around the
-        origin is not moved; else the origin."""
+        """Creates an empty scene. center: the point (3,) that is subtracted from coordinates before they are rounded.
+        None: if some vertices are float64, the middle of the bounds of all vertices, rounded to eighths of their size
+        or finer so that a scene around the origin is not moved; else the origin."""
         self._file: _File | None = None
         self._parts: list[_Mesh | _Shape] = []
         self._materials: list[Material] = []
         self._lights: list[Light] = []
-        # All materials or lights, those of the file too, once one of these is changed.
+        # All materials or lights, including those of the file, as soon as one of these is changed.
         self._all_materials: list[Material] | None = None
         self._all_lights: list[Light] | None = None
         self._cameras: list[Camera] = []
@@ -119,7 +120,7 @@ class Scene:
         if center is not None:
             self._center = to_vectors(center, "center").astype(np.float64)
             if self._center.shape != (3,) or not np.isfinite(self._center).all():
-                raise UsageError("center is no point of three finite numbers")
+                raise UsageError("center is not a point of three finite numbers")
         self._make_private()
 
     @staticmethod
@@ -130,11 +131,11 @@ class Scene:
         variant: str = "",
         root: str | os.PathLike[str] | None = None,
     ) -> Scene:
-        """Reads a scene by its ending: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a file for anything
-        that its format forbids, and for required extensions of glTF that are not known; otherwise geometry that can be
-        drawn is drawn, and `warnings` lists what was repaired. variant: the one of the file's `variants` that is shown.
-        root: a folder besides the scene's own in which the files may lie that it names, links resolved. Raises
-        InputError with every problem of the file, UsageError where it has no such variant or root is no
+        """Reads a scene file; its ending determines the format: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a
+        file that breaks any rule of its format or requires an unknown extension of glTF; otherwise all geometry that
+        can be drawn is drawn, and `warnings` lists the repairs. variant: the one of the file's `variants` to use. root:
+        a further folder, besides the scene's own, whose files the scene may refer to; links are resolved first. Raises
+        InputError with all problems of the file, and UsageError if the variant does not exist or root is not a
         folder."""
         file = Path(os.fsdecode(path))
         folder = "" if root is None else os.path.abspath(os.fsdecode(root))
@@ -144,7 +145,7 @@ class Scene:
         scene._base = base
         return scene
 
-    # What is added.
+    # Adding.
 
     def add_triangles(
         self,
@@ -159,11 +160,11 @@ class Scene:
     ) -> int:
         """Adds a mesh and returns its object number.
 
-        vertices: (n, 3), in units of the world; float32 are taken as they are, all else is float64. faces: (m, 3)
-        integers from 0 to n - 1, counter-clockwise seen from outside; hits number them in this order. transform: (4, 4)
-        that multiplies columns, affine and not singular. material: a number of add_material; None: a light grey.
-        normals: (n, 3) for smooth shading, of any length but 0. colors: (n, 3) or (n, 4) linear factors of the
-        material's. Raises UsageError; `validate` finds the rest."""
+        vertices: (n, 3) in world units; float32 keeps its type, all others become float64. faces: (m, 3) integers from
+        0 to n - 1, counterclockwise seen from outside; hits number them in this order. transform: (4, 4) for column
+        vectors, affine and not singular. material: a number from add_material; None: a light grey. normals: (n, 3) for
+        smooth shading, of any length except 0. colors: (n, 3) or (n, 4) linear factors of the material's colour. Raises
+        UsageError; `validate` finds further problems."""
         points = to_vectors(vertices, "vertices")
         triangles = _to_faces(faces)
         if points.ndim != 2:
@@ -180,11 +181,12 @@ class Scene:
         return self._add(mesh)
 
     def add_sphere(self, center: ArrayLike = (0, 0, 0), radius: float = 0.5, **place: Any) -> int:
-        """Adds a ball and returns its object number. `place`, of all shapes: transform=None, material=None, name=""."""
+        """Adds a sphere and returns its object number. `place` stands for the keywords of all shapes: transform=None,
+        material=None, name=""."""
         return self._add_shape("sphere", place, center=center, radius=radius)
 
     def add_plane(self, point: ArrayLike = (0, 0, 0), normal: ArrayLike = (0, 1, 0), **place: Any) -> int:
-        """Adds an infinite plane through the point, at right angles to the normal of any length."""
+        """Adds an infinite plane through the point, with a normal of any length."""
         return self._add_shape("plane", place, point=point, normal=normal)
 
     def add_box(self, center: ArrayLike = (0, 0, 0), half_size: ArrayLike = (0.5, 0.5, 0.5), **place: Any) -> int:
@@ -201,8 +203,8 @@ class Scene:
         is_open: bool = False,
         **place: Any,
     ) -> int:
-        """Adds a cylinder: center is the middle of its axis, half_height the way from there to its disks, which it has
-        unless it is open."""
+        """Adds a cylinder. center is the middle of its axis, half_height the distance from there to its disks. An open
+        cylinder has no disks."""
         return self._add_shape(
             "cylinder", place, center=center, axis=axis, half_height=half_height, radius=radius, is_open=is_open
         )
@@ -218,7 +220,7 @@ class Scene:
         is_open: bool = False,
         **place: Any,
     ) -> int:
-        """Adds a cone or frustum as add_cylinder does; the axis goes from the bottom to the top."""
+        """Adds a cone or frustum as add_cylinder does; the axis points from the bottom to the top."""
         return self._add_shape(
             "cone",
             place,
@@ -239,7 +241,7 @@ class Scene:
         radius_top: float = 0.25,
         **place: Any,
     ) -> int:
-        """Adds the convex hull of two spheres, whose centers are half_height from the middle."""
+        """Adds the convex hull of two spheres whose centers are half_height away from the middle."""
         return self._add_shape(
             "capsule",
             place,
@@ -251,7 +253,7 @@ class Scene:
         )
 
     def add_material(self, material: Material) -> int:
-        """Adds a material and returns its number, those of a file being the first."""
+        """Adds a material and returns its number. The materials of a file come first."""
         materials = self._materials if self._all_materials is None else self._all_materials
         materials.append(_of(material, Material))
         self._forget_native()
@@ -270,13 +272,13 @@ class Scene:
         self._forget_native()
         return len(self.cameras) - 1
 
-    # What is changed.
+    # Changing.
 
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
-        """Changes a material by its name or number: `new` takes its place, or some of its fields get other values, as in
-        scene.set_material("Fabric", base_color=(1, 0, 0), base_color_texture=None). A texture multiplies its colour or
-        number; None takes it away. Raises UsageError where there is no such material or field, where several have the
-        name, and for a value of the wrong kind; the scene stays as it was then. `validate` checks ranges."""
+        """Changes a material by its name or number: `new` replaces it, or fields get other values, as in
+        scene.set_material("Fabric", base_color=(1, 0, 0), base_color_texture=None). A texture multiplies the colour or
+        number; None removes the texture. Raises UsageError if there is no such material or field, if several materials
+        have the name, and for a value of the wrong type; the scene then stays unchanged. `validate` checks ranges."""
         other = None if new is None else _of(new, Material)
         self.materials = replace_one(self.materials, material, other, fields, "material")
 
@@ -285,7 +287,7 @@ class Scene:
         other = None if new is None else _of(new, Light)
         self.lights = replace_one(self.lights, light, other, fields, "light")
 
-    # What there is.
+    # Reading.
 
     @property
     def path(self) -> Path | None:
@@ -294,7 +296,7 @@ class Scene:
 
     @property
     def center(self) -> NDArray[np.float64]:
-        """What coordinates lose before they are rounded to float32, (3,) float64."""
+        """The point that is subtracted from coordinates before they are rounded to float32, (3,) float64."""
         if self._center is not None:
             return self._center.copy()
         meshes = [part for part in self._parts if isinstance(part, _Mesh) and len(part.vertices)]
@@ -307,7 +309,7 @@ class Scene:
 
     @property
     def objects(self) -> list[ObjectInfo]:
-        """Its objects, by the numbers that hits give; but of an NFF file these are of its surfaces."""
+        """Its objects, indexed by the object numbers of hits; for an NFF file those numbers are of its surfaces."""
         return [ObjectInfo(*row) for row in self.native().objects()]
 
     @property
@@ -335,7 +337,7 @@ class Scene:
 
     @property
     def cameras(self) -> list[Camera]:
-        """Copies of its cameras; empty where a Renderer frames the scene."""
+        """Copies of its cameras; if empty, a Renderer frames the scene."""
         base = [] if self._file is None else [from_dict(Camera, record) for record in self._load_base().cameras()]
         return [to_world(camera, self.center) for camera in base] + list(self._cameras)
 
@@ -353,31 +355,32 @@ class Scene:
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
-        """The box of everything finite, (2, 3): least and greatest corner, of the rounded numbers; None where there is
-        nothing."""
+        """The bounds of everything finite, (2, 3): smallest and largest corner of the rounded coordinates; None if
+        there is nothing."""
         box = self.native().bounds()
         return None if box is None else np.array(box, np.float64) + self._native_center
 
     @property
     def warnings(self) -> list[str]:
-        """What of its file is not modelled or was assumed, a sentence each."""
+        """Features of its file that are not modelled, and assumptions, one sentence each."""
         return list(self.native().warnings())
 
     @property
     def variants(self) -> list[str]:
-        """Variants of materials that its file has."""
+        """Material variants of its file."""
         return list(self.native().variants())
 
     def validate(self) -> None:
-        """Raises InputError with all that is wrong with it, each with its place; Caster and Renderer do so too."""
+        """Raises InputError with all problems of the scene and their places, if any. Caster and Renderer do so too."""
         problems = self.native().problems()
         if problems:
             first = problems[0] if len(problems) == 1 else f"{problems[0]} (and {len(problems) - 1} more)"
             raise InputError("\n  ".join([first, *problems[1:]]), problems)
 
     def positions(self, rays: RaysLike, hits: NDArray[Any]) -> NDArray[np.float64]:
-        """Where rays hit, (..., 3) float64, NaN on a miss: on meshes of `add_triangles` where the ray meets the plane
-        of the triangle in float64, of the vertices as they were given; elsewhere as `promin.positions`."""
+        """Returns the hit points, (..., 3) float64, NaN on a miss. On meshes of `add_triangles` it is the intersection
+        of the ray with the plane of the triangle, computed in float64 from the vertices as given; elsewhere as
+        `promin.positions`."""
         points = positions(rays, hits)
         hits = check_hits(hits)
         origins, _, directions, _ = split_rays(rays)
@@ -401,10 +404,10 @@ class Scene:
         words = [f"{number} {word}{'s' * (number != 1)}" for number, word in counts]
         return f"<promin.Scene{name}: {', '.join(words)}>"
 
-    # Native parts, made when they are first asked for.
+    # Native parts, which are made when they are first needed.
 
     def native(self) -> _promin.Scene:
-        """The scene as the library has it, without its center; nobody changes it. For promin's own modules."""
+        """The library's read-only scene, with the center subtracted. For promin's own modules."""
         with self._lock:
             if self._native is None:
                 center = self.center
@@ -413,11 +416,11 @@ class Scene:
             return self._native
 
     def snapshot(self) -> Scene:
-        """A scene that does not change with this one, but shares its arrays and what is made of them."""
+        """Returns a scene that does not change with this one, but shares its arrays and the data derived from them."""
         twin = object.__new__(type(self))
         with self._lock:
             self.native()
-            # Not copy.copy, which pickles and so would read the file anew.
+            # Not copy.copy, which pickles and would therefore read the file again.
             twin.__dict__.update(self.__dict__)
         twin._lock = threading.RLock()
         twin._parts, twin._materials = list(self._parts), list(self._materials)
@@ -428,7 +431,7 @@ class Scene:
 
     @property
     def native_center(self) -> NDArray[np.float64]:
-        """The center that `native` has lost."""
+        """The center that was subtracted in `native`."""
         self.native()
         return self._native_center
 
@@ -468,7 +471,7 @@ class Scene:
             if self._base is None:
                 file = Path(self._file.path)
                 if _hash(file) != self._file.sha256:
-                    raise InputError(f"the scene is not what it was when it was pickled, {file}; load it anew")
+                    raise InputError(f"the scene's file has changed since it was pickled, {file}; load it anew")
                 self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
             return self._base
 
@@ -493,11 +496,12 @@ class Scene:
         if material is None:
             return 0
         if not isinstance(material, (int, np.integer)) or not 0 <= material < 2**32:
-            raise UsageError(f"material is {material!r}; give a number of add_material")
+            raise UsageError(f"material is {material!r}; give a number from add_material")
         return int(material)
 
     def _make_private(self) -> None:
-        """What is not pickled: the file's scene and the whole as the library has them, when they are asked for."""
+        """Creates the members that are not pickled: the library's scene of the file and its whole scene, which are made
+        on demand."""
         self._lock = threading.RLock()
         self._base = None
         self._native = None
@@ -516,24 +520,24 @@ class Scene:
 
 
 SceneLike = Union[Scene, str, "os.PathLike[str]"]
-"""A scene, or the path of its file."""
+"""A scene or the path of its file."""
 
 Named = TypeVar("Named", Material, Light)
 
 
 def to_scene(scene: SceneLike) -> Scene:
-    """The scene, read where it is a file. Raises UsageError, and what Scene.load raises."""
+    """Returns the scene, and reads it first if a file is given. Raises UsageError and the exceptions of Scene.load."""
     if isinstance(scene, Scene):
         return scene
     if isinstance(scene, (str, os.PathLike)):
         return Scene.load(scene)
-    raise UsageError(f"{scene!r:.80} is no promin.Scene; load or make one first")
+    raise UsageError(f"{scene!r:.80} is not a promin.Scene; load or make one first")
 
 
 def replace_one(
     records: list[Named], chosen: str | int, new: Named | None, fields: dict[str, Any], what: str
 ) -> list[Named]:
-    """Materials or lights with one, by its name or number, in whose place there is `new`, with these fields."""
+    """Returns materials or lights in which the one of this name or number is replaced by `new`, with these fields."""
     place = _find_one(records, chosen, what)
     records[place] = change(records[place] if new is None else new, fields)
     return records
@@ -555,7 +559,8 @@ def _find_one(records: list[Named], chosen: str | int, what: str) -> int:
 def meet_planes(
     origins: NDArray[Any], directions: NDArray[Any], triangles: NDArray[Any], otherwise: NDArray[Any]
 ) -> NDArray[np.float64]:
-    """Where rays (n, 3) meet the planes of triangles (n, 3, 3), in float64; `otherwise` where they are parallel."""
+    """Returns the points where rays (n, 3) intersect the planes of triangles (n, 3, 3), in float64; `otherwise` for
+    parallel ones."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         t = np.einsum("ij,ij->i", normals, triangles[:, 0] - origins) / np.einsum("ij,ij->i", normals, directions)
@@ -564,21 +569,21 @@ def meet_planes(
 
 
 def move_light(light: Light, center: NDArray[np.float64]) -> dict[str, Any]:
-    """The light's record, without the center."""
+    """Returns the light's record with the center subtracted."""
     record = to_dict(light)
     record["position"] = _without(record["position"], center)
     return record
 
 
 def move_camera(camera: Camera, center: NDArray[np.float64]) -> dict[str, Any]:
-    """The camera's record, without the center."""
+    """Returns the camera's record with the center subtracted."""
     record = to_dict(camera)
     record["eye"] = _without(record["eye"], center)
     return record
 
 
 def to_world(record: Any, center: NDArray[np.float64]) -> Any:
-    """A camera or light of a native scene with this center in the world."""
+    """Returns a camera or light of a native scene with this center in world coordinates."""
     if not center.any():
         return record
     name = "eye" if isinstance(record, Camera) else "position"
@@ -592,17 +597,17 @@ def _without(point: Any, center: NDArray[np.float64]) -> Any:
     try:
         return tuple(float(x) for x in np.asarray(point, np.float64) - center)
     except (TypeError, ValueError):
-        # The native module says what is wrong with it.
+        # The native module reports the problem.
         return point
 
 
 def _middle(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Near the middle, with few bits, so that small whole numbers stay exact without it."""
+    """Returns a point near the middle with few bits, so that small whole numbers stay exact after subtracting it."""
     with np.errstate(over="ignore", invalid="ignore"):
         middle = low / 2 + high / 2
         size = float(np.max(high - low))
     if not np.isfinite(middle).all() or not np.isfinite(size):
-        # What is not finite is refused by its place.
+        # Values that are not finite are refused with their place.
         return np.zeros(3)
     if size == 0.0:
         return middle
@@ -617,12 +622,12 @@ def _hash(file: Path) -> str:
             while block := stream.read(1 << 20):
                 digest.update(block)
     except OSError as error:
-        raise InputError(f"cannot read the scene ({error.strerror}), {file}") from None
+        raise InputError(f"the scene cannot be read ({error.strerror}), {file}") from None
     return digest.hexdigest()
 
 
 def _frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """A copy that nobody changes."""
+    """Returns a read-only copy."""
     own = np.array(array, order="C")
     own.setflags(write=False)
     return own
@@ -634,7 +639,7 @@ def _to_faces(faces: ArrayLike) -> NDArray[np.uint32]:
         raise UsageError(f"faces have the shape {array.shape}; give (m, 3)")
     with np.errstate(invalid="ignore"):
         if not ((array >= 0) & (array < 2**32) & (array == np.floor(array))).all():
-            raise UsageError("faces are no indices of vertices; give whole numbers from 0 on")
+            raise UsageError("faces are not indices of vertices; give whole numbers of 0 or more")
     own: NDArray[np.uint32] = _frozen(array.astype(np.uint32))
     return own
 
@@ -691,7 +696,7 @@ _FIELDS: dict[str, Callable[[Any], Any]] = {
     "half_size": _vec,
     "is_open": bool,
 }
-"""How fields of shapes are read; all others are numbers."""
+"""Converters for fields of shapes; all other fields are numbers."""
 
 
 _READERS: dict[type[Any], Callable[[_promin.Scene, dict[str, Any]], None]] = {
@@ -700,13 +705,13 @@ _READERS: dict[type[Any], Callable[[_promin.Scene, dict[str, Any]], None]] = {
     Light: _promin.Scene.add_light,
     Material: _promin.Scene.add_material,
 }
-"""How the native module reads records."""
+"""The native module's readers of records."""
 
 
 def _of(record: Any, kind: type[Any]) -> Any:
-    """The record. Raises UsageError where it is of another kind, or a field holds what the native module cannot read: a
-    scene with such a record could neither be used nor corrected."""
+    """Returns the record. Raises UsageError if it has another type, or if the native module cannot read one of its
+    fields: a scene with such a record could neither be used nor corrected."""
     if not isinstance(record, kind):
-        raise UsageError(f"{record!r:.80} is no promin.{kind.__name__}")
+        raise UsageError(f"{record!r:.80} is not a promin.{kind.__name__}")
     _READERS[kind](_promin.Scene(), to_dict(record))
     return record

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What is shown of a scene, and the rules of it; what is left open is decided as the command line does."""
+"""Views of a scene and their rules. Open settings are decided as on the command line."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from promin._errors import UsageError
 from promin._records import Camera, Display, to_dict
 
 CameraLike = Union[Camera, str, int, None]
-"""A camera, or the name or number of one of the scene's; None: its first, or one that frames the scene."""
+"""A camera, or the name or number of a camera of the scene. None: its first, or one that frames the scene."""
 
 Size = Union[tuple[int, int], Sequence[int], int, str, None]
-"""Width and height in pixels; a width; or a word of `promin render --size`: "640x480", "640", "x480", "hd"."""
+"""Width and height in pixels, a width, or a word of `promin render --size`: "640x480", "640", "x480", "hd"."""
 
 Numbers = Union[Sequence[float], NDArray[Any]]
 """Three numbers."""
@@ -32,43 +32,45 @@ _ERROR_SPACES = _promin.list_choices()["error_in"]
 
 @dataclass(frozen=True)
 class View:
-    """What of a scene is shown, and how well; the defaults are those of `promin render`."""
+    """The camera, size, quality and mode of a picture. The defaults are those of `promin render`."""
 
-    # test_tables.py holds these words against the library's tables.
+    # test_tables.py compares these words with the library's tables.
 
     camera: CameraLike = None
-    """From where."""
+    """The camera."""
     size: Size = None
-    """Width and height in pixels, a width alone, "640x480" or "hd", "fullhd", "4k"; None: what the camera asks for, else
-    a height of 720."""
+    """Width and height in pixels, a width alone, "640x480" or "hd", "fullhd", "4k"; None: the size that the camera
+    requests, else a height of 720."""
     crop: tuple[int, int, int, int] | None = None
     """x0, y0, x1, y1: the pixels to trace, half-open."""
     spp: int = 8
-    """Samples a pixel; 1 samples the centre."""
+    """Samples per pixel; 1 samples the centre."""
     quality: str | None = None
     """"draft", "normal", "high" or "best", in place of `spp` and `target_error`."""
     max_depth: int | None = None
-    """Bounces; None: 5, or 8 with glass."""
+    """Largest number of bounces; None: 5, or 8 with glass."""
     target_error: float | None = None
-    """Each pixel takes samples until it claims to be this near (docs/model.md, "Error of a pixel"), in place of
-    `spp`."""
+    """In place of `spp`: each pixel takes samples until its estimated error is at most this (docs/model.md, "Error of a
+    pixel")."""
     time_limit: float | str | None = None
-    """Seconds, or a word as "20s" or "2min": the best picture that is complete by then, compilation included."""
+    """Seconds, or a word such as "20s" or "2min": make the best picture that can be finished in this time, including
+    compilation."""
     min_spp: int | None = None
-    """Samples that each pixel takes with an error target, a power of two; None: 8, or 4 for a coarse target."""
+    """With an error target: smallest number of samples per pixel, a power of two. None: 8, or 4 for a coarse target."""
     max_spp: int | None = None
-    """The samples at which a pixel stops with an error target, a power of two; None: 256."""
+    """With an error target: largest number of samples per pixel, a power of two. None: 256."""
     error_in: str = "linear"
-    """What `target_error` is of: "linear" light, or the "display": what is shown, exposed, tone mapped and encoded as
-    sRGB, by `Renderer.display`, whatever a file is saved with."""
+    """Where `target_error` is measured: in "linear" light, or on the "display", after `Renderer.display` has exposed,
+    tone mapped and encoded it as sRGB. The display of a saved file has no influence."""
     filter: str = "box"
     """"box", "tent", "gauss" or "blackman-harris"."""
     filter_width: float | None = None
-    """In pixels; None: the filter's own."""
+    """Width of the filter in pixels; None: the filter's default."""
     depth: str = "ray"
-    """How the AOV `depth` is measured: "ray" from the eye, or "plane" along the view."""
+    """How the AOV `depth` is measured: "ray" is the distance from the eye, "plane" the distance along the direction of
+    view."""
     debug_view: str = "full"
-    """"full" is light; or "normals", "uv", "object", "primitive", "depth", "steps"."""
+    """What the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth" or "steps"."""
     shadows: bool = True
     """Whether lights cast shadows."""
 
@@ -103,15 +105,15 @@ class View:
 
 
 def of_view(view: object) -> View:
-    """The view itself. Raises UsageError for what is none."""
+    """Returns the view itself. Raises UsageError for other types."""
     if isinstance(view, View):
         return view
-    raise UsageError(f"{view!r:.80} is no promin.View")
+    raise UsageError(f"{view!r:.80} is not a promin.View")
 
 
 def change_view(view: View, given: Mapping[str, Any]) -> View:
-    """The view with those of its fields that are given and not None. They take the place of fields that contradict
-    them: numbers of samples that of a quality, a camera that of all that changes the view's own."""
+    """Returns the view with those of its fields that are given and not None. They replace the fields that contradict
+    them: a number of samples replaces the quality, and a camera replaces everything that changes the view's own."""
     changes = {name: given[name] for name in FIELDS if given.get(name) is not None}
     for name in list(changes):
         changes = {**dict.fromkeys(_TAKES_PLACE_OF.get(name, ())), **changes}
@@ -149,7 +151,7 @@ _NUMBERS_OF_SAMPLES = ("spp", "target_error", "time_limit")
 
 
 def settle_quality(view: View) -> View:
-    """The view with the numbers that its quality stands for."""
+    """Returns the view with the settings that its quality stands for."""
     if view.quality is None:
         return view
     for name in _NUMBERS_OF_SAMPLES:
@@ -170,17 +172,17 @@ def has_target(view: View) -> bool:
 
 
 def begins_with_target(view: View) -> bool:
-    """Whether the first picture has an error target: a time limit begins with one sample a pixel."""
+    """Returns whether the first picture has an error target: with a time limit it has one sample per pixel."""
     return view.target_error is not None and view.time_limit is None
 
 
 def mode_of(view: View) -> dict[str, Any]:
-    """What of the view is compiled in."""
+    """Returns the settings of the view that are compiled in."""
     return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
 
 
 def size_of(view: View) -> tuple[int, ...]:
-    """In pixels; 0 where the camera decides."""
+    """Returns the size in pixels; 0 if the camera determines it."""
     if view.size is None:
         return (0, 0)
     if isinstance(view.size, str):
@@ -221,7 +223,7 @@ def camera_words(view: View) -> list[str]:
 
 
 def limit_of(view: View) -> float | None:
-    """In seconds; None: there is none."""
+    """Returns the time limit in seconds; None if there is none."""
     limit = view.time_limit
     if limit is None:
         return None
@@ -233,7 +235,7 @@ def limit_of(view: View) -> float | None:
 
 
 def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_depth: int) -> dict[str, Any]:
-    """The view as the native module takes it, from a camera that it takes, shown like this."""
+    """Returns the view as a dict for the native module, with this camera and display."""
     size = _promin.choose_size(camera, size_of(view))
     if size is None:
         raise UsageError(
@@ -264,7 +266,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
 
 
 def check_shading(view: View, aovs: tuple[str, ...]) -> None:
-    """A debug view is no light: it has no error and no background to leave out."""
+    """Refuses options that need light: a debug view has no error estimate and no alpha."""
     if shows_light(view):
         return
     for name, lacks in (("error", "error"), ("alpha", "background")):
@@ -276,7 +278,7 @@ def check_shading(view: View, aovs: tuple[str, ...]) -> None:
 
 
 def _check_samples(view: View) -> None:
-    """The rules of promin's options about samples."""
+    """Checks the rules of promin's options about samples."""
     if view.error_in not in _ERROR_SPACES:
         names = " or ".join(f'"{name}"' for name in _ERROR_SPACES)
         raise UsageError(f"error_in is {view.error_in!r:.80}; give {names}")
@@ -289,7 +291,7 @@ def _check_samples(view: View) -> None:
         return
     for name in ("min_spp", "max_spp", "error_in"):
         if getattr(view, name) != getattr(View, name):
-            raise UsageError(f"{name} needs an error to aim at; give target_error as well")
+            raise UsageError(f"{name} needs a target error; give target_error as well")
 
 
 def _integers(values: Any, count: int, what: str) -> tuple[int, ...]:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Work in pieces that a folder keeps: what `promin render --job` and `promin cast --job` do, from Python.
+"""Work that is divided into pieces and saved in a folder, as `promin render --job` and `promin cast --job` do it.
 
     from promin import jobs
 
@@ -10,8 +10,8 @@
         runner.run(piece.number)
     job.merge(["picture.exr"])
 
-A piece is a function of the job and its number, to the bit, so that whoever sees the folder may make any of them at any
-time: processes, machines, the programs. docs/jobs.md has the formats of the folder."""
+The job and the number of a piece determine the piece bit for bit. Any process or machine that can access the folder,
+including the programs, may therefore make any piece at any time. docs/jobs.md describes the files of the folder."""
 
 from __future__ import annotations
 
@@ -61,99 +61,101 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of a job, done or not."""
+    """A piece of a job, whether done or not."""
 
     number: int
     """From 0 on."""
     name: str
-    """As the manifest has it: what of the whole it is."""
+    """Its name in the manifest, which says which part of the whole it is."""
     file: str
-    """Where it lies when it is done."""
+    """Its file when it is done."""
     weight: float
-    """How much there is to do, beside other pieces of the job: pixels, or rays."""
+    """Amount of work relative to other pieces of the job: pixels or rays."""
 
 
 @dataclass(frozen=True)
 class Receipt:
-    """What is told of a piece that was made."""
+    """The record of a piece that was made."""
 
     number: int
     name: str
     sha256: str
-    """Of the piece's bytes."""
+    """SHA-256 of the piece's bytes."""
     bytes: int
     ms: float
-    """What making it took."""
+    """Milliseconds that it took."""
     made_on: str
     """Device and driver."""
     fingerprint: str
-    """`Runner.fingerprint`; empty where a program made it, which does not ask."""
+    """`Runner.fingerprint`; empty if a program made it, which computes none."""
     version: str
     """Of promin."""
     host: str
     pid: int
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Returns a dict for JSON."""
         return asdict(self)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """How a piece that is there is beside the same one made anew, perhaps by another device."""
+    """The comparison of an existing piece with the same piece made again, perhaps on another device."""
 
     is_equal: bool
     """To the bit."""
     is_within: bool
-    """Equal, or within the bounds between devices: at most 0.5 % of pixels or rays are others."""
+    """Whether they are equal or within the bounds between devices: at most 0.5 % of pixels or rays are mismatches."""
     largest: float
-    """Of those that are no others the largest difference: of a number of a pixel, at most 0.004 (of numbers beyond 1
-    relative to them); or of K of t (docs/glossary.md), at most 16."""
+    """The largest difference among all pixels or rays that are no mismatches: for a pixel's numbers at most 0.004
+    (relative for numbers beyond 1), for rays at most 16 in units of K of t (docs/glossary.md)."""
     others: int
-    """Pixels or rays that differ by more, or show another surface, as where an edge decides by a rounding."""
+    """Mismatches: pixels or rays that differ by more, or that show another surface, for example because of rounding at
+    an edge."""
     count: int
-    """Of all pixels or rays of the piece, where it is not equal."""
+    """Number of all pixels or rays of the piece, if it is not equal."""
 
 
 class RaySource(Protocol):
-    """Rays that are not those of a .npy file. The runners of a job use it on their threads."""
+    """A source of rays other than a .npy file. The runners of a job use it on their threads."""
 
     @property
     def count(self) -> int:
-        """Of rays."""
+        """Number of rays."""
 
     @property
     def name(self) -> str:
-        """Of what they are kept in, without its folder."""
+        """Name of their container, without its folder."""
 
     @property
     def size_bytes(self) -> int:
-        """Of what they are kept in."""
+        """Size of their container in bytes."""
 
     @property
     def sha256(self) -> str:
-        """A hash over all rays, which tells them from any others."""
+        """A hash over all rays, which identifies them."""
 
     def read(self, first: int, count: int) -> NDArray[np.float32]:
-        """The rays first...first + count, as (count, 8) float32 in C order: origin, tmin, direction, tmax."""
+        """Returns the rays from `first` up to, but without, `first` + `count` as (count, 8) float32 in C order: origin,
+        tmin, direction, tmax."""
 
 
 def create(kind: str, arguments: Sequence[str], folder: PathLike, *, rays: RaySource | None = None) -> Job:
-    """Makes the job of a command in a folder, or goes on with the one that is there.
+    """Creates the job of a command in a folder, or continues the one that exists.
 
-    kind: "render" or "cast". arguments: the words that this command of promin takes, without --output, --offsets,
-    --job, --piece and --device; --pieces (or --tiles) cuts it. The scene and all that a piece hangs on are read and
-    hashed. Files are kept by their absolute paths, in the folder, so that `open` knows the rest. rays: of "cast", takes
-    the place of the file that the words name all the same; whoever opens the job elsewhere passes it again, to
-    `Job.runner`. Raises UsageError for what the command refuses, and where the folder has another job, which says what
-    differs; InputError, RunError."""
+    kind: "render" or "cast". arguments: the arguments of this command of promin, without --output, --offsets, --job,
+    --piece and --device; --pieces (or --tiles) divides the work. The scene and all other inputs of pieces are read and
+    hashed. The folder records the arguments with absolute paths, so `open` needs only the folder. rays: for "cast",
+    replaces the file of rays, which the arguments must still name; after opening the job elsewhere, pass it again to
+    `Job.runner`. Raises UsageError for arguments that the command refuses, and if the folder belongs to another job,
+    with the difference; InputError, RunError."""
     if isinstance(arguments, str):
         raise UsageError(f"arguments are {arguments!r}; give a list of words")
     words = [os.fsdecode(word) if isinstance(word, (str, bytes, os.PathLike)) else str(word) for word in arguments]
     for word in words:
         if not _is_utf8(word):
             raise UsageError(
-                f"the argument {word!r} is not UTF-8, in which a job tells what it is made of; rename the file"
+                f"the argument {word!r} is not UTF-8, so a job cannot record it; rename the file"
             )
     name = os.fsdecode(folder)
     plan = _promin.PlannedJob.plan(str(kind), words, name, rays)
@@ -169,18 +171,19 @@ def create_with(
     files: Sequence[PathLike] = (),
     make: Make | None = None,
 ) -> Job:
-    """The same for a job whose pieces a function makes.
+    """Does the same for a job whose pieces a function makes.
 
-    kind: a word for what the pieces are. options: all that decides about their bytes, beside files, which are hashed.
-    pieces: their names, all different, of letters, digits, "_" and "-". make: takes a piece's number and returns a text
-    about it and its bytes, always the same; whoever opens the job elsewhere passes it again, to `Job.runner`. A job of
-    the kind "cast" whose texts and bytes are those that docs/jobs.md has of answers to rays can be merged.
+    kind: a word for the kind of the pieces. options: everything that determines their bytes, except files, which are
+    hashed. pieces: their names, all different, of letters, digits, "_" and "-". make: takes a piece's number and
+    returns a text about the piece and its bytes, which must always be the same; after opening the job elsewhere, pass
+    it again to `Job.runner`. A job of the kind "cast" can be merged if its texts and bytes have the format that
+    docs/jobs.md gives for rays.
 
-    Raises UsageError where the folder has another job, InputError, RunError."""
+    Raises UsageError if the folder belongs to another job, InputError, RunError."""
     names = [str(name) for name in pieces]
     wrong = next((name for name in names if not re.fullmatch(r"[A-Za-z0-9_-]+", name)), None)
     if not names or wrong is not None or len(set(names)) < len(names):
-        what = f"{wrong!r} is no name of a piece" if wrong is not None else "pieces are none, or have the same name"
+        what = f"{wrong!r} is not a name of a piece" if wrong is not None else "pieces are none or have equal names"
         raise UsageError(f"{what}; give different names of letters, digits, _ and -")
     pairs = [(str(name), str(value)) for name, value in options.items()]
     name = os.fsdecode(folder)
@@ -189,14 +192,15 @@ def create_with(
 
 
 def open(folder: PathLike) -> Job:
-    """The job of a folder, which is read alone: nothing of scenes and devices. Raises InputError where there is none."""
+    """Opens the job of a folder. Reads only the folder, neither scenes nor devices. Raises InputError if there is no
+    job."""
     name = os.fsdecode(folder)
     return Job(_promin.Job.open(name), name)
 
 
 def list_gpus() -> list[str]:
-    """What `Job.runner` takes for each device of this machine that is no processor, "uuid:…"; empty where there are
-    none, or no Vulkan."""
+    """Returns an argument for `Job.runner`, "uuid:…", for each device of this machine that is not a CPU; empty if there
+    is none or no Vulkan."""
     try:
         infos = Device.list()
     except DeviceError:
@@ -205,8 +209,8 @@ def list_gpus() -> list[str]:
 
 
 class Job:
-    """A job in its folder, as `create` and `open` give it. Any threads may use it. What is done is read from the disk
-    whenever it is asked for."""
+    """A job in its folder, as `create` and `open` return it. Any thread may use it. The state of pieces is read from
+    the disk at each request."""
 
     def __init__(
         self,
@@ -216,7 +220,7 @@ class Job:
         make: Make | None = None,
         rays: RaySource | None = None,
     ) -> None:
-        """For `create`, `create_with` and `open`."""
+        """Use `create`, `create_with` or `open`."""
         self._native = native
         self._folder = folder
         self._plan = plan
@@ -233,60 +237,60 @@ class Job:
 
     @property
     def id(self) -> str:
-        """SHA-256 of all that pieces hang on."""
+        """SHA-256 of all inputs of the pieces."""
         return self._id
 
     @property
     def kind(self) -> str:
-        """ "render", "cast", or what `create_with` was given."""
+        """ "render", "cast", or the kind given to `create_with`."""
         return self._kind
 
     @property
     def folder(self) -> str:
-        """As it was given."""
+        """The folder as given."""
         return self._folder
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """All of them, by their numbers."""
+        """All pieces, indexed by their numbers."""
         return self._pieces
 
     @property
     def options(self) -> dict[str, str]:
-        """What decides about the pieces' bytes beside the files: the program's version, options by name."""
+        """The inputs of the pieces' bytes other than files: the program's version and options by name."""
         return dict(self._options)
 
     @property
     def files(self) -> list[tuple[str, int, str]]:
-        """Name, bytes and SHA-256 of the files that pieces hang on."""
+        """Name, size in bytes and SHA-256 of the files that the pieces depend on."""
         return list(self._files)
 
     @property
     def arguments(self) -> list[str] | None:
-        """The command's words, by which `runner` makes pieces; None for a job of `create_with`."""
+        """The command's arguments, from which `runner` makes pieces; None for a job of `create_with`."""
         return self._native.arguments()
 
     def state(self, number: int) -> Literal["done", "missing", "bad"]:
-        """What the disk tells of a piece, which is read and hashed whenever it is asked: "done", "missing", or "bad"
-        where it is cut, damaged or of another job."""
+        """Reads and hashes a piece on the disk and returns its state: "done", "missing", or "bad" if it is cut short,
+        damaged or belongs to another job."""
         state: Any = self._native.state_of(number)[0]
         return state  # type: ignore[no-any-return]
 
     def why(self, number: int) -> str:
-        """What is bad about a piece, "is cut"; empty where nothing is."""
+        """Returns the fault of a bad piece, e.g. "the piece is cut short"; empty if there is none."""
         return self._native.state_of(number)[1]
 
     def sha256(self, number: int) -> str:
-        """Of the bytes of a piece that is done. Raises InputError where it is not."""
+        """Returns the SHA-256 of the bytes of a piece that is done. Raises InputError if it is not done."""
         return self._native.sha256(number)
 
     def read(self, number: int) -> tuple[str, bytes]:
-        """What its maker says of a piece that is done, and its bytes. Raises InputError where it is not."""
+        """Returns the text and the bytes of a piece that is done. Raises InputError if it is not done."""
         return self._native.read(number)
 
     def preview(self, number: int, most_px: int = 128) -> NDArray[np.uint8] | None:
-        """A piece of a picture to look at, sRGB (rows, columns, 3) of at most so many rows and columns, without tone
-        mapping; None of other pieces. Raises InputError where it is not done."""
+        """Returns a preview of a piece of a picture, sRGB (rows, columns, 3) without tone mapping, with at most the
+        given number of rows and columns; None for other pieces. Raises InputError if it is not done."""
         if self._kind != "render":
             return None
         description, data = self.read(number)
@@ -302,8 +306,8 @@ class Job:
         return np.ascontiguousarray(np.round(255.0 * codes), np.uint8)
 
     def receipt(self, number: int) -> Receipt | None:
-        """What is told of a piece that is done; None where it is not. What the ledger does not know of it (it may be of
-        a process that was ended before it could tell) is empty or 0."""
+        """Returns the record of a piece that is done; None if it is not done. Fields that the ledger lacks, for example
+        because a process was killed before it could write them, are empty or 0."""
         stored = self._native.stored(number)
         if stored is None:
             return None
@@ -315,10 +319,10 @@ class Job:
         return Receipt(number, name, sha256, size, 0.0, "", "", self._options.get("version", ""), "", 0)
 
     def events(self, maker: str | None = None) -> list[dict[str, Any]]:
-        """What the ledger tells, by time, or what one maker tells, in its order: dicts with "event" ("begun", "done",
-        "failed" or "stopped"), "number", "piece", "time_s" (since 1970), "made_on", "fingerprint" and "maker"
-        (HOST-PID); with "done" what a Receipt has, with "failed" the sentence "why". A maker that has begun a piece and
-        tells no more of it has died, or is at it."""
+        """Returns the events of the ledger sorted by time, or those of one maker in their order. Each is a dict with
+        "event" ("begun", "done", "failed" or "stopped"), "number", "piece", "time_s" (since 1970), "made_on",
+        "fingerprint" and "maker" (HOST-PID); "done" adds the fields of a Receipt, "failed" the sentence "why". A maker
+        without an event after "begun" is still making the piece, or has died."""
         return self._ledger.events(maker)
 
     def write(
@@ -330,8 +334,8 @@ class Job:
         made_on: str = "",
         fingerprint: str = "",
     ) -> Receipt:
-        """Writes a piece, whole or not at all, and its receipt. It is for makers of pieces of their own; the text and
-        the bytes must be those that any other maker would write. Raises RunError."""
+        """Writes a piece, completely or not at all, and its receipt. It is for programs that make pieces themselves;
+        the text and the bytes must be those that any other maker would write. Raises RunError."""
         return Receipt(**self._native.write(number, description, data, ms, made_on, fingerprint))
 
     def runner(
@@ -342,13 +346,13 @@ class Job:
         rays: RaySource | None = None,
         tell: Callable[[str], object] = lambda words: None,
     ) -> Runner:
-        """What makes pieces here: the scene is read and the device opened once.
+        """Returns a maker of pieces on this machine. It reads the scene and opens the device once.
 
-        device: a Device, a part of a name, an index, or None for the default one. make, rays: as `create_with` and
-        `create` were given them. tell: is told what takes its time, as "loads the scene" or "compiles". The tree of a large scene is that of DIR/trees, where the first who needs it puts it.
-        Raises UsageError where the job would be another one today, as a file or the program has changed, and says
-        which; InputError where the folder does not say how pieces are made, or a file is gone; DeviceError,
-        RunError."""
+        device: a Device, a part of a name, an index, or None for the default one. make, rays: as given to `create_with`
+        and `create`. tell: receives the name of each long step, such as "loads the scene" or "compiles". The tree of a
+        large scene is shared in DIR/trees; the first process that needs it writes it. Raises UsageError if a file or
+        the program has changed, so that the job would be another one now, and names the change; InputError if the
+        folder does not say how pieces are made, or a file is missing; DeviceError, RunError."""
         make = make or self._make
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
             if self._kind not in ("render", "cast"):
@@ -359,26 +363,28 @@ class Job:
         return Runner(self, device, make)
 
     def check_outputs(self, outputs: Sequence[PathLike]) -> None:
-        """Finds before the work what `merge` would refuse these files for: their endings or number, frames that would go to
-        one, and a file that the job's pieces hang on. Raises UsageError, InputError."""
+        """Checks before the work whether `merge` would refuse these files: their endings and number, several frames in
+        one file, and files that are inputs of the job. Raises UsageError, InputError."""
         self._native.check_outputs([os.fsdecode(output) for output in outputs])
 
     def merge(
         self, outputs: Sequence[PathLike], *, allow_mixed: bool = False, frames: Sequence[int] | None = None
     ) -> None:
-        """Makes the files of all pieces, byte for byte those of a single run; each whole or not at all.
+        """Puts all pieces together and writes the files, byte for byte those of a single run; each completely or not at
+        all.
 
-        outputs: of "render" pictures (.exr, .png), of a camera path with #### for the number; of "cast" one .npy of
-        hits or counts, and of --all the offsets after it. allow_mixed: whether answers to rays may be those of several
-        drivers. frames: of a camera path only these, whose pieces alone must be there; None: all. Raises RunError where
-        pieces are missing or bad, which names some; InputError where they do not belong together, UsageError."""
+        outputs: for "render" pictures (.exr, .png), for a camera path with #### for the number of a frame; for "cast"
+        one .npy of hits or counts, with --all followed by the offsets. allow_mixed: whether results of rays may come
+        from several drivers. frames: only these frames of a camera path, so only their pieces must be done; None: all.
+        Raises RunError if pieces are missing or bad, and names some; InputError if they do not belong together;
+        UsageError."""
         chosen = None if frames is None else [index(frame) for frame in frames]
         if chosen and min(chosen) < 0:
             raise UsageError(f"frames has {min(chosen)}, of {self.folder}; frames are counted from 0")
         self._native.merge([os.fsdecode(output) for output in outputs], allow_mixed, chosen, None)
 
     def clear_leftovers(self) -> None:
-        """Removes the temporary files of writers on this machine that have ended before they were done."""
+        """Removes the temporary files of processes on this machine that ended before they had finished writing."""
         self._native.clear_leftovers()
 
     def __repr__(self) -> str:
@@ -389,11 +395,11 @@ class Job:
 
 
 class Runner:
-    """Makes pieces of a job on one device, for one thread at a time; without Python's lock, so others run meanwhile.
-    Ctrl-C ends a piece before its next dispatch, and nothing of it is written."""
+    """Makes pieces of a job on one device, for one thread at a time. It releases Python's lock, so other threads run
+    meanwhile. Ctrl-C ends a piece before its next dispatch, and nothing of that piece is written."""
 
     def __init__(self, job: Job, device: DeviceLike, make: Make | None) -> None:
-        """For `Job.runner`."""
+        """Use `Job.runner`."""
         self._job = job
         self._make = make
         self._device: Device | None = None
@@ -405,19 +411,19 @@ class Runner:
 
     @property
     def job(self) -> Job:
-        """Whose pieces it makes."""
+        """The job whose pieces it makes."""
         return self._job
 
     @property
     def made_on(self) -> str:
-        """Device and driver; "Python" where a function makes the pieces."""
+        """Device and driver; "Python" if a function makes the pieces."""
         return "Python" if self._native is None else self._native.made_on()
 
     @property
     def fingerprint(self) -> str:
-        """SHA-256 over device, driver and the device's answers to fixed rays and a fixed picture: devices with the same
-        one are taken to give the same bits. Empty where a function makes the pieces. A process asks a device once, which
-        takes about a second."""
+        """SHA-256 over device, driver and the device's results for fixed rays and a fixed picture. Devices with the
+        same fingerprint are assumed to give the same bits. Empty if a function makes the pieces. Each process computes
+        it once per device, which takes about a second."""
         if self._device is None:
             return ""
         info = self._device.info
@@ -427,11 +433,11 @@ class Runner:
             return _fingerprints[info]
 
     def run(self, number: int, stop: Stop | None = None) -> Receipt:
-        """Makes a piece unless it is done, writes it, and returns its receipt, or that of the one that is there.
+        """Makes and writes a piece unless it is done. Returns the receipt of the new or the existing piece.
 
-        stop: is asked about twenty times a second, of pieces that a function makes before and after it; where it
-        returns True, `run` raises Cancelled and nothing is written. Raises InputError where an input has changed,
-        RunError. The ledger is told of all of it."""
+        stop: called about twenty times a second; for pieces that a function makes, before and after the function. If it
+        returns True, `run` raises Cancelled and nothing is written. Every event is recorded in the ledger. Raises
+        InputError if an input has changed, RunError."""
         done = self._job.receipt(number)
         if done is not None:
             return done
@@ -451,8 +457,8 @@ class Runner:
             raise
 
     def recompute(self, number: int, stop: Stop | None = None) -> str:
-        """Makes a piece anew and returns the SHA-256 of its bytes, as `Job.sha256` tells that of the one on the disk;
-        nothing is written."""
+        """Makes a piece again and returns the SHA-256 of its bytes, to compare with `Job.sha256` of the piece on the
+        disk. Writes nothing."""
         if self._native is not None:
             return self._native.recompute(number, _progress_of(stop))
         import hashlib
@@ -460,9 +466,9 @@ class Runner:
         return hashlib.sha256(self._call_make(number, stop)[1]).hexdigest()
 
     def compare(self, number: int, stop: Stop | None = None) -> Comparison:
-        """Makes a piece anew and compares it with the one on the disk; nothing is written. Devices of one fingerprint
-        give the same bits; those of others are within the bounds. Pieces that a function makes are equal or not. Raises
-        InputError where the piece is not done."""
+        """Makes a piece again and compares it with the one on the disk. Writes nothing. Devices with the same
+        fingerprint give the same bits; others agree within the bounds. Pieces that a function makes are equal or not.
+        Raises InputError if the piece is not done."""
         if self._native is not None:
             return Comparison(**self._native.compare(number, _progress_of(stop)))
         is_equal = self.recompute(number, stop) == self._job.sha256(number)
@@ -479,7 +485,7 @@ class Runner:
 
 
 class _Ledger:
-    """Reads what makers tell, and what they have told since the last time; a line that is not whole yet waits."""
+    """Reads the makers' events, and later only new ones; an incomplete line is read when it is complete."""
 
     def __init__(self, folder: Path, pieces: Sequence[str]) -> None:
         self._folder = folder
@@ -496,7 +502,7 @@ class _Ledger:
             return [event for _, event in heapq.merge(*lists, key=lambda timed: timed[0])]
 
     def find(self, number: int, sha256: str) -> Receipt | None:
-        """The last that was told of a piece with these bytes."""
+        """Returns the last record of a piece with these bytes."""
         with self._lock:
             self._read()
             for event in reversed(self._receipts.get(number, [])):
@@ -515,7 +521,7 @@ class _Ledger:
             told = self._by_maker.setdefault(file.stem, [])
             for event in _parse(whole, self._pieces):
                 event["maker"] = file.stem
-                # A clock that is put back does not change the order in which a maker tells.
+                # The order of a maker's events does not depend on its clock, which may be set back.
                 told.append((max(float(event["time_s"]), told[-1][0] if told else 0.0), event))
                 if event["event"] == "done":
                     self._receipts.setdefault(event["number"], []).append(event)
@@ -526,7 +532,7 @@ _OF_RECEIPT = {"sha256": str, "size_bytes": int, "ms": (int, float), "version": 
 
 
 def _parse(text: bytes, pieces: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """The lines that are events of these pieces; what a disk has damaged is left out."""
+    """Returns the events of these pieces; damaged lines are skipped."""
     for line in text.splitlines():
         try:
             event = json.loads(line)
@@ -557,7 +563,7 @@ def _receipt_of(event: dict[str, Any]) -> Receipt:
 
 
 def _is_utf8(word: str) -> bool:
-    """Whether it holds none of os.fsdecode's stand-ins for other bytes."""
+    """Returns whether the text contains no surrogates of os.fsdecode for bytes that are not UTF-8."""
     try:
         word.encode()
     except UnicodeEncodeError:
@@ -566,7 +572,7 @@ def _is_utf8(word: str) -> bool:
 
 
 def _weigh(name: str) -> float:
-    """The ranges in a piece's name are its rows and columns, or its rays."""
+    """Returns the number of pixels or rays of a piece: its name contains the ranges of rows and columns, or of rays."""
     ranges = [int(end) - int(begin) for begin, end in re.findall(r"(\d+)-(\d+)", name)]
     return float(math.prod(ranges)) if ranges else 1.0
 
@@ -590,5 +596,5 @@ def _renew_lock() -> None:
 
 _asking = threading.Lock()
 _fingerprints: dict[DeviceInfo, str] = {}
-# Another thread may have held it at the fork.
+# Another thread may have held the lock at the fork.
 os.register_at_fork(after_in_child=_renew_lock)

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures in tests: a picture must be that of a baseline file, by the verdict of `promin compare`.
+"""Picture tests: compares a picture with a baseline file, by the measure of `promin compare`.
 
     def test_part():
         frame = promin.Renderer(scene).render(size=(320, 240))
         promin.testing.assert_same_picture(frame, "tests/baselines/part.exr")
 
-PROMIN_UPDATE_BASELINES=1 in the environment writes baselines in place of comparing."""
+With PROMIN_UPDATE_BASELINES=1 in the environment, baselines are written and not compared."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ _HEAT = np.array([[0, 0, 4], [81, 18, 124], [183, 55, 121], [252, 137, 97], [252
 
 @dataclass(frozen=True)
 class Difference:
-    """How far apart two pictures are (include/promin/compare.h), in the units of their numbers."""
+    """The difference of two pictures (include/promin/compare.h), in the units of their values."""
 
     pixel_count: int
     mean: float
-    """Of the absolute differences of all channels."""
+    """Mean absolute difference over all channels."""
     rmse: float
     psnr_db: float
-    """Infinite where the pictures are equal."""
+    """Peak signal-to-noise ratio in decibels; infinite if the pictures are equal."""
     largest: float
     largest_at: tuple[int, int]
-    """Column and row of the pixel that differs most."""
+    """Column and row of the pixel with the largest difference."""
     different_count: int
-    """Pixels of which a channel differs by more than `fail`."""
+    """Number of pixels with a channel that differs by more than `fail`."""
     non_finite_count: int
     flip: float
     """The mean of FLIP, 0...1."""
@@ -56,21 +56,21 @@ class Difference:
 
     @property
     def percent(self) -> float:
-        """Of all pixels those that differ by more than `fail`."""
+        """Percentage of pixels that differ by more than `fail`."""
         return 100.0 * self.different_count / self.pixel_count
 
 
 def compare(reference: PictureLike, picture: PictureLike, *, fail: float = 0.0, linear: bool = True) -> Difference:
-    """The figures of `promin compare`. fail: a pixel of which a channel differs by more is different. linear: whether
-    the numbers are linear light, else codes of sRGB as 0...1; only FLIP needs to know. Raises InputError where the
-    sizes differ."""
+    """Returns the measures of `promin compare`. fail: a pixel differs if one of its channels differs by more. linear:
+    whether the values are linear light; else they are sRGB values in 0...1. Only FLIP depends on it. Raises InputError
+    if the sizes differ."""
     first, second = _pixels(reference), _pixels(picture)
     return Difference(**_promin.compare(first, second, bool(linear), float(fail)))
 
 
 def fingerprint(device: Device | None = None) -> str:
-    """Eight letters for name and driver of a device, by which baselines are told apart: pictures have the same bits on
-    the same device."""
+    """Returns eight letters that identify the name and driver of a device, for the names of its baselines. Pictures
+    have the same bits on the same device."""
     return hashlib.sha256((device or Device()).fingerprint.encode()).hexdigest()[:8]
 
 
@@ -84,17 +84,17 @@ def assert_same_picture(
     update: bool | None = None,
     display: Display = Display(),
 ) -> None:
-    """Raises DifferenceError, an AssertionError, where more than fail_percent of a hundred pixels differ by more than
-    `fail` from the baseline.
+    """Raises DifferenceError, an AssertionError, if more than fail_percent percent of the pixels differ from the
+    baseline by more than `fail`.
 
-    picture: a Frame or linear light (rows, columns, 3). baseline: an .exr, which holds all numbers, or a .png, which
-    holds 8 bits of what `display` (or the Frame's own) shows; then both are compared as codes 0...1 of 8 bits. device:
-    with one, a baseline NAME.FINGERPRINT.exr beside it counts in its place where it is there, and is what `update`
-    writes: one for each driver whose bits differ. update: write the baseline; None: whether PROMIN_UPDATE_BASELINES is
-    set and not "0".
+    picture: a Frame or linear light (rows, columns, 3). baseline: an .exr, which stores full precision, or a .png,
+    which stores 8 bits after the transform `display` (by default the Frame's own); both pictures are then compared as
+    8-bit values in 0...1. device: if given, a file NAME.FINGERPRINT.exr beside the baseline replaces it if it exists,
+    and `update` writes that file: one for each driver whose bits differ. update: whether to write the baseline; None:
+    write it if PROMIN_UPDATE_BASELINES is set and not "0".
 
-    Where they differ, NAME.actual.exr (linear light) and NAME.difference.png (FLIP from black to white) are written
-    beside the baseline, or into PROMIN_TEST_OUTPUT. Raises InputError where there is no baseline."""
+    If they differ, NAME.actual.exr (linear light) and NAME.difference.png (FLIP from black to white) are written beside
+    the baseline, or into PROMIN_TEST_OUTPUT. Raises InputError if the baseline is missing."""
     shared = Path(os.fsdecode(baseline))
     if shared.suffix not in (".exr", ".png"):
         raise UsageError(f"a baseline is an .exr or a .png, not {shared}")
@@ -129,7 +129,7 @@ def assert_same_picture(
 
 
 def heat(flip_map: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Errors 0...1 (rows, columns) as linear colours from black over violet and orange to white."""
+    """Returns errors 0...1 (rows, columns) as linear colours from black over violet and orange to white."""
     places = np.clip(np.nan_to_num(flip_map, nan=1.0), 0.0, 1.0) * (len(_HEAT) - 1)
     codes = np.stack([np.interp(places, np.arange(len(_HEAT)), _HEAT[:, i]) for i in range(3)], axis=-1)
     linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
@@ -137,7 +137,7 @@ def heat(flip_map: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _to_codes(srgb: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Rounded to 8 bits, and equal where these are."""
+    """Returns values rounded to 8 bits, so that they are equal if their 8-bit values are."""
     return np.asarray(np.floor(srgb * 255.0 + 0.5) / 255.0, np.float32)
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""promin-farm: jobs of promin on many processes and machines, by Dask or by any queue. docs/farm.md tells how.
+"""promin-farm runs jobs of promin on many processes and machines, by Dask or by any queue (docs/farm.md).
 
-It knows which piece is made where, again, and how long that takes; what a piece is knows `promin.jobs`, the one module
-of promin that it imports. All truth is in the job's folder: whoever is ended, by whatever, `promin-farm resume` goes
-on."""
+It decides where each piece is made, when it is made again, and measures the time. `promin.jobs`, the only module of
+promin that it imports, knows the contents of pieces. The whole state is in the job's folder, so after any kind of end
+`promin-farm resume` continues the job."""

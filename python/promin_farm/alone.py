@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""`promin-farm work`: a process that makes its share of a job by itself, without Dask, for queues of any kind."""
+"""`promin-farm work`: a process that makes its share of a job alone, without Dask, for queues of any kind."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ _SELF = "this process"
 
 
 class Signals:
-    """SIGINT and SIGTERM: the first ends the work when the piece at hand is made, the second leaves that too."""
+    """Handles SIGINT and SIGTERM: the first ends the work after the current piece, the second abandons that piece
+    too."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -36,11 +37,11 @@ class Signals:
             signal.signal(number, handler)
 
     def end_soon(self) -> bool:
-        """Whether there was one."""
+        """Returns whether there was a signal."""
         return self.count > 0
 
     def end_now(self) -> bool:
-        """Whether there were two."""
+        """Returns whether there were two signals."""
         return self.count > 1
 
     def _count(self, number: int, frame: FrameType | None) -> None:
@@ -48,7 +49,7 @@ class Signals:
 
 
 class Alone:
-    """A crew of this process alone, which makes a piece while the foreman waits for its answer."""
+    """A crew that consists of this process, which makes a piece while the foreman waits for its answer."""
 
     patience_s = 0.0
     most_at_once = 1
@@ -84,8 +85,8 @@ class Alone:
 
 
 def find_share(words: str | None) -> tuple[int, int]:
-    """I and N of "I/N", I from 0; without words those of the array of Slurm that this process is of, else all. Raises
-    UsageError."""
+    """Returns I and N of "I/N", where I counts from 0. Without an argument it returns those of this process in its
+    Slurm array, else 0 and 1. Raises UsageError."""
     if words is None:
         env = os.environ
         if "SLURM_ARRAY_TASK_COUNT" not in env:
@@ -93,7 +94,8 @@ def find_share(words: str | None) -> tuple[int, int]:
         step = int(env.get("SLURM_ARRAY_TASK_STEP", "1")) or 1
         first = int(env.get("SLURM_ARRAY_TASK_MIN", "0"))
         tasks = int(env["SLURM_ARRAY_TASK_COUNT"])
-        # A list with gaps has numbers beyond its count; that two tasks then begin with one share costs time alone.
+        # A list with gaps has numbers beyond its count. Two tasks then start with the same share, which only costs
+        # time.
         return (int(env["SLURM_ARRAY_TASK_ID"]) - first) // step % tasks, tasks
     index, _, count = words.partition("/")
     if index.isdigit() and count.isdigit() and int(index) < int(count):
@@ -102,8 +104,8 @@ def find_share(words: str | None) -> tuple[int, int]:
 
 
 def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch, signals: Signals) -> Tally:
-    """Makes every N-th piece from I on, then what is missing beside, from the place I/N of the list on; what others are
-    at is theirs. Raises promin's errors."""
+    """Makes every N-th piece from I on, then all other missing pieces, starting at the position I/N of the list. Skips
+    pieces that other processes are making. Raises promin's errors."""
     index, count = share
     folder = Path(job.folder)
     settings = Settings.read(folder)
@@ -113,9 +115,9 @@ def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch
     whole = Tally()
 
     def run(numbers: list[int], survey: Survey) -> bool:
-        """Whether the process may go on."""
+        """Returns whether the process may continue."""
         foreman = Foreman(job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon)
-        # Pieces that have ended others come last, as they may end this one.
+        # Pieces that have killed other processes come last, because they may kill this one.
         tally = foreman.run(sorted(numbers, key=lambda n: survey.tries[n].deaths if n in survey.tries else 0))
         whole.done += tally.done
         whole.failed.update(tally.failed)
@@ -131,7 +133,7 @@ def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch
         )
         first = index * survey.total // count
         missing = [n for n in [*range(first, survey.total), *range(first)] if n not in taken]
-        # A few at a time, as others take from the same list.
+        # Only a few at a time, because other processes take pieces from the same list.
         goes_on = bool(missing) and run(missing[: max(1, len(missing) // (2 * count))], survey)
     worker.close()
     return whole

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a job's files of its pieces: the frames of a path while the rest is made, everything else at the end."""
+"""Writes a job's files from its pieces: frames of a path while other frames are made, everything else at the end."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from promin_farm.settings import Settings, frame_number_of
 
 
 class Assembly:
-    """The outputs of one job. A frame is written once, as soon as its pieces are there; what the command does meanwhile
-    is to wait, so a film's files do not take a time of their own after its last piece."""
+    """The outputs of one job. A frame is written once, as soon as its pieces are done. The command waits for pieces at
+    that time anyway, so the files of a film cost little time after its last piece."""
 
     def __init__(self, job: jobs.Job, settings: Settings) -> None:
         self._job = job
         self._outputs = settings.outputs
         self._allow_mixed = settings.allow_mixed
         self._missing: dict[int, set[int]] = {}
-        """Of frames that are not written: the pieces that they wait for."""
+        """For each frame that is not written, the pieces that it waits for."""
         self._ready: queue.SimpleQueue[int | None]
-        """Frames to write; None ends it."""
+        """Frames to write; None ends the thread."""
         self._written: set[int] = set()
         self._frames: dict[int, int] = {}
-        """By piece; of all or of none."""
+        """The frame of each piece; either for all pieces or for none."""
         for piece in job.pieces:
             frame = frame_number_of(piece)
             if frame is None:
-                break  # One picture, or rays, of which there may be a million pieces.
+                break  # A single picture, or rays; there may be a million pieces.
             self._frames[piece.number] = frame
 
     @contextmanager
     def writing(self, missing: Iterable[int], stop: Callable[[], bool]) -> Iterator[None]:
-        """Within it frames are written on a thread of their own. missing: the pieces that are to be made. stop: whether
-        a frame that is not begun is left, as those are that wait where an error ends the work."""
+        """A context in which frames are written on a separate thread. missing: the pieces to make. stop: whether to
+        leave out frames that have not been started; waiting frames are also left out after an error."""
         if not self._outputs or not self._frames:
             yield
             return
         self._ready = queue.SimpleQueue()
         self._missing = {frame: set() for frame in self._frames.values() if frame not in self._written}
         for number in missing:
-            # What is altered after its frame was written is made anew, the same.
+            # A piece that is altered after its frame was written is made again with the same bytes.
             if self._frames[number] in self._missing:
                 self._missing[self._frames[number]].add(number)
         for frame, numbers in self._missing.items():
@@ -66,7 +66,7 @@ class Assembly:
             thread.join()
 
     def piece_done(self, number: int) -> None:
-        """Within `writing`: the piece is there."""
+        """Reports within `writing` that the piece is done."""
         frame = self._frames.get(number)
         if frame not in self._missing:
             return
@@ -75,7 +75,7 @@ class Assembly:
             self._ready.put(frame)
 
     def write_rest(self) -> None:
-        """All that is not written yet. Raises promin's errors."""
+        """Writes everything that is not written yet. Raises promin's errors."""
         if not self._outputs:
             return
         if not self._frames:
@@ -90,5 +90,5 @@ class Assembly:
             try:
                 self._job.merge(self._outputs, allow_mixed=self._allow_mixed, frames=[frame])
             except jobs.Error:
-                continue  # It is tried again at the end, and told then.
+                continue  # It is tried again at the end, and reported then.
             self._written.add(frame)

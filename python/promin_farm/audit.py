@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A sample of a job's pieces is made once more, here, and compared with what is there: equal bits within a fingerprint,
-within the published bounds across."""
+"""Makes a sample of a job's pieces again on this machine and compares it with the existing pieces. Pieces of the same
+fingerprint must have equal bits; others must agree within the published bounds."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from promin_farm.survey import take_survey
 
 @dataclass
 class Audit:
-    """What was found, piece by piece."""
+    """The results, piece by piece."""
 
     fingerprint: str
     """Of this process."""
     within: dict[str, jobs.Comparison] = field(default_factory=dict)
-    """By names of pieces, those of this fingerprint, which must have equal bits."""
+    """Results by name for pieces of this fingerprint, which must have equal bits."""
     across: dict[str, jobs.Comparison] = field(default_factory=dict)
-    """Those of other fingerprints, which must be within the bounds that are published."""
+    """Results for pieces of other fingerprints, which must agree within the published bounds."""
 
     @property
     def is_good(self) -> bool:
-        """Whether all is as it must be."""
+        """Returns whether all pieces are correct."""
         return all(found.is_equal for found in self.within.values()) and all(
             found.is_within for found in self.across.values()
         )
 
     def describe(self) -> str:
-        """A line for each piece that has other bits, then how many there are of each kind."""
+        """Returns a line for each piece with other bits, then the counts."""
         lines = []
         for name, found in self.within.items():
             if not found.is_equal:
@@ -60,7 +60,7 @@ def _describe(found: jobs.Comparison) -> str:
 
 
 def parse_share(words: str) -> float:
-    """Of "1%" or "0.01". Raises UsageError."""
+    """Returns the number for "1%" or "0.01". Raises UsageError."""
     try:
         share = float(words[:-1]) / 100.0 if words.endswith("%") else float(words)
     except ValueError:
@@ -71,7 +71,7 @@ def parse_share(words: str) -> float:
 
 
 def pick_sample(job: jobs.Job, numbers: list[int], share: float, seed: int) -> list[int]:
-    """The same for a job and a seed: those of the least hashes, one at least."""
+    """Returns the same sample for the same job and seed: the pieces with the smallest hashes, at least one."""
 
     def key(number: int) -> str:
         return hashlib.sha256(f"{job.id} {seed} {number}".encode()).hexdigest()
@@ -80,7 +80,7 @@ def pick_sample(job: jobs.Job, numbers: list[int], share: float, seed: int) -> l
 
 
 def audit(job: jobs.Job, share: str, seed: int, device: str | None) -> Audit:
-    """Raises RunError where no piece is there, and promin's errors."""
+    """Audits a sample of the pieces. Raises RunError if no piece is done, and promin's errors."""
     part = parse_share(share)
     survey = take_survey(job)
     sample = pick_sample(job, sorted(survey.done), part, seed)

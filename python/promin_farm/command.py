@@ -91,7 +91,7 @@ def _render_words(scene: Path) -> str:
 def _make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="promin-farm",
-        description="Makes pictures and casts rays piece by piece, on many processes and machines.",
+        description="Renders pictures and casts rays piece by piece on many processes and machines.",
         epilog=_EPILOG,
         allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -127,7 +127,7 @@ def _make_parser() -> argparse.ArgumentParser:
     )
     for command in (render, cast, resume):
         _add_run_options(command)
-    alone = add("work", "Make a share of a job in this process, without Dask")
+    alone = add("work", "Make a share of a job's pieces in this process, without Dask")
     alone.add_argument(
         "--array-task",
         metavar="I/N",
@@ -174,10 +174,10 @@ def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
         if not value:
             raise jobs.UsageError(f"there is no {what}, on the command line; name one by {name}")
     if options.command == "cast":
-        from promin_farm.rays import prepare_rays  # NumPy takes a while to load.
+        from promin_farm.rays import prepare_rays  # Loading NumPy takes a while.
 
         arguments = prepare_rays(arguments, Path(options.job))
-        # The assembly writes them behind the hits.
+        # The assembly writes them after the hits.
         options.output += [options.offsets] if options.offsets else []
     job = jobs.create(options.command, arguments, os.path.abspath(options.job))
     return _run(job, options)
@@ -191,7 +191,7 @@ def _run(job: jobs.Job, options: argparse.Namespace) -> int:
     folder = Path(job.folder)
     settings = Settings.read(folder).with_outputs(options.output)
     settings = replace(settings, allow_mixed=settings.allow_mixed or options.allow_mixed, retries_from=time.time())
-    # Of a resumed job without files there is nothing to check.
+    # A resumed job without files needs no check.
     if settings.outputs:
         check_outputs(job, settings.outputs)
     settings.write(folder)

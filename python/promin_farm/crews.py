@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Crews by Dask distributed: a cluster that there is, and workers that a queue starts.
+"""Crews on Dask distributed: a running cluster, or workers that a queue starts.
 
-It uses a Client of Dask, any version from 2022 on. Dask's scheduler carries numbers and receipts between the foreman and
+It uses Dask's Client, of any version since 2022. Dask's scheduler carries numbers and receipts between the foreman and
 the workers; the foreman decides where a piece is made."""
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from promin_farm.foreman import PROOF
 from promin_farm.watch import of_workers
 
 _LOST_S = 45
-"""After this time without a worker a nanny is given up; another takes its seat then."""
+"""A nanny without a worker is given up after this time, and another takes its seat."""
 _PATIENCE_S = 600.0
 _TOP_UP_S = 15.0
 _CONNECT_S = 20
-"""How long a scheduler is waited for."""
+"""Time to wait for a scheduler."""
 
 
 def need(module: str, package: str) -> Any:
-    """A module that is not everywhere. Raises UsageError, which says how to have it."""
+    """Imports an optional module. Raises UsageError with the way to install it."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
@@ -48,13 +48,13 @@ class DaskCrew:
     def __init__(
         self, client: Any, job: jobs.Job, patience_s: float, keep_up: Callable[[], None] | None = None
     ) -> None:
-        """keep_up: asks a queue again for workers that have gone; called now and then."""
+        """keep_up: requests new workers from a queue in place of lost ones; called from time to time."""
         self.patience_s = patience_s
         self._client = client
         self._folder = job.folder
         self._keep_up = keep_up
         self._kept_up = time.monotonic()
-        # Tasks of two runs over one job are different for Dask: each foreman answers for its own.
+        # Two runs of one job have different tasks in Dask, so that each foreman gets only its own answers.
         self._keys = f"{job.id[:16]}-{secrets.token_hex(4)}"
         self._count = 0
         self._futures: dict[tuple[str, int], Any] = {}
@@ -102,7 +102,7 @@ class DaskCrew:
         if (member, number) not in self._futures or self._futures[member, number] is not future:
             return None
         del self._futures[member, number]
-        answer: worker.Answer | None = None  # The worker has gone with it; the piece is there or it is not.
+        answer: worker.Answer | None = None  # The worker has ended with it; the piece may or may not be written.
         try:
             if future.status == "finished":
                 answer = future.result(timeout=10)
@@ -126,8 +126,8 @@ class DaskCrew:
 
 
 def _refusal_of(error: BaseException) -> worker.Answer | None:
-    """The worker's functions raise nothing, so what comes is Dask's: that the worker has died, whose end is followed by
-    itself, or that it cannot run them, as it lacks this package or has another of its versions."""
+    """The worker's functions raise nothing, so an exception comes from Dask: either the worker has died, which is
+    handled elsewhere, or it cannot run them because it lacks this package or has another version of it."""
     if type(error).__name__ == "KilledWorker":
         return None
     words = f"it cannot run this promin-farm ({type(error).__name__}: {error})"
@@ -135,7 +135,7 @@ def _refusal_of(error: BaseException) -> worker.Answer | None:
 
 
 def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]:
-    """Joins a cluster. Raises RunError where there is none at the address."""
+    """Joins a cluster. Raises RunError if there is none at the address."""
     quiet()
     distributed = need("distributed", "Dask distributed")
     try:
@@ -146,7 +146,7 @@ def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]
 
 
 def quiet() -> None:
-    """Dask's own words about each worker that comes and goes; the foreman tells what matters."""
+    """Silences Dask's messages about each worker that comes and goes; the foreman reports what matters."""
     dask = need("dask", "Dask distributed")
     dask.config.set(
         {

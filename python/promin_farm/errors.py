@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Exit codes, which are those of promin's programs."""
+"""Exit codes, the same as those of promin's programs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from promin import jobs
 
 
 def exit_code_of(error: BaseException) -> int:
-    """1 for what fails while running, 2 for wrong use, 3 for bad input, 4 without a device."""
+    """Returns 1 for failures while running, 2 for wrong use, 3 for bad input, 4 for a missing device."""
     if isinstance(error, jobs.UsageError):
         return 2
     if isinstance(error, jobs.InputError):

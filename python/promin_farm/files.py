@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Files that several machines may write at once: each appears whole or not at all, and there are no locks."""
+"""Files that several machines may write at the same time: each appears completely or not at all, without locks."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def write_whole(file: Path, content: str | bytes) -> None:
 
 
 def claim(file: Path, content: str) -> str:
-    """Writes the file if it is not there, and returns what it holds: of several who claim at once all get the words of
-    one. A link is made or not at all, on NFS too. Raises OSError."""
+    """Writes the file if it does not exist, and returns its content. If several processes claim it at the same time,
+    all get the content of one of them, because creating a link is atomic, also on NFS. Raises OSError."""
     try:
         return file.read_text()
     except FileNotFoundError:
@@ -41,7 +41,7 @@ def claim(file: Path, content: str) -> str:
 
 
 def read_json(file: Path) -> dict[str, Any] | None:
-    """The object that the file holds; None where it is not there or holds none."""
+    """Returns the JSON object in the file; None if the file does not exist or holds none."""
     try:
         value = json.loads(file.read_bytes())
     except (OSError, ValueError):
@@ -51,7 +51,7 @@ def read_json(file: Path) -> dict[str, Any] | None:
 
 def _write_beside(file: Path, content: str | bytes) -> Path:
     temporary = file.with_name(f".{file.name}.{os.getpid()}-{secrets.token_hex(4)}.tmp")
-    # Names of files in it need not be UTF-8: os.fsdecode's stand-ins become their bytes again.
+    # File names in it need not be UTF-8: surrogates of os.fsdecode become their bytes again.
     data = content.encode(errors="surrogateescape") if isinstance(content, str) else content
     try:
         with open(temporary, "xb") as stream:

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The loop of the farm: who makes which piece, again or not, until all is made or nothing can be.
+"""The main loop of the farm: it decides which worker makes which piece, and when again, until all pieces are done or
+none can be made.
 
-It knows no scheduler. A `Crew` brings pieces to workers and answers back; the foreman gives each worker the piece that
-it makes and few behind it, and drops a piece when it is answered, so neither a million pieces nor a worker's end make
-a scheduler remember or repeat much."""
+It knows no scheduler. A `Crew` carries pieces to workers and answers back. The foreman gives each worker its current
+piece and a few more, and forgets a piece when it is answered. A scheduler therefore has little to remember with a
+million pieces, and little to repeat after the end of a worker."""
 
 from __future__ import annotations
 
@@ -24,60 +25,60 @@ from promin_farm.survey import Tries, open_piece
 from promin_farm.worker import Answer
 
 PROOF = -1
-"""In place of a piece's number: the worker is to prove itself."""
+"""Sent in place of a piece's number: the worker must compute its fingerprint."""
 _SHORT_MS = 1000.0
 _MOST_IN_A_ROW = 10
 _MOST_ALIKE = 3
-"""Of pieces that fail in a row at least so many are different before that is the job's fault, not a piece's."""
+"""If at least this number of different pieces fail in a row, the job and not a piece is at fault."""
 _MOST_DEATHS_PROVING = 5
 _MOST_LOST_PROOFS = 5
 _REFUSED_S = 2.0
 _SPACE_AFTER = 4
-"""Pieces of which the size of the others is told."""
+"""Number of finished pieces from which the duration of others is estimated."""
 
 
 class Crew(Protocol):
-    """Workers, wherever they are."""
+    """A set of workers, local or remote."""
 
     patience_s: float
-    """How long the foreman waits where nobody can take a piece: for workers that are started again, or that a queue
-    has still to start."""
+    """Time that the foreman waits if no worker can take a piece: for workers that are restarted, or that a queue has
+    yet to start."""
 
     most_at_once: int
-    """Pieces that a worker may have."""
+    """Number of pieces that a worker may have."""
 
     def members(self) -> set[str]:
-        """Who is there. Raises RunError where that is not to be had any more."""
+        """Returns the current workers. Raises RunError if they are no longer known."""
 
     def send(self, member: str, number: int) -> None:
-        """Gives a piece, or PROOF."""
+        """Sends a piece, or PROOF, to a worker."""
 
     def next_answer(self, timeout_s: float) -> tuple[str, int, Answer | None] | None:
-        """From whom, to what, and the answer, which is None where it was lost on its way; None after the timeout."""
+        """Returns the worker, its piece and its answer, which is None if it was lost; None after the timeout."""
 
     def withdraw(self, member: str, number: int) -> None:
-        """Takes back a piece that has not been begun, and is not answered then."""
+        """Withdraws a piece that has not been started; it is then not answered."""
 
     def forget(self, member: str) -> None:
-        """Nothing of a member that has gone is answered any more."""
+        """Drops all answers of a member that has ended."""
 
 
 class Watch(Protocol):
-    """Is told how the work goes on."""
+    """Receives the progress of the work."""
 
     def say(self, sentence: str) -> None:
-        """Something that a user should know."""
+        """Shows a message to the user."""
 
     def piece_done(self, piece: jobs.Piece, receipt: dict[str, object]) -> None:
-        """A piece more."""
+        """Counts a finished piece."""
 
     def tick(self, worker_count: int) -> None:
-        """Comes often."""
+        """Called often."""
 
 
 @dataclass
 class Member:
-    """A worker as the foreman knows it."""
+    """The foreman's record of a worker."""
 
     state: str = "proving"
     """"proving", "ready", "idle" or "refused"."""
@@ -86,28 +87,28 @@ class Member:
     """As its ledger is named."""
     ends_at: float = float("inf")
     pieces: list[int] = field(default_factory=list)
-    """That it has, in the order in which it got them."""
+    """The pieces that it has, in the order of sending."""
     lost_proofs: int = 0
 
 
 @dataclass
 class Tally:
-    """How a run has ended."""
+    """The result of a run."""
 
     done: int = 0
     failed: dict[int, Tries] = field(default_factory=dict)
     reason: str = ""
-    """Why it ended before its pieces did; empty where it did not."""
+    """The reason why the run ended early; empty if it did not."""
     exit_code: int = 0
     was_stopped: bool = False
     foreign: dict[int, str] = field(default_factory=dict)
-    """Pieces that must have the bits of a fingerprint that no worker has, with that."""
+    """Pieces that need a fingerprint that no worker has, with that fingerprint."""
     repeats: int = 0
     """Pieces that were sent again."""
 
 
 class Foreman:
-    """Serves one run over some pieces of a job."""
+    """Directs one run over some pieces of a job."""
 
     def __init__(
         self,
@@ -120,7 +121,8 @@ class Foreman:
         stop: Callable[[], bool] = lambda: False,
         leave: Callable[[], bool] = lambda: False,
     ) -> None:
-        """tries: what pieces have behind them. stop: True ends the run when the pieces at hand are made; leave: at once."""
+        """tries: earlier failures of pieces. stop: True ends the run after the current pieces. leave: True ends it at
+        once."""
         self._job = job
         self._crew = crew
         self._watch = watch
@@ -143,7 +145,7 @@ class Foreman:
         self._tally = Tally()
 
     def run(self, numbers: Iterable[int]) -> Tally:
-        """Makes these pieces, in about this order. Raises RunError where the crew is lost."""
+        """Makes these pieces in about this order. Raises RunError if the crew is lost."""
         self._waiting = deque(numbers)
         for number in list(self._waiting):
             if self._tries[number].is_hopeless:
@@ -174,7 +176,7 @@ class Foreman:
         return sum(len(member.pieces) for member in self._members.values())
 
     def _stop_sent(self) -> None:
-        """What lies behind the piece at hand is not begun any more."""
+        """Withdraws pieces that were sent but not started."""
         self._tally.was_stopped = True
         for name, member in self._members.items():
             for number in member.pieces[1:]:
@@ -198,7 +200,7 @@ class Foreman:
             self._crew.send(name, PROOF)
 
     def _mourn(self, member: Member) -> None:
-        """What it was at counts a death; what it had not begun does not."""
+        """Counts a death for the piece that the worker was making, but not for pieces that it had not started."""
         at_hand = open_piece(self._job, member.name) if member.name else None
         for number in member.pieces:
             if number == at_hand:
@@ -206,7 +208,7 @@ class Foreman:
             self._again(number)
 
     def _again(self, number: int) -> None:
-        """Behind all others, so that a piece that ends its workers leaves the rest to be made first."""
+        """Puts a piece behind all others, so that a piece that kills its workers does not delay the rest."""
         self._tally.repeats += 1
         if self._tries[number].is_hopeless:
             self._give_up(number)
@@ -220,7 +222,7 @@ class Foreman:
 
     def _send_pieces(self) -> None:
         typical_ms = median(self._recent_ms) if self._recent_ms else 0.0
-        # One lies ready where another is made; more where a piece takes about as long as its way.
+        # One piece waits while another is made; more if making a piece takes about as long as sending it.
         depth = 4 if self._recent_ms and typical_ms < _SHORT_MS else 2
         for round_ in range(1, min(depth, self._crew.most_at_once) + 1):
             for name, member in self._members.items():
@@ -327,14 +329,14 @@ class Foreman:
             )
 
     def _check_patience(self) -> None:
-        """Nobody works, and there is work."""
+        """Gives up after a while if there is work but no worker."""
         if self._count_sent() or any(member.state == "proving" for member in self._members.values()):
             self._idle_since = None
             return
         now = time.monotonic()
         if self._idle_since is None:
             self._idle_since = now
-        # Who is there and takes nothing will not change its mind.
+        # A worker that is present and takes no pieces will not do so later.
         patience_s = min(self._crew.patience_s, _REFUSED_S) if self._members else self._crew.patience_s
         if now - self._idle_since < patience_s:
             return

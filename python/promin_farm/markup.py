@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""HTML and SVG as nested calls, which close what they open and escape what is text."""
+"""HTML and SVG as nested calls, which close their elements and escape text."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _WITHOUT_END = {"img", "meta"}
 
 
 class Markup(str):
-    """What is HTML already."""
+    """A string that is already HTML."""
 
 
 def element(name: str, /, *content: str, **attributes: object) -> Markup:
-    """An element with this content, of which plain text is escaped. An attribute that Python has a word for ends in "_"
-    ("class_"), "_" in a name stands for "-"."""
+    """Returns an element with this content; plain text is escaped. An attribute whose name is a Python keyword ends in
+    "_" ("class_"). "_" within a name stands for "-"."""
     words = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{html.escape(str(value))}"' for key, value in attributes.items()
     )
@@ -25,11 +25,11 @@ def element(name: str, /, *content: str, **attributes: object) -> Markup:
 
 
 def join(content: Iterable[str]) -> Markup:
-    """One after the other."""
+    """Concatenates elements."""
     return Markup("".join(part if isinstance(part, Markup) else html.escape(part) for part in content))
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> Markup:
-    """A row of headings and rows of cells."""
+    """Returns a table with a row of headings and rows of cells."""
     heading = element("tr", *(element("th", cell) for cell in head))
     return element("table", heading, *(element("tr", *(element("td", cell) for cell in row)) for row in rows))

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The page of a job, DIR/index.html: how far it is, its pieces as pictures, and who made what when. It is plain HTML
-and needs nothing but the files in DIR/farm/pictures."""
+"""The page of a job, DIR/index.html: its progress, its pieces as pictures, and a timeline of the processes. It is plain
+HTML and needs only the files in DIR/farm/pictures."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from promin_farm.watch import duration
 
 _EVERY_S = 15.0
 _MOST_COST = 0.05
-"""Of a run's time the page takes about this part at most."""
+"""The largest part of a run's time that the page may take, approximately."""
 _NEW_PICTURES_S = 2.0
-"""So long a page reads pieces for new pictures; the next page has more."""
+"""Time that a page may spend on reading pieces for new pictures; the next page adds more."""
 _MOST_STRETCHES = 3000
 _WIDTH_PX = 1000
 _LANE_PX = 18
@@ -48,14 +48,14 @@ svg text { font: 11px system-ui, sans-serif; fill: currentColor; opacity: .75 }
 
 
 class Page:
-    """Writes the page now and then while a run goes on."""
+    """Writes the page from time to time during a run."""
 
     def __init__(self, job: jobs.Job) -> None:
         self._job = job
         self._next = time.monotonic() + 2.0
 
     def tick(self) -> None:
-        """Writes it where it is time to."""
+        """Writes the page if it is due."""
         if time.monotonic() < self._next:
             return
         begun = time.monotonic()
@@ -64,7 +64,7 @@ class Page:
         self._next = now + max(_EVERY_S, (now - begun) / _MOST_COST)
 
     def write(self, survey: Survey | None = None) -> None:
-        """A page that cannot be written is left out: the work goes on without it."""
+        """Writes the page. Failures are ignored, because the work does not need it."""
         try:
             survey = survey or take_survey(self._job)
             pictures = write_pictures(self._job, survey.done, _NEW_PICTURES_S)
@@ -74,7 +74,7 @@ class Page:
 
 
 def make_page(job: jobs.Job, survey: Survey, pictures: Mapping[int, str]) -> str:
-    """The page's text. pictures: files of pieces by number."""
+    """Returns the page's text. pictures: files of pieces, by number."""
     name = Path(job.folder).name
     share = 100.0 * survey.weight_done / max(survey.weight_done + survey.weight_left, 1e-9)
     head = [
@@ -124,7 +124,7 @@ def _failures(job: jobs.Job, survey: Survey) -> str:
 
 @dataclass(frozen=True)
 class _Window:
-    """What of a picture a piece is, by its name."""
+    """The part of a picture that a piece covers, according to its name."""
 
     frame: str
     top: int
@@ -157,7 +157,7 @@ def _image(file: str, **attributes: object) -> Markup:
 
 
 def _mosaic(places: list[_Window], pictures: Mapping[int, str]) -> Markup:
-    """Pieces of one picture where they belong."""
+    """Arranges the pieces of one picture."""
     top, left = min(place.top for place in places), min(place.left for place in places)
     rows = max(place.bottom for place in places) - top
     columns = max(place.right for place in places) - left
@@ -183,7 +183,7 @@ def _timeline(job: jobs.Job, survey: Survey) -> str:
     begin = min(stretch.begun for stretch in stretches)
     length_s = max(stretch.ended or now for stretch in stretches) - begin
     scale = _WIDTH_PX / max(length_s, 1e-3)
-    # A lane for each process, in the order in which they began.
+    # One lane for each process, in the order in which they started.
     lanes = {worker: i for i, worker in enumerate(dict.fromkeys(stretch.worker for stretch in stretches))}
 
     def bar(stretch: Stretch) -> Markup:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Pieces of pictures as small files to look at, DIR/farm/pictures/PIECE.png."""
+"""Previews of pieces of pictures as small files, DIR/farm/pictures/PIECE.png."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _PX = 128
 
 
 def write_pictures(job: jobs.Job, done: set[int], most_s: float) -> dict[int, str]:
-    """Files of pieces that are there, spread over the job, by number and relative to its folder. Those that are not
-    there yet are made for so many seconds. Raises OSError and promin's errors."""
+    """Returns preview files, by number of the piece and relative to the job's folder, for finished pieces that are
+    spread over the job. Missing previews are made for at most the given time. Raises OSError and promin's errors."""
     files = {}
     until = time.monotonic() + most_s
     for number in range(0, len(job.pieces), max(1, -(-len(job.pieces) // _MOST))):
@@ -40,7 +40,7 @@ def write_pictures(job: jobs.Job, done: set[int], most_s: float) -> dict[int, st
 
 
 def encode_png(columns: int, rows: int, rgb: bytes) -> bytes:
-    """8 bits a channel, three channels, row by row from above."""
+    """Encodes three channels of 8 bits, row by row from the top."""
 
     def chunk(name: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Who works on a job, as its folder tells: `farm/workers/HOST-PID.json`, which each worker touches while it lives."""
+"""The workers of a job. Each has a file `farm/workers/HOST-PID.json` in the job's folder, which it touches while it
+lives."""
 
 from __future__ import annotations
 
@@ -18,9 +19,9 @@ from promin_farm.files import read_json, write_whole
 BEAT_S = 10.0
 _LOOK_S = 0.5
 _MOST_TOLD = 8
-"""Processes whose starts are shown; nobody reads more."""
+"""Number of processes whose starts are shown."""
 STALE_S = 60.0
-"""A worker of another host that has not touched its file for so long is gone."""
+"""A worker on another host counts as dead if it has not touched its file for this time."""
 
 
 @dataclass(frozen=True)
@@ -30,21 +31,22 @@ class Presence:
     host: str
     pid: int
     started: int
-    """When the process began, in the kernel's clock ticks, by which a later one with its number is told from it."""
+    """Start of the process in the kernel's clock ticks, which distinguishes it from a later process with the same
+    number."""
     fingerprint: str
     device: str
     """In words."""
     threads: str
-    """LP_NUM_THREADS, empty where the driver decides."""
+    """LP_NUM_THREADS; empty if the driver decides."""
 
     @property
     def name(self) -> str:
-        """As its ledger is named."""
+        """The name of its ledger."""
         return f"{self.host}-{self.pid}"
 
 
 class Heart:
-    """Writes this process's file and touches it from a thread of its own until `stop`."""
+    """Writes this process's file and touches it on a separate thread until `stop`."""
 
     def __init__(self, folder: Path, fingerprint: str, device: str) -> None:
         self.presence = Presence(
@@ -61,7 +63,7 @@ class Heart:
         threading.Thread(target=self._beat, name="promin-farm heart", daemon=True).start()
 
     def stop(self) -> None:
-        """Tells that the worker has ended."""
+        """Records that the worker has ended."""
         self._ends.set()
         try:
             os.utime(self._file, (0, 0))
@@ -72,7 +74,7 @@ class Heart:
         try:
             write_whole(self._file, json.dumps(asdict(self.presence)) + "\n")
         except OSError:
-            pass  # A full disk must not end a worker that only tells that it is there.
+            pass  # A full disk must not end a worker that only reports its presence.
 
     def _beat(self) -> None:
         while not self._ends.wait(BEAT_S):
@@ -85,10 +87,10 @@ class Heart:
 
 
 class Start:
-    """Tells what a process that begins to work on a job is at: `farm/starts/HOST-PID` holds it, a few words a line."""
+    """Records the steps of a process that starts to work on a job, in `farm/starts/HOST-PID`, a few words per line."""
 
     def __init__(self, folder: Path, also: Callable[[str], None]) -> None:
-        """also: gets the words too."""
+        """also: receives the words too."""
         self._file = folder / "farm" / "starts" / f"{socket.gethostname()}-{os.getpid()}"
         self._also = also
 
@@ -99,21 +101,22 @@ class Start:
             with self._file.open("a") as stream:
                 stream.write(words + "\n")
         except OSError:
-            pass  # As the heart.
+            pass  # For the same reason as in Heart.
 
 
 class Starts:
-    """What processes are at that begin to work on a job, for whoever waits for the first of them."""
+    """Reads the steps of processes that start to work on a job, for a command that waits for the first of them."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / "farm" / "starts"
         self._ends = {file.name: file.stat().st_size for file in self._folder.glob("*")}
-        """Where the text that was shown ends, by the names of ledgers."""
+        """The end of the text that has been shown, by the name of the ledger."""
         self._told: set[str] = set()
         self._read_at = 0.0
 
     def tell_news(self, say: Callable[[str], None], now: float) -> None:
-        """Says what is new, of a few processes. now: seconds; it reads the folder at most twice a second."""
+        """Reports new steps of a few processes. now: the time in seconds; it reads the folder at most twice a
+        second."""
         if now - self._read_at < _LOOK_S:
             return
         self._read_at = now
@@ -137,7 +140,7 @@ class Starts:
 
 
 class Roll:
-    """Who is alive, by the names of their ledgers. It looks once, and remembers."""
+    """Determines which processes are alive, by the names of their ledgers. It looks once and caches the result."""
 
     def __init__(self, folder: Path) -> None:
         self.workers: dict[str, Presence] = {}
@@ -155,12 +158,13 @@ class Roll:
                 self._ages[presence.name] = age
 
     def is_alive(self, name: str, last_sign: float) -> bool:
-        """Whether a writer of ledgers, HOST-PID, lives. last_sign: the time of its last line, which decides of those
-        without a file (by `promin render --job`) on other hosts: they are given up after ten minutes."""
+        """Returns whether the process HOST-PID that writes a ledger is alive. last_sign: the time of its last line. It
+        decides for processes on other hosts without a file (those of `promin render --job`): they count as dead after
+        ten minutes."""
         host, _, pid_word = name.rpartition("-")
         presence = self.workers.get(name)
         if presence and self._ages[name] > 1e8:
-            return False  # It has said that it ended.
+            return False  # It has recorded its end.
         if host == socket.gethostname() and pid_word.isdigit():
             started = _start_of(int(pid_word))
             if started is None:
@@ -172,7 +176,7 @@ class Roll:
 
 
 def _now_of_disk(folder: Path) -> float:
-    """The file system's clock, which may be another machine's."""
+    """Returns the time of the file system, which may be on another machine."""
     probe = folder / "farm" / f".clock.{os.getpid()}.tmp"
     try:
         probe.parent.mkdir(exist_ok=True)
@@ -185,7 +189,7 @@ def _now_of_disk(folder: Path) -> float:
 
 
 def _start_of(pid: int) -> int | None:
-    """None where there is no such process; a dead one that nobody has waited for is none."""
+    """Returns None if there is no such process; a zombie does not count."""
     try:
         words = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
     except OSError:

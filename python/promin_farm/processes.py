@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A crew of processes of this machine, which speak with the command by pipes (promin_farm.seat): numbers there, answers
-back."""
+"""A crew of processes on this machine. The command sends them numbers of pieces by pipes and gets answers back
+(promin_farm.seat)."""
 
 from __future__ import annotations
 
@@ -23,41 +23,42 @@ from promin_farm.worker import Answer
 
 _PATIENCE_S = 180.0
 _GOES_WITHIN_S = 5.0
-"""A process that is at a piece, or whose driver compiles, is killed after this time."""
+"""A process that is still making a piece or compiling is killed after this time."""
 _PROGRAM = "import sys; sys.path[:] = {path!r}; from promin_farm import seat; seat.main({folder!r})"
 
 
 @dataclass(frozen=True)
 class Seat:
-    """A place for a worker: a device, and the threads that it has where the device is a processor."""
+    """A seat for a worker: a device and, if the device is a CPU, a number of threads."""
 
     device: str | None
-    """What `--device` takes; None is the default."""
+    """An argument of `--device`; None is the default."""
     threads: int | None = None
 
     @property
     def environment(self) -> dict[str, str]:
-        """Variables of the worker's process; lavapipe reads them when the first device is opened."""
+        """Environment variables of the worker's process; lavapipe reads them when the first device is opened."""
         words = {"PROMIN_DEVICE": self.device} if self.device else {}
         return words | ({"LP_NUM_THREADS": str(self.threads)} if self.threads else {})
 
 
 def count_cores() -> int:
-    """That this process may use."""
+    """Returns the number of cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
 def deal_seats(devices: list[str], count: int | None) -> list[Seat]:
-    """A worker for each device, or `count` of them, which share the devices; workers of a machine share its cores.
+    """Returns a seat for each device, or `count` seats that share the devices. All workers of a machine share its
+    cores.
 
-    devices: what `--device` takes; none: the default one, which may be a processor."""
+    devices: arguments of `--device`; without any the default device, which may be a CPU."""
     count = count or max(1, len(devices))
     threads = max(1, count_cores() // count) if count > 1 else None
     return [Seat(devices[i % len(devices)] if devices else None, threads) for i in range(count)]
 
 
 class _Process:
-    """A worker: a number at a time goes to it, so that those behind can be taken back."""
+    """A worker process. It gets one number at a time, so that the others can be withdrawn."""
 
     def __init__(self, folder: str, seat: Seat, ended: queue.SimpleQueue[tuple[str, int, Answer]]) -> None:
         self.seat = seat
@@ -71,7 +72,7 @@ class _Process:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            # Ctrl-C in a terminal is for the command, which decides what becomes of pieces.
+            # Ctrl-C in a terminal must reach only the command, which decides about pieces.
             start_new_session=True,
         )
         self.name = f"{socket.gethostname()}-{self._popen.pid}"
@@ -92,7 +93,7 @@ class _Process:
                 self._waiting.remove(number)
 
     def dismiss(self) -> None:
-        """Lets it end."""
+        """Lets the process end."""
         assert self._popen.stdin is not None
         try:
             self._popen.stdin.close()
@@ -100,7 +101,7 @@ class _Process:
             pass
 
     def wait(self, until: float) -> None:
-        """Kills it where it does not end until then, by time.monotonic()."""
+        """Kills the process if it has not ended by this time of time.monotonic()."""
         try:
             self._popen.wait(max(0.0, until - time.monotonic()))
         except subprocess.TimeoutExpired:
@@ -116,7 +117,7 @@ class _Process:
             self._popen.stdin.write(f"{self._at}\n")
             self._popen.stdin.flush()
         except (OSError, ValueError):
-            pass  # It has gone, which the crew sees.
+            pass  # It has ended, which the crew notices.
 
     def _read(self) -> None:
         assert self._popen.stdout is not None
@@ -129,7 +130,7 @@ class _Process:
 
 
 class LocalCrew:
-    """A process for each seat; where one ends another takes its seat."""
+    """A process for each seat. If one ends, another takes its seat."""
 
     patience_s = _PATIENCE_S
     most_at_once = 4
@@ -166,7 +167,7 @@ class LocalCrew:
             process.withdraw(number)
 
     def forget(self, member: str) -> None:
-        """What a dead process has answered still counts."""
+        """Answers of a dead process still count."""
 
     def _find(self, member: str) -> list[_Process]:
         return [process for process in self._processes if process.name == member]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Workers that a queue starts, by dask-jobqueue: each of its jobs is one worker with one device."""
+"""Workers that a queue starts by dask-jobqueue. Each of its jobs is one worker with one device."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from promin_farm.crews import DaskCrew, need, quiet
 QUEUES = {"slurm": "SLURMCluster", "pbs": "PBSCluster", "lsf": "LSFCluster"}
 _DEFAULTS = {"cores": 1, "memory": "4GB", "walltime": "01:00:00"}
 _MARGIN_S = 60.0
-"""Before a job's end its worker has gone by itself."""
+"""A worker ends this long before the end of its job."""
 
 
 def open_queue(job: jobs.Job, queue: str, count: int, config: str | None, stack: Any) -> tuple[DaskCrew, str]:
-    """Asks the queue for `count` workers, and again for those that have gone. Raises UsageError and RunError."""
+    """Requests `count` workers from the queue, and new ones in place of lost ones. Raises UsageError and RunError."""
     quiet()
     distributed = need("distributed", "Dask distributed")
     cluster = stack.enter_context(make_cluster(queue, read_config(config)))
     client = stack.enter_context(distributed.Client(cluster))
 
     def keep_up() -> None:
-        # What has ended leaves its place; asking for the same number starts others.
+        # A job that has ended frees its place; requesting the same number starts others.
         cluster.scale(jobs=count)
 
     keep_up()
@@ -34,7 +34,7 @@ def open_queue(job: jobs.Job, queue: str, count: int, config: str | None, stack:
 
 
 def make_cluster(queue: str, config: dict[str, Any]) -> Any:
-    """A cluster of dask-jobqueue, of which nothing is started yet. Raises UsageError."""
+    """Returns a cluster of dask-jobqueue without starting any job. Raises UsageError."""
     jobqueue = need("dask_jobqueue", "dask-jobqueue")
     settings = {**_DEFAULTS, **config}
     cores, walltime = int(settings["cores"]), str(settings["walltime"])
@@ -45,21 +45,21 @@ def make_cluster(queue: str, config: dict[str, Any]) -> Any:
         f"export LP_NUM_THREADS={cores}",
         f"export PROMIN_FARM_ENDS_AT=$(( $(date +%s) + {life_s:.0f} ))",
     ]
-    # A worker ends before the queue ends it, and not all in one moment.
+    # Workers end before the queue ends them, and not all at the same time.
     settings["worker_extra_args"] = [
         *settings.get("worker_extra_args", []),
         *("--nthreads", "1", "--lifetime", f"{life_s:.0f}s", "--lifetime-stagger", f"{_MARGIN_S / 2:.0f}s"),
     ]
     try:
         return getattr(jobqueue, QUEUES[queue])(**settings)
-    except Exception as error:  # Of what kind it is hangs on what is wrong.
+    except Exception as error:  # The type of the exception depends on the fault.
         raise jobs.UsageError(
             f"the queue's settings are not those of dask-jobqueue ({error}), in --queue-config"
         ) from error
 
 
 def read_config(file: str | None) -> dict[str, Any]:
-    """Of a TOML file, what the classes of dask-jobqueue take. Raises UsageError."""
+    """Returns the arguments for the classes of dask-jobqueue from a TOML file. Raises UsageError."""
     if file is None:
         return {}
     tomllib = need("tomllib", "Python 3.11")
@@ -71,7 +71,7 @@ def read_config(file: str | None) -> dict[str, Any]:
 
 
 def seconds_of(walltime: str) -> float:
-    """Of "HH:MM:SS", "HH:MM" or "D-HH:MM:SS". Raises UsageError."""
+    """Returns the seconds of "HH:MM:SS", "HH:MM" or "D-HH:MM:SS". Raises UsageError."""
     found = re.fullmatch(r"(?:(\d+)-)?(\d+):(\d+)(?::(\d+))?", walltime)
     if not found:
         raise jobs.UsageError(f"walltime is {walltime!r}, in --queue-config; give HH:MM:SS")

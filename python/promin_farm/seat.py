@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A worker process of this machine, which `processes` starts: reads a number a line, makes that piece, or proves itself
-for PROOF, and writes the number and the answer as a line of JSON. It ends with its standard input, and leaves the piece
-that it is at then."""
+"""A worker process on this machine, which `processes` starts. It reads a number per line and makes that piece, or
+computes its fingerprint for PROOF. It writes the number and the answer as a line of JSON. It ends when its standard
+input ends, and then abandons its current piece."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from promin_farm.foreman import PROOF
 
 
 def main(folder: str) -> None:
-    """Works until there is nobody left to work for."""
+    """Works until the standard input ends."""
     answers = os.fdopen(os.dup(1), "w", buffering=1)
-    # What a driver prints is no answer.
+    # Keeps the output of drivers out of the answers.
     os.dup2(2, 1)
     numbers: queue.SimpleQueue[int | None] = queue.SimpleQueue()
     is_over = threading.Event()

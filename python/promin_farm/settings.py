@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What the farm keeps in the folder of a job beside the job itself: `farm/farm.json`, and who gives the job its bits."""
+"""The farm's own files in the folder of a job: `farm/farm.json`, and the fingerprints that determine the job's bits."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ _FRAME = re.compile(r"frame\d+(?=_)")
 
 @dataclass(frozen=True)
 class Settings:
-    """What `resume` and workers find in the folder."""
+    """Settings that `resume` and workers read from the folder."""
 
     outputs: list[str] = field(default_factory=list)
-    """Files that the whole is written to, absolute."""
+    """Absolute paths of the output files."""
     allow_mixed: bool = False
-    """Whether pieces of different fingerprints may go together, frame by frame."""
+    """Whether frames may be made by devices of different fingerprints."""
     retries_from: float = 0.0
-    """Time (seconds since 1970) since which failures count: that of the last `render`, `cast` or `resume`."""
+    """Time (seconds since 1970) from which failures count: that of the last `render`, `cast` or `resume`."""
 
     @staticmethod
     def read(folder: Path) -> Settings:
-        """Of a job that the farm has begun; those of any other job are the defaults. Raises InputError."""
+        """Reads the settings of a job that the farm has started; other jobs have the defaults. Raises InputError."""
         file = folder / "farm" / "farm.json"
         if not file.exists():
             return Settings()
@@ -59,36 +59,37 @@ class Settings:
             raise jobs.RunError(f"cannot write ({error.strerror}), {file}; check the disk and permissions") from error
 
     def with_outputs(self, outputs: list[str]) -> Settings:
-        """These with other outputs, where there are any."""
+        """Returns these settings with other outputs, if any are given."""
         return replace(self, outputs=[str(Path(output).absolute()) for output in outputs]) if outputs else self
 
 
 def group_of(job: jobs.Job, piece: jobs.Piece, settings: Settings) -> str:
-    """What has bits of one fingerprint: the whole job, or with `allow_mixed` a frame, and of a cast each piece."""
+    """Returns the group of pieces that must have one fingerprint: the whole job, or with `allow_mixed` a frame, and in
+    a cast each piece."""
     if not settings.allow_mixed:
         return "job"
     return piece.name if job.kind == "cast" else frame_of(piece) or "job"
 
 
 def frame_of(piece: jobs.Piece) -> str:
-    """ "frame000012" of a path's pieces; empty of others."""
+    """ Returns "frame000012" for pieces of a path; empty for others."""
     frame = _FRAME.match(piece.name)
     return str(frame.group()) if frame else ""
 
 
 def frame_number_of(piece: jobs.Piece) -> int | None:
-    """12 of "frame000012"."""
+    """Returns 12 for "frame000012"."""
     frame = frame_of(piece)
     return int(frame.removeprefix("frame")) if frame else None
 
 
 def owner_file(folder: Path, group: str) -> Path:
-    """Holds the fingerprint of a group."""
+    """Returns the file with the fingerprint of a group."""
     return folder / "farm" / "fingerprints" / group
 
 
 def claim_group(folder: Path, group: str, fingerprint: str) -> str:
-    """The fingerprint that the group has, which is this one if it had none. Raises RunError."""
+    """Returns the fingerprint of the group, and sets it to this one if it had none. Raises RunError."""
     file = owner_file(folder, group)
     try:
         return claim(file, fingerprint + "\n").strip()
@@ -97,8 +98,8 @@ def claim_group(folder: Path, group: str, fingerprint: str) -> str:
 
 
 def claim_what_is_there(job: jobs.Job, settings: Settings, fingerprints: dict[int, str]) -> None:
-    """Gives groups the fingerprints that their pieces have, by number: those of a job that other settings or promin
-    itself have begun. Raises RunError."""
+    """Sets the fingerprints of groups from their finished pieces, by number, for a job that was started with other
+    settings or by promin itself. Raises RunError."""
     groups = {
         (group_of(job, job.pieces[number], settings), fingerprint) for number, fingerprint in fingerprints.items()
     }

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""How far a job is, in words and as JSON."""
+"""The progress of a job, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ _SLOWEST = 5
 
 
 def rate_of(job: jobs.Job, survey: Survey) -> tuple[float, str] | None:
-    """How much is made in a second, and of what: rays, of pictures those from the camera, or pixels where an error
-    target says how many rays each takes. None where nothing was made."""
+    """Returns the amount of work per second and its unit: rays, which for pictures are camera rays, or pixels if an
+    error target determines the number of rays. None if nothing was made."""
     if survey.rate is None:
         return None
     if job.kind == "cast":
@@ -28,13 +28,13 @@ def rate_of(job: jobs.Job, survey: Survey) -> tuple[float, str] | None:
 
 
 def slowest(survey: Survey) -> list[tuple[int, float]]:
-    """Numbers and milliseconds of the pieces that took longest."""
+    """Returns numbers and milliseconds of the pieces that took longest."""
     times = [(number, float(receipt["ms"])) for number, receipt in survey.receipts.items() if "ms" in receipt]
     return sorted(times, key=lambda item: -item[1])[:_SLOWEST]
 
 
 def to_json(job: jobs.Job, survey: Survey) -> dict[str, Any]:
-    """Names and numbers; times in seconds, None where they are not to be had."""
+    """Returns names and numbers. Times are in seconds, None if unknown."""
     names = [piece.name for piece in job.pieces]
     rate = rate_of(job, survey)
     return {
@@ -62,7 +62,7 @@ def to_json(job: jobs.Job, survey: Survey) -> dict[str, Any]:
 
 
 def describe(job: jobs.Job, survey: Survey) -> str:
-    """A few lines."""
+    """Returns a description of a few lines."""
     share = 100.0 * survey.weight_done / max(survey.weight_done + survey.weight_left, 1e-9)
     lines = [
         f"{job.kind} of {survey.total} pieces: {len(survey.done)} done ({share:.0f} %), {len(survey.running)} running, "
@@ -86,7 +86,7 @@ def describe(job: jobs.Job, survey: Survey) -> str:
 
 
 def amount(value: float) -> str:
-    """With a letter for thousands, millions, milliards."""
+    """Formats a number with a letter for thousands, millions and billions."""
     for factor, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
         if value >= factor:
             return f"{value / factor:.3g} {letter}"

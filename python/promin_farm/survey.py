@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What a job's folder tells, by its ledgers and by which pieces are there. Nothing is hashed: that do `verify`,
-`resume` and the assembly."""
+"""The state of a job, from its ledgers and the existing pieces. Nothing is hashed; `verify`, `resume` and the assembly
+do that."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ _RATE_OVER_S = 600.0
 
 @dataclass
 class Tries:
-    """What has become of a piece in vain."""
+    """The failed attempts at a piece."""
 
     failures: int = 0
     deaths: int = 0
-    """Processes that ended while they made it."""
+    """Number of processes that ended while they made it."""
     reason: str = ""
     """The last one."""
 
     @property
     def is_hopeless(self) -> bool:
-        """Whether it is not tried again."""
+        """Returns whether the piece is not tried again."""
         return self.failures >= MOST_FAILURES or self.deaths >= MOST_DEATHS
 
     def fail(self, reason: str) -> None:
@@ -47,14 +47,14 @@ class Tries:
         self.reason = f"{worker} ended while it made the piece"
 
     def describe(self) -> str:
-        """In words, the last reason with them."""
+        """Returns a description with the last reason."""
         counts = [f"{self.failures} failures"] * bool(self.failures) + [f"{self.deaths} deaths"] * bool(self.deaths)
         return f"{' and '.join(counts) or 'no try'}, the last: {self.reason}"
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """The time in which a process made, or was at, a piece."""
+    """The time in which a process made a piece or was making it."""
 
     number: int
     worker: str
@@ -68,42 +68,42 @@ class Stretch:
 
 @dataclass
 class Survey:
-    """A job at a moment."""
+    """The state of a job at a point in time."""
 
     total: int
     roll: Roll
     done: set[int] = field(default_factory=set)
     running: list[Stretch] = field(default_factory=list)
     tries: dict[int, Tries] = field(default_factory=dict)
-    """Of those that failed since `retries_from`."""
+    """Failed attempts since `retries_from`."""
     receipts: dict[int, dict[str, Any]] = field(default_factory=dict)
-    """The last of each piece that is there."""
+    """The last receipt of each finished piece."""
     stretches: list[Stretch] = field(default_factory=list)
     weight_done: float = 0.0
     weight_left: float = 0.0
     rate: float | None = None
-    """Weight a second over the last ten minutes of work; None where nothing was made."""
+    """Work per second over the last ten minutes of work; None if nothing was made."""
 
     @property
     def failed(self) -> dict[int, Tries]:
-        """Pieces that are given up."""
+        """Returns the pieces that are given up."""
         return {number: tries for number, tries in self.tries.items() if tries.is_hopeless and number not in self.done}
 
     @property
     def time_left_s(self) -> float | None:
-        """None where nobody works, or there is no rate."""
+        """Returns the remaining time; None if no process works or the rate is unknown."""
         if not self.running or not self.rate:
             return None
         return self.weight_left / self.rate
 
     @property
     def fingerprints(self) -> dict[int, str]:
-        """Of pieces that are there, where it is known."""
+        """Returns the known fingerprints of finished pieces."""
         return {n: str(receipt["fingerprint"]) for n, receipt in self.receipts.items() if receipt.get("fingerprint")}
 
 
 def take_survey(job: jobs.Job) -> Survey:
-    """Reads the ledgers and lists the pieces. Raises InputError where the farm's settings are damaged."""
+    """Reads the ledgers and lists the pieces. Raises InputError if the farm's settings are damaged."""
     folder = Path(job.folder)
     survey = Survey(total=len(job.pieces), roll=Roll(folder))
     try:
@@ -126,15 +126,15 @@ def take_survey(job: jobs.Job) -> Survey:
 
 
 def open_piece(job: jobs.Job, worker: str) -> int | None:
-    """The piece that a writer of ledgers has begun and not ended."""
+    """Returns the piece that a process has begun and not ended."""
     events = job.events(worker)
     return int(events[-1]["number"]) if events and events[-1]["event"] == "begun" else None
 
 
 def _take(survey: Survey, event: dict[str, Any], at_hand: dict[str, dict[str, Any]], since: float) -> None:
-    """A process makes one piece at a time, which it tells that it begins, and then what came of it.
+    """Processes an event. A process makes one piece at a time; it records the start of the piece and then the result.
 
-    at_hand: what each process has begun last and told no more of."""
+    at_hand: for each process the piece whose start is its last event."""
     worker, number, at = str(event["maker"]), int(event["number"]), float(event["time_s"])
     begun = at_hand.pop(worker, None)
     start = float(begun["time_s"]) if begun and begun["number"] == number else at
@@ -153,7 +153,7 @@ def _take(survey: Survey, event: dict[str, Any], at_hand: dict[str, dict[str, An
 
 
 def _take_open(survey: Survey, worker: str, begun: dict[str, Any], since: float) -> None:
-    """What is begun and no more is told of: it runs, or its process has ended."""
+    """Processes pieces without an end event: they are running, or their process has ended."""
     at = float(begun["time_s"])
     if not survey.roll.is_alive(worker, at):
         _bury(survey, worker, begun, at, since)
@@ -167,14 +167,14 @@ def _bury(survey: Survey, worker: str, begun: dict[str, Any], at: float, since: 
     number, began = int(begun["number"]), float(begun["time_s"])
     survey.stretches.append(Stretch(number, worker, began, at, "died"))
     if number in survey.done:
-        # It may have been written before its receipt was.
+        # It may have been written before its receipt.
         survey.receipts.setdefault(number, begun)
     if began >= since:
         survey.tries.setdefault(number, Tries()).die(worker)
 
 
 def _rate_of(stretches: list[Stretch], weights: list[float]) -> float | None:
-    """Over the last minutes in which pieces were made, whenever that was."""
+    """Returns the rate over the last minutes in which pieces were made, whenever that was."""
     made = [s for s in stretches if s.outcome == "done" and s.ended is not None]
     if not made:
         return None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Tells on standard error how a run goes on: a bar with the time left on a terminal, lines in a pipe."""
+"""Shows the progress of a run on standard error: a bar with the remaining time on a terminal, lines in a pipe."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RATE_OVER_S = 120.0
 
 
 class Progress:
-    """The watch of a run."""
+    """The progress display of a run."""
 
     def __init__(
         self,
@@ -30,7 +30,7 @@ class Progress:
         on_tick: Callable[[], None] = lambda: None,
         on_piece: Callable[[int], None] = lambda number: None,
     ) -> None:
-        """on_tick: called often. on_piece: with the number of each piece that is done."""
+        """on_tick: called often. on_piece: called with the number of each finished piece."""
         self._stream = stream or sys.stderr
         self._is_quiet = is_quiet
         self._on_tick = on_tick
@@ -66,7 +66,7 @@ class Progress:
         if self._is_quiet or now - self._last_shown < (_EVERY_S if self._is_terminal else _LINES_EVERY_S):
             return
         if self._last_shown == 0.0 and not self._is_terminal:
-            self._last_shown = now  # The first line says something only after a while.
+            self._last_shown = now  # The first line has no information until some time has passed.
             return
         self._last_shown = now
         line = self.describe(worker_count)
@@ -77,20 +77,21 @@ class Progress:
             print(f"promin-farm: {line}", file=self._stream, flush=True)
 
     def describe(self, worker_count: int) -> str:
-        """The line that is shown."""
+        """Returns the line to show."""
         left = self.time_left_s()
         words = f"{self._done} of {of_pieces(self._total)}, {of_workers(worker_count)}"
         return words + (f", {duration(left)} left" if left is not None else "")
 
     def time_left_s(self) -> float | None:
-        """By the pieces of the last two minutes; None before there is one."""
+        """Returns the remaining time, estimated from the pieces of the last two minutes; None before the first
+        piece."""
         if not self._recent:
             return None
         span = time.monotonic() - max(self._begun, time.monotonic() - _RATE_OVER_S)
         return self._weight_left * span / max(sum(weight for _, weight in self._recent), 1e-9)
 
     def close(self) -> None:
-        """Leaves the terminal's line free."""
+        """Clears the terminal's line."""
         self._clear()
 
     def _clear(self) -> None:
@@ -100,7 +101,7 @@ class Progress:
 
 
 def duration(seconds: float) -> str:
-    """In words: "40 s", "12 min", "3 h 5 min"."""
+    """Returns a duration in words: "40 s", "12 min", "3 h 5 min"."""
     if seconds < 100:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What a process of the farm does: opens the job once, proves itself, makes pieces.
+"""The work of a process of the farm: it opens the job once, computes its fingerprint, and makes pieces.
 
-The two functions take words and numbers and return JSON's values, so that nothing else travels; they raise nothing,
-as an exception of another machine says less than a sentence. An answer has one key of its own:
+The two functions take strings and numbers and return JSON values, so that nothing else is transferred. They raise
+nothing, because an exception from another machine says less than a sentence. Each answer has one of these keys:
 
     proof     the fingerprint and what the process is
     idle      why this process can do nothing here (no device)
@@ -33,10 +33,10 @@ _DISK_FULL = ("No space left on device", "Disk quota exceeded", "File too large"
 
 
 class Bench:
-    """A job opened in this process: its scene, its device, and the kernels that are compiled for it."""
+    """A job that is open in this process: its scene, its device and its compiled kernels."""
 
     def __init__(self, folder: str, device: str | None, say: Callable[[str], None]) -> None:
-        """say: gets what it does. Raises promin's errors."""
+        """say: receives the current step. Raises promin's errors."""
         self.folder = Path(folder)
         self.stamp = _stamp_of(self.folder)
         self.job = jobs.open(folder)
@@ -49,7 +49,7 @@ class Bench:
         self.heart = Heart(self.folder, fingerprint, str(getattr(self.runner, "made_on", "")))
 
     def find_obstacle(self, number: int | None) -> Answer | None:
-        """Whether other bits are wanted than those of this process, of the whole job or of a piece."""
+        """Returns an obstacle if the whole job or a piece needs other bits than those of this process."""
         if number is None and self.settings.allow_mixed:
             return None
         group = "job" if number is None else group_of(self.job, self.job.pieces[number], self.settings)
@@ -74,10 +74,10 @@ _using = threading.RLock()
 
 
 def prove(folder: str, device: str | None = None, say: Callable[[str], None] = lambda words: None) -> Answer:
-    """Opens the job, or keeps it open, and tells by a probe what bits this process gives.
+    """Opens the job unless it is open, and returns the fingerprint of this process.
 
-    device: what `--device` takes; None: PROMIN_DEVICE of the environment, else the default. say: is told what it is
-    at, as whoever sees the folder."""
+    device: an argument of `--device`; None: PROMIN_DEVICE of the environment, else the default. say: receives its
+    current step, which the folder also shows."""
     with _using:
         try:
             bench = _open(folder, device, say)
@@ -98,7 +98,7 @@ def prove(folder: str, device: str | None = None, say: Callable[[str], None] = l
 
 
 def make(folder: str, number: int, stop: Callable[[], bool] | None = None) -> Answer:
-    """Makes a piece, or finds it made. stop: asked while it works; True leaves the piece."""
+    """Makes a piece unless it is done. stop: called during the work; True abandons the piece."""
     with _using:
         try:
             bench = _open(folder, None)
@@ -115,14 +115,14 @@ def make(folder: str, number: int, stop: Callable[[], bool] | None = None) -> An
             return {"left": True}
         except Exception as error:
             if isinstance(error, jobs.DeviceError):
-                close()  # A lost device is opened anew for the next piece.
+                close()  # A lost device is opened again for the next piece.
             sentence = _sentence(error)
             return {"failed": sentence, "is_disk_full": any(words in sentence for words in _DISK_FULL)}
         return {"done": receipt.to_dict()}
 
 
 def close() -> None:
-    """Ends what this process has open."""
+    """Closes the open job."""
     global _bench
     with _using:
         if _bench:
@@ -133,7 +133,7 @@ def close() -> None:
 def _open(folder: str, device: str | None, say: Callable[[str], None] = lambda words: None) -> Bench:
     global _bench
     if _bench and (str(_bench.folder) != folder or _stamp_of(_bench.folder) != _bench.stamp):
-        close()  # Another job, or another in the same folder.
+        close()  # Another job, or a new job in the same folder.
     if _bench:
         _bench.settings = Settings.read(_bench.folder)
     else:
@@ -142,7 +142,7 @@ def _open(folder: str, device: str | None, say: Callable[[str], None] = lambda w
 
 
 def _stamp_of(folder: Path) -> tuple[int, int, int] | None:
-    """Differs where the job's manifest was written anew."""
+    """Returns a value that changes if the job's manifest is written again."""
     try:
         status = (folder / "job.json").stat()
     except OSError:
@@ -155,5 +155,5 @@ def _refuse(sentence: str, exit_code: int) -> Answer:
 
 
 def _sentence(error: Exception) -> str:
-    """Errors of promin are sentences; of others the kind says more than the words alone."""
+    """Returns an exception as a sentence. Errors of promin are sentences; for others the type is added."""
     return str(error) if isinstance(error, jobs.Error) else f"{type(error).__name__}: {error}"

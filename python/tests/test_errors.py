@@ -28,9 +28,9 @@ def test_errors_mirror_the_library() -> None:
     for kind in (promin.UsageError, promin.InputError, promin.DeviceError, promin.RunError, promin.Cancelled):
         assert issubclass(kind, promin.Error)
     assert issubclass(promin.UsageError, ValueError)
-    with pytest.raises(promin.InputError, match="file not found, /none/scene.obj; check the path") as caught:
+    with pytest.raises(promin.InputError, match="the file does not exist, /none/scene.obj; check the path") as caught:
         promin.Scene.load("/none/scene.obj")
-    assert caught.value.problems == ("file not found, /none/scene.obj; check the path",)
+    assert caught.value.problems == ("the file does not exist, /none/scene.obj; check the path",)
     again = pickle.loads(pickle.dumps(caught.value))
     assert type(again) is promin.InputError and str(again) == str(caught.value)
 

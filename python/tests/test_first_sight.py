@@ -187,7 +187,7 @@ def test_a_camera_of_ones_own_is_posed_too(box: promin.Scene) -> None:
 
 
 def test_a_picture_of_nothing_warns(box: promin.Scene) -> None:
-    with pytest.warns(UserWarning, match="nothing of the scene is in the picture; look_at 0 0 0 .* from_ three-qu"):
+    with pytest.warns(UserWarning, match="the picture shows nothing of the scene; look_at 0 0 0 .* from_ three-qu"):
         promin.render(box, eye=(0, 0, 9), direction=(0, 0, 1), size=8, spp=1)
 
 
@@ -362,6 +362,6 @@ def test_files_stand_for_scenes(scenes: Path) -> None:
     assert (hits["object"] >= 0).all()
     with pytest.raises(promin.UsageError, match="is no promin.Scene"):
         promin.Renderer(3)  # type: ignore[arg-type]
-    with pytest.raises(promin.InputError, match="file not found"):
+    with pytest.raises(promin.InputError, match="the file does not exist"):
         promin.render("none.glb")
     assert _renderer._count_samples(promin.View(size="100x50")) == 100 * 50 * 8

@@ -92,7 +92,7 @@ def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) ->
         job.merge([tmp_path / "early.##.png"], frames=[-1])
     assert not (tmp_path / "early.00.png").exists()
     make_all(job)
-    with pytest.raises(promin.UsageError, match="several frames would go to one file"):
+    with pytest.raises(promin.UsageError, match="several frames would be written to one file"):
         job.merge([tmp_path / "one.png"])
     job.merge([tmp_path / "cut.##.png"])
     for number in ("00", "01"):
@@ -137,7 +137,7 @@ def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
     words = [str(scene), "rays.chunks", "--pieces", "4"]
     job = jobs.create("cast", words, tmp_path / "job", rays=source)
     make_all(job)
-    with pytest.raises(promin.UsageError, match="answers to rays have no frames"):
+    with pytest.raises(promin.UsageError, match="a job of rays has no frames"):
         job.merge([tmp_path / "hits.npy"], frames=[0])
     job.merge([tmp_path / "hits.npy"])
     hits = np.load(tmp_path / "hits.npy")
@@ -232,12 +232,12 @@ def test_parts_that_say_what_there_is_not_are_refused(scene: Path, tmp_path: Pat
     whole, data = job.read(0)
     for name, value in (("tone_mapping", 77), ("tone_mapping", -1), ("exr", [False, 99, False])):
         job.write(0, json.dumps({**json.loads(whole), name: value}), data)
-        with pytest.raises(jobs.InputError, match="is no part of a picture"):
+        with pytest.raises(jobs.InputError, match="the piece is not part of a picture"):
             job.merge([tmp_path / "out.exr"])
     said = json.loads(whole)
     said["metadata"] = said["metadata"][:-1]
     job.write(0, json.dumps(said), data)
-    with pytest.raises(jobs.InputError, match="tells other things than the other pieces"):
+    with pytest.raises(jobs.InputError, match="the piece has other metadata than the other pieces"):
         job.merge([tmp_path / "out.exr"])
     assert not (tmp_path / "out.exr").exists()
 
@@ -300,7 +300,7 @@ def test_comparisons_of_pictures(scene: Path, tmp_path: Path) -> None:
     assert compare_with(break_pixels) == jobs.Comparison(False, True, 0.0, 6, 1200)
     assert compare_with(break_more) == jobs.Comparison(False, False, 0.0, 7, 1200)
     job.write(0, description, data[:-4])
-    with pytest.raises(promin.InputError, match="is no part of a picture"):
+    with pytest.raises(promin.InputError, match="the piece is not part of a picture"):
         runner.compare(0)
 
 
@@ -406,7 +406,7 @@ def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
     files[2].write_bytes(whole[2][:-3] + bytes([whole[2][-3] ^ 1]) + whole[2][-2:])
     files[3].write_bytes(whole[1])
     assert [job.state(number) for number in range(4)] == ["bad"] * 4
-    assert [job.why(number) for number in range(4)] == ["is cut", "the file is empty", "is damaged", "is another piece"]
+    assert [job.why(number) for number in range(4)] == ["is cut", "the file is empty", "is damaged", "the file holds another piece"]
     with pytest.raises(promin.RunError, match="4 of 4 pieces are missing or bad"):
         job.merge([tmp_path / "none.png"])
     assert not (tmp_path / "none.png").exists()
@@ -415,7 +415,7 @@ def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
     assert [file.read_bytes() for file in files] == whole
     other = jobs.create("render", [str(scene), "--size", "16", "12", "--spp", "2", "--pieces", "4"], tmp_path / "other")
     shutil.copy(files[0], other.pieces[0].file)
-    assert (other.state(0), other.why(0)) == ("bad", "is of another job")
+    assert (other.state(0), other.why(0)) == ("bad", "the piece belongs to another job")
 
 
 def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
@@ -424,7 +424,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     runner = job.runner()
     assert job.arguments == words
     for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, and 1 now")):
-        with pytest.raises(promin.UsageError, match=f"the folder has another job: {what}"):
+        with pytest.raises(promin.UsageError, match=f"the folder belongs to another job: {what}"):
             jobs.create("cast", other, tmp_path / "job")
     changed = make_rays(1000)
     changed[3, 3] = 0.5
@@ -438,7 +438,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     with pytest.raises(promin.UsageError, match='the file "box.gltf" has changed since'):
         jobs.open(tmp_path / "job").runner()
     scene.unlink()
-    with pytest.raises(promin.InputError, match="file not found, .*box.gltf"):
+    with pytest.raises(promin.InputError, match="the file does not exist, .*box.gltf"):
         jobs.open(tmp_path / "job").runner()
     (tmp_path / "job/command.json").write_text("{}")
     with pytest.raises(promin.InputError, match="does not say by what command .* or is damaged, .*command.json"):
@@ -452,13 +452,13 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         ("render", ["box.gltf", "--sp", "2"], promin.UsageError, "unknown option --sp, .*did you mean --spp"),
         ("render", ["box.gltf", "--spp", "x"], promin.UsageError, "--spp takes a whole number"),
         ("render", ["box.gltf", "--help"], promin.UsageError, "--help makes no job"),
-        ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "--output is none of a job's arguments"),
-        ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "--piece is none of a job's arguments"),
-        ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "who makes the pieces chooses it"),
+        ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "--output is not an argument of a job"),
+        ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "--piece is not an argument of a job"),
+        ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "it is chosen when pieces are made"),
         ("render", ["box.gltf", "--time-limit", "1"], promin.UsageError, "--job and --time-limit contradict"),
-        ("render", ["none.gltf"], promin.InputError, "file not found, none.gltf"),
+        ("render", ["none.gltf"], promin.InputError, "the file does not exist, none.gltf"),
         ("cast", ["box.gltf"], promin.UsageError, "RAYS.npy is required"),
-        ("cast", ["box.gltf", "none.npy"], promin.InputError, "file not found, none.npy"),
+        ("cast", ["box.gltf", "none.npy"], promin.InputError, "the file does not exist, none.npy"),
         ("paint", ["box.gltf"], promin.UsageError, 'no command "paint" makes jobs'),
     ],
 )
@@ -522,7 +522,7 @@ def test_pieces_of_a_function(tmp_path: Path) -> None:
         jobs.open(tmp_path / "job").runner()
     with pytest.raises(promin.InputError, match='the job is one of "bytes"'):
         job.merge([tmp_path / "a.npy"])
-    with pytest.raises(promin.UsageError, match="there is no piece 3 of 3"):
+    with pytest.raises(promin.UsageError, match="the job has no piece 3 of 3"):
         job.state(3)
     with pytest.raises(promin.UsageError, match="return a text and bytes"):
         job.runner(make=lambda number: ("", 1)).run(0)  # type: ignore[arg-type, return-value]

@@ -147,7 +147,7 @@ def _open(caster: promin.Caster, pipe: Any) -> None:
 def test_what_was_opened_before_a_fork_says_so() -> None:
     caster = promin.Caster(make_scene(1, 10))
     for work, method, expected in (
-        (_use, "fork", "opened before a fork; open it in the child or start with spawn"),
+        (_use, "fork", "the device was opened before a fork; open it in the child or start with spawn"),
         (_open, "spawn", caster.cast(make_rays(4)).tobytes()),
     ):
         context = multiprocessing.get_context(method)

@@ -169,13 +169,13 @@ TEST_F(BvhCliTest, FilesThatCannotBeTrustedAreRefusedWithThree) {
   build({"triangle.obj", "-o", "stale.pbvh"});
   write("out.exr", "old");
   const std::pair<std::string, std::string> cases[] = {
-      {"cut.pbvh", "bytes where its header tells of"},
-      {"foreign.pbvh", "not a BVH file, foreign.pbvh; name a file that promin-bvh build has written"},
+      {"cut.pbvh", "bytes, but its header declares"},
+      {"foreign.pbvh", "the file is not a BVH file, foreign.pbvh; name a file that promin-bvh build has written"},
       {"empty.pbvh", "the file is empty"},
       {"flipped.pbvh", "the BVH file is damaged: its checksum does not match, flipped.pbvh; build it again with "},
-      {"none.pbvh", "file not found, none.pbvh"},
-      {".", "not a regular file"},
-      {"stale.pbvh", "the BVH file is stale: it was built over other geometry than the scene's, stale.pbvh; build it"}};
+      {"none.pbvh", "the file does not exist, none.pbvh"},
+      {".", "the scene is not a regular file"},
+      {"stale.pbvh", "the BVH file is stale: it was built from other geometry than the scene's, stale.pbvh; build it"}};
   for (const auto& [file, sentence] : cases) {
     SCOPED_TRACE(file);
     expect_failure(run({"render", "square.gltf", "-o", "out.exr", "--bvh", file}), 3, sentence);
@@ -191,15 +191,15 @@ TEST_F(BvhCliTest, VerifyFindsABoxThatIsTooSmall) {
   forge("a.pbvh", 128 + 16, 9);
   EXPECT_EQ(run_bvh({"info", "a.pbvh"}).exit_code, 0);
   expect_bvh_failure({"verify", "square.gltf", "a.pbvh"}, 3,
-                     "the tree is wrong in 2 places, first: primitive 0 of object 0 reaches out of the box of its leaf "
-                     "or of a node above it, a.pbvh; build it again with promin-bvh build");
+                     "the tree is wrong in 2 places, first: primitive 0 of object 0 extends outside the box of its "
+                     "leaf or of a node above it, a.pbvh; build it again with promin-bvh build");
 }
 
 TEST_F(BvhCliTest, AFullDiskLeavesTheOldFile) {
   write_triangles("many.obj", 1000);
   write("old.pbvh", "old");
   fill_disk(2000);
-  expect_bvh_failure({"build", "many.obj", "-o", "old.pbvh", "--quiet"}, 1, "cannot write the output file");
+  expect_bvh_failure({"build", "many.obj", "-o", "old.pbvh", "--quiet"}, 1, "the output file cannot be written");
   EXPECT_EQ(read("old.pbvh"), "old");
   EXPECT_THAT(files(), ElementsAre("many.obj", "old.pbvh"));
 }

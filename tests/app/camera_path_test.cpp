@@ -167,8 +167,8 @@ TEST_F(CameraPathTest, AFrameOfVersion2MayLookAtAPoint) {
   EXPECT_EQ(look_of(1, look + look_at), vec3(0.6F, 0.0F, -0.8F)) << "version 1 knows no points";
   EXPECT_NEAR(glm::length(look_of(2, look_at) - vec3(0.6F, 0.0F, -0.8F)), 0.0F, 1e-6F);
   EXPECT_THAT(refusal(text(1, look_at)), HasSubstr("\"look\" is missing"));
-  EXPECT_THAT(refusal(text(2, "")), HasSubstr("a frame has one of look and look_at"));
-  EXPECT_THAT(refusal(text(2, look + look_at)), HasSubstr("a frame has one of look and look_at"));
+  EXPECT_THAT(refusal(text(2, "")), HasSubstr("a frame has both look and look_at"));
+  EXPECT_THAT(refusal(text(2, look + look_at)), HasSubstr("a frame has both look and look_at"));
   EXPECT_THAT(refusal(text(2, R"(, "look_at": [1000000.1, 0, 5])")), HasSubstr("look_at is the place of the eye"));
   EXPECT_THAT(refusal(text(3, look)), HasSubstr("version"));
 }
@@ -177,8 +177,8 @@ TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
   const std::string good = R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 40})";
   EXPECT_EQ(refusal_of_frames(good), "");
   const std::pair<std::string, std::string> cases[] = {
-      {"", "there are no frames"},
-      {good + ", " + good, "frames[1]; order the frames by their times"},
+      {"", "the path has no frames"},
+      {good + ", " + good, "frames[1]; sort the frames by time"},
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, 0], "up": [0, 1, 0], "fov_deg": 40})", "zero or parallel"},
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0]})", "one of fov_deg and ymag"},
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 4, "ymag": 1})", "one of"},

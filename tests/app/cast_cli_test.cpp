@@ -307,7 +307,7 @@ TEST_F(CastTest, AFullDiskLeavesTheOldFile) {
   write_rays("rays.npy", std::vector<Ray>(4000, kRays[0]));
   write("hits.npy", "old");
   fill_disk(100'000);
-  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"}), 1, "cannot write the output file");
+  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"}), 1, "the output file cannot be written");
   EXPECT_EQ(read("hits.npy"), "old");
   EXPECT_THAT(files(), ElementsAre("hits.npy", "rays.npy"));
 }
@@ -319,7 +319,7 @@ TEST_F(CastTest, AFullDiskLeavesBothOldFiles) {
   // There is room for the offsets, and not for the hits.
   fill_disk(100'000);
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--all", "--offsets", "o.npy"}), 1,
-                 "cannot write the output file");
+                 "the output file cannot be written");
   EXPECT_EQ(read("hits.npy"), "old hits");
   EXPECT_EQ(read("o.npy"), "old offsets");
   EXPECT_THAT(files(), ElementsAre("hits.npy", "o.npy", "rays.npy"));

@@ -117,8 +117,9 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   EXPECT_THAT(result.out, HasSubstr("3 of 4 pieces made now: cut.npy"));
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
 
-  expect_failure(cast({"--job", "job", "--pieces", "4", "--any", "-o", "cut.npy"}), 2,
-                 "the folder has another job: its --any is not given or its default, and is \"given\" now");
+  expect_failure(
+      cast({"--job", "job", "--pieces", "4", "--any", "-o", "cut.npy"}), 2,
+      "the folder belongs to another job: its --any is not given or has its default value, and is \"given\" now");
   expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2, "it has 4 pieces, and 3 now");
   write_rays("rays.npy", make_rays(999));
   expect_failure(cast(words), 2, "its rays is \"1000\", and \"999\" now");
@@ -161,7 +162,7 @@ TEST_F(CastJobCliTest, AFullDiskLeavesWholePieces) {
   fill_disk(400'000);
   // Mesa's cache is no concern of this test.
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
-  expect_failure(cast({"--job", "job", "--pieces", "1", "-o", "cut.npy"}), 1, "cannot write the output file");
+  expect_failure(cast({"--job", "job", "--pieces", "1", "-o", "cut.npy"}), 1, "the output file cannot be written");
   EXPECT_TRUE(pieces().empty());
   options_.max_file_bytes.reset();
   options_.environment.clear();

@@ -128,7 +128,7 @@ TEST_F(CliTest, AFileAloneIsRendered) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   render({"square.gltf", "--size", "8", "8"}, "b.png");
   EXPECT_EQ(read("a.png"), read("b.png"));
-  expect_failure(run({"nope.glb"}), 3, "file not found, nope.glb");
+  expect_failure(run({"nope.glb"}), 3, "the file does not exist, nope.glb");
   expect_failure(run({"a.png"}), 3, "a .png is a picture, not a scene, a.png; name a file that ends in .gltf");
 }
 
@@ -146,7 +146,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render"}, "SCENE is required, on the command line; see promin render --help"},
       {{"info"}, "SCENE is required, on the command line; see promin info --help"},
       {{"devices", "all"}, "unexpected argument all"},
-      {{"render", "square.gltf", "--skip-existing"}, "--skip-existing has no pictures to look for"},
+      {{"render", "square.gltf", "--skip-existing"}, "--skip-existing needs the names of the pictures"},
       {{"render", "square.gltf", "-o", "a.png", "--skip-existing", "--exposure", "average"},
        "--skip-existing and --exposure average contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--spq", "3"},
@@ -181,8 +181,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "triangle.obj", "-o", "a.exr"}, "unexpected argument triangle.obj"},
       {{"render", "square.gltf", "-o", "a.gif"},
        "unknown output ending \".gif\", a.gif; use .exr, .png, .jpg, .webp, .tif or .hdr"},
-      {{"render", "square.gltf", "-o", "a.jpg", "--alpha"}, "--alpha has no place in a JPEG"},
-      {{"render", "square.gltf", "-o", "a.hdr", "--alpha"}, "--alpha has no place in a .hdr"},
+      {{"render", "square.gltf", "-o", "a.jpg", "--alpha"}, "a JPEG cannot store the channel of --alpha"},
+      {{"render", "square.gltf", "-o", "a.hdr", "--alpha"}, "a .hdr cannot store the channel of --alpha"},
       {{"render", "square.gltf", "-o", "-", "-o", "-"}, "-o - is given twice"},
       {{"render", "square.gltf", "-o", "-", "--job", "j"}, "-o - and --job contradict each other"},
       {{"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"},
@@ -226,9 +226,9 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "inf", "0"}, "--eye takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--direction", "0", "2", "0", "--up", "y"}, "parallel"},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "1", "2", "3", "--look-at", "1", "2", "3"},
-       "--look-at is the place of the eye"},
+       "--look-at names the position of the eye"},
       {{"render", "square.gltf", "-o", "a.exr", "--look", "0", "2", "0"},
-       "--look is no option: a point to look at is --look-at X Y Z, a direction of view --direction X Y Z"},
+       "there is no option --look: --look-at X Y Z takes a point to look at, --direction X Y Z a direction"},
       {{"render", "square.gltf", "-o", "a.exr", "--look-at", "0", "2", "0", "--direction", "1", "2", "3"},
        "--look-at and --direction contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--from", "left", "--eye", "0", "2", "0"},
@@ -325,7 +325,7 @@ TEST_F(CliTest, BadPanoramasAreRefused) {
   write_image(folder() / "bright.exr", {{4, 2}, std::vector<vec3>(8, vec3(2e15F))});
   write_image(folder() / "wide.exr", {{16385, 1}, std::vector<vec3>(16385, vec3(1.0F))});
   const std::pair<std::string, std::string> cases[] = {
-      {"none.hdr", "no such picture, none.hdr"},
+      {"none.hdr", "the picture does not exist, none.hdr"},
       {"broken.hdr", "broken.hdr"},
       {"bright.exr", "is beyond 1e15 (R is 2e+15 in pixel 0, 0), bright.exr"},
       {"wide.exr", "too large (16385x1 pixels), wide.exr"}};
@@ -438,7 +438,7 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
   // There is room for what waits, but not for the file.
   const OptionValues large = {"render", "square.gltf", "--size",  "300",         "300",           "--aov", "object",
                               "-o",     "old.exr",     "--quiet", "--multipart", "--compression", "none"};
-  expect_failure(run(large), 1, "cannot write the output file (");
+  expect_failure(run(large), 1, "the output file cannot be written (");
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
 }
@@ -446,7 +446,8 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
 // Reading from a pipe that nobody writes to would wait without end.
 TEST_F(CliTest, ScenesAreRegularFiles) {
   ASSERT_EQ(::mkfifo((folder() / "pipe.obj").c_str(), 0600), 0);
-  expect_failure(run({"info", "pipe.obj"}), 3, "not a regular file, pipe.obj; name the scene's file");
+  expect_failure(run({"info", "pipe.obj"}), 3,
+                 "the scene is not a regular file, pipe.obj; name the scene's file");
   std::filesystem::create_directory(folder() / "folder.gltf");
   expect_failure(run({"info", "folder.gltf"}), 3, "is a folder");
 }
@@ -501,8 +502,8 @@ TEST_F(CliTest, AFullStandardOutputIsAFailure) {
 TEST_F(CliTest, WithoutADeviceOnlyInfoWorks) {
   options_.environment = {{"VK_ICD_FILENAMES", "/nonexistent.json"}, {"VK_DRIVER_FILES", "/nonexistent.json"}};
   write("old.exr", "old");
-  expect_failure(run({"render", "square.gltf", "-o", "old.exr"}), 4, "no Vulkan device");
-  expect_failure(run({"devices"}), 4, "no Vulkan device");
+  expect_failure(run({"render", "square.gltf", "-o", "old.exr"}), 4, "there is no Vulkan device");
+  expect_failure(run({"devices"}), 4, "there is no Vulkan device");
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
 
@@ -513,7 +514,7 @@ TEST_F(CliTest, WithoutADeviceOnlyInfoWorks) {
 
 TEST_F(CliTest, AnUnknownDeviceIsRefused) {
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "no such device"}), 4,
-                 "no Vulkan device matches \"no such device\", asked for by --device; choose one of: ");
+                 "no Vulkan device matches \"no such device\", requested by --device; choose one of: ");
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--device", "99"}), 4, "99");
   EXPECT_THAT(files(), IsEmpty());
 }
@@ -558,10 +559,9 @@ TEST_F(CliTest, VariantsAreChosenByName) {
   EXPECT_EQ(run({"info", "cars.gltf", "--variant", "green"}).exit_code, 0);
   expect_failure(run({"info", "cars.gltf", "--variant", "blue"}), 2, "choose one of: \"red\", \"green\"");
   expect_failure(run({"render", "cars.gltf", "-o", "a.exr", "--variant", "blue"}), 2, "no variant \"blue\"");
-  expect_failure(run({"info", "square.gltf", "--variant", "blue"}), 2,
-                 "the scene has no variant \"blue\", nor any other");
+  expect_failure(run({"info", "square.gltf", "--variant", "blue"}), 2, "the scene has no variant \"blue\"or any other");
   expect_failure(run({"info", "triangle.obj", "--variant", "blue"}), 2,
-                 "files that end in .obj have no variants of materials");
+                 "files that end in .obj have no material variants");
 }
 
 TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
@@ -713,7 +713,8 @@ TEST_F(InfoJsonTest, HoldsTexelsByTheirHash) {
 
 TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   const std::string lit = run({"info", "square.gltf"}).out;
-  EXPECT_THAT(lit, ContainsRegex("lights +1 \\(point: 1.*; assumed: a studio's weaker light around the scene's own\n"));
+  EXPECT_THAT(lit,
+              ContainsRegex("lights +1 \\(point: 1.*; assumed: weak studio light in addition to the scene's own\n"));
   EXPECT_THAT(lit, ContainsRegex("background +0.85 0.85 0.85 above to 0.55 0.55 0.55 below, as shown \\(assumed\\)\n"));
   EXPECT_THAT(lit, ContainsRegex("display +exposure \\+2 EV, tone mapping neutral\n"));
 
@@ -909,7 +910,7 @@ TEST_F(CliTest, DitheringHangsOnThePlaceInTheWholePicture) {
 
 TEST_F(CliTest, OfAMissingSceneNothingIsSaidToBeWritten) {
   const ProcessResult result = run({"render", "nope.gltf"});
-  expect_failure(result, 3, "file not found, nope.gltf");
+  expect_failure(result, 3, "the file does not exist, nope.gltf");
   EXPECT_THAT(result.err, testing::StartsWith("promin: error: "));
 }
 
@@ -927,8 +928,10 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
     // A picture of another scene, and one that names no scene.
     run({"render", "triangle.obj", "-o", name, "--size", "8", "8"});
     const std::string other = read(name);
-    expect_failure(run({"render", "square.gltf", "--size", "7", "7"}), 2,
-                   name + std::string(" exists and promin did not make it from square.gltf; say by -o where to write"));
+    expect_failure(
+        run({"render", "square.gltf", "--size", "7", "7"}), 2,
+        name +
+            std::string(" exists already and promin did not make it from square.gltf; name the file to write by -o"));
     EXPECT_EQ(read(name), other);
     write(name, "my notes");
     expect_failure(run({"render", "square.gltf"}), 2, "exists and promin did not make it");
@@ -1051,9 +1054,10 @@ TEST_F(CliTest, WhatIsAssumedIsSaid) {
             "promin: note: assumed: a camera that frames the scene from three quarters, the light of a studio, a grey "
             "background\n");
   const ProcessResult shown = run({"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "-o", "a.png"});
-  EXPECT_EQ(shown.err,
-            "promin: note: assumed: a studio's weaker light around the scene's own, a grey background, an exposure of "
-            "+2 EV, tone mapping neutral\n");
+  EXPECT_EQ(
+      shown.err,
+      "promin: note: assumed: weak studio light in addition to the scene's own, a grey background, an exposure of "
+      "+2 EV, tone mapping neutral\n");
   // Of an EXR errors alone are as it is shown.
   const ProcessResult refined = run(
       {"render", "square.gltf", "--size", "64", "36", "-o", "a.exr", "--target-error", "0.5", "--error-in", "display"});

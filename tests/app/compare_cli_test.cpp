@@ -96,17 +96,16 @@ TEST_F(CompareCliTest, WritesWhereTheyDiffer) {
 }
 
 TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
-  expect_failure(compare({"a.exr", "c.exr"}), 3, "no such picture, c.exr");
-  expect_failure(compare({"a.exr", "a.png"}), 3, "one picture holds linear light and the other codes of sRGB");
+  expect_failure(compare({"a.exr", "c.exr"}), 3, "the picture does not exist, c.exr");
+  expect_failure(compare({"a.exr", "a.png"}), 3, "one picture holds linear light, the other holds sRGB values");
   write_image(folder() / "small.exr", {uvec2(16, 11), std::vector<vec3>(16 * 11)});
-  expect_failure(compare({"a.exr", "small.exr"}), 3, "the pictures differ in size, 16x12 against 16x11");
+  expect_failure(compare({"a.exr", "small.exr"}), 3, "the pictures have different sizes, 16x12 against 16x11");
   const Channel depth{"Z", false, std::vector<uint32_t>(16 * 12)};
   write_image(folder() / "deep.exr", read_image(folder() / "a.exr"), {}, std::nullopt, {&depth, 1});
-  expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures differ in channels, only deep.exr has Z");
+  expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures have different channels, only deep.exr has Z");
   write("text.exr", "no picture");
   expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
-  expect_failure(compare({"a.exr", "b.exr", "--fail-percent", "3"}), 2,
-                 "--fail-percent needs a limit for pixels to exceed");
+  expect_failure(compare({"a.exr", "b.exr", "--fail-percent", "3"}), 2, "--fail-percent needs the limit of --fail");
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
 
@@ -188,7 +187,7 @@ TEST_F(ComparePartsCliTest, PartsThatOneHasAreSaid) {
     for (const char* first : {"one.exr", "parts.exr"}) {
       expect_failure(
           compare({"other.exr", first}), 3,
-          std::string("the pictures differ in channels, only ") + first + " has N.X N.Y N.Z P.X P.Y and 5 more");
+          std::string("the pictures have different channels, only ") + first + " has N.X N.Y N.Z P.X P.Y and 5 more");
     }
   }
 }

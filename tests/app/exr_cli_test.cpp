@@ -299,8 +299,9 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
   const ProcessResult second_eye = run({"compare", "eyes.exr", "other_eyes.exr", "--fail", "0"});
   EXPECT_EQ(second_eye.exit_code, 5);
   EXPECT_THAT(second_eye.out, testing::HasSubstr("right.G: largest 0.25, at pixel 1 0; 1 "));
-  expect_failure(run({"compare", "rows.exr", "eyes.exr"}), 3,
-                 "the pictures differ in channels, only rows.exr has Z; only eyes.exr has right.B right.G right.R");
+  expect_failure(
+      run({"compare", "rows.exr", "eyes.exr"}), 3,
+      "the pictures have different channels, only rows.exr has Z; only eyes.exr has right.B right.G right.R");
 }
 
 TEST_F(ExrCliTest, OptionsOfExrsWantOne) {

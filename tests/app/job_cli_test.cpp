@@ -102,10 +102,10 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   EXPECT_EQ(pieces().size(), 4U);
   const ProcessResult one_file = run({"merge", "job", "-o", "one.exr"});
   EXPECT_EQ(one_file.exit_code, 2);
-  EXPECT_THAT(one_file.err, HasSubstr("several frames would go to one file, one.exr"));
+  EXPECT_THAT(one_file.err, HasSubstr("several frames would be written to one file, one.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "one.exr"));
   EXPECT_THAT(run({"merge", "job", "-o", "cut.##.exr", "--offsets", "o.npy"}).err,
-              HasSubstr("--offsets is of answers to rays, and the job is of pictures, job; leave --offsets out"));
+              HasSubstr("--offsets needs a job of rays, and this job is one of pictures, job; leave --offsets out"));
   for (const char* number : {"00", "01"}) {
     EXPECT_TRUE(read(std::string("cut.") + number + ".exr") == read(std::string("whole.") + number + ".exr"));
   }
@@ -246,11 +246,13 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(render({"--job", "job", "-o", "cut.exr"}));
   const ProcessResult other_samples = render({"--job", "job", "-o", "cut.exr", "--spp", "2"});
   EXPECT_EQ(other_samples.exit_code, 2);
-  EXPECT_THAT(other_samples.err,
-              HasSubstr("the folder has another job: its --spp is not given or its default, and is \"2\" now"));
+  EXPECT_THAT(
+      other_samples.err,
+      HasSubstr(
+          "the folder belongs to another job: its --spp is not given or has its default value, and is \"2\" now"));
   expect_done(render({"--job", "fine", "-o", "cut.exr", "--spp", "2"}));
   expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "8"}), 2,
-                 "its --spp is \"2\", and is not given or its default now");
+                 "its --spp is \"2\", and is not given or has its default value now");
   const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
   const auto in = [&](const char* space) {
     OptionValues words = refined;
@@ -260,7 +262,8 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(in("linear"));
   const ProcessResult other_space = in("display");
   EXPECT_EQ(other_space.exit_code, 2);
-  EXPECT_THAT(other_space.err, HasSubstr("its --error-in is not given or its default, and is \"display\" now"));
+  EXPECT_THAT(other_space.err,
+              HasSubstr("its --error-in is not given or has its default value, and is \"display\" now"));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);
@@ -317,7 +320,7 @@ TEST_F(JobCliTest, ASignalInTheLastPieceIsToldToo) {
                                            {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job",
                                             "job", "--pieces", "1", "-o", "cut.exr"});
   EXPECT_EQ(result.signal, SIGINT);
-  EXPECT_THAT(result.err, HasSubstr("stopped with the last piece; the same command goes on"));
+  EXPECT_THAT(result.err, HasSubstr("stopped after the last piece; the same command continues the job"));
   EXPECT_EQ(pieces().size(), 1U);
   EXPECT_FALSE(std::filesystem::exists(folder() / "cut.exr"));
 }

@@ -147,7 +147,8 @@ TEST_F(LimitsCliTest, ARemovedFolderIsNamedAsTheCause) {
                                          {"merge job -o " + picture, "job"},
                                          {"compare a.exr " + picture, "a.exr"}}) {
     const ProcessResult result = run_in_removed_folder(arguments);
-    expect_failure(result, 1, std::string("the current folder is gone, ") + named + "; change to a folder that exists");
+    expect_failure(result, 1,
+                   std::string("the current folder no longer exists, ") + named + "; change to a folder that exists");
   }
 }
 
@@ -158,7 +159,7 @@ TEST_F(LimitsCliTest, AManifestThatIsNoneIsNamed) {
     for (const std::string other : {"", ":none.json"}) {
       options_.environment[variable] = "bad.json" + other;
       const std::string said =
-          std::string("no Vulkan device: the manifest of a driver is no JSON, bad.json, named by ") + variable;
+          std::string("there is no Vulkan device: the manifest of a driver is no JSON, bad.json, named by ") + variable;
       expect_failure(run({"render", "square.gltf", "-o", "a.png"}), 4, said);
       expect_failure(run({"devices"}), 4, said);
     }

@@ -108,7 +108,7 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
   std::filesystem::remove(folder() / "square.0000.exr");
   write("square.0000.png", "notes");
   expect_failure(render_path({"--frames", "0-1"}), 2,
-                 "square.0000.png exists and promin did not make it from square.gltf");
+                 "square.0000.png exists already and promin did not make it from square.gltf");
   EXPECT_EQ(render_path({"--frames", "2", "--quiet"}).exit_code, 0) << "another frame";
 }
 

@@ -79,13 +79,13 @@ TEST_F(PicturesPluginCliTest, WhatReadsNoUnusualPictureDoesWithoutIt) {
 
 TEST_F(PicturesPluginCliTest, AMissingOneIsTold) {
   expect_refusal(
-      "the plugin that reads pictures, libpromin_pictures.so, is missing, sought in plugins; install promin "
-      "whole, or name the plugin's folder in PROMIN_PLUGINS");
+      "the plugin that reads pictures, libpromin_pictures.so, is missing, sought in plugins; install all of promin, or "
+      "name the plugin's folder in PROMIN_PLUGINS");
 }
 
 TEST_F(PicturesPluginCliTest, OneThatDoesNotLoadIsRefused) {
   write(fs::path("plugins") / kPlugin.filename(), "no library");
-  expect_refusal("cannot load the plugin that reads pictures (plugins/libpromin_pictures.so: ");
+  expect_refusal("the plugin that reads pictures cannot be loaded (plugins/libpromin_pictures.so: ");
 }
 
 TEST_F(PicturesPluginCliTest, OneOfAnotherInterfaceIsRefused) {

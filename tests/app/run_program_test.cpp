@@ -36,19 +36,19 @@ TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
   const auto message = [](const char* where, const char* cure, Setting setting) {
     return message_of(RunError({"bad", where, cure, setting}));
   };
-  EXPECT_EQ(message("asked for as the device", "choose one", Setting::kDevice),
-            "bad, asked for by --device; choose one");
+  EXPECT_EQ(message("requested as the device", "choose one", Setting::kDevice),
+            "bad, requested by --device; choose one");
   EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "bad, x; try again, or another --device");
   EXPECT_EQ(message("x", "take the builder sah", Setting::kBuilder), "bad, x; take --builder sah");
-  EXPECT_EQ(message("x", "raise the memory of textures", Setting::kTextureMemory), "bad, x; raise --texture-memory");
+  EXPECT_EQ(message("x", "raise the memory for textures", Setting::kTextureMemory), "bad, x; raise --texture-memory");
   EXPECT_EQ(message_of(Problem{"bad", "x", "take the builder sah", Setting::kBuilder}), "bad, x; take --builder sah");
   EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "bad, x; bounce less (--max-depth)") << "other words";
-  EXPECT_EQ(message("another device.gltf", "take another device", Setting::kNone),
-            "bad, another device.gltf; take another device");
+  EXPECT_EQ(message("another device.gltf", "use another device", Setting::kNone),
+            "bad, another device.gltf; use another device");
 }
 
 TEST(MessageTest, EachProblemHasItsOption) {
-  const InputError error({{"one", "", "take a smaller depth", Setting::kDepth}, {"two", "there", ""}});
+  const InputError error({{"one", "", "use a smaller depth", Setting::kDepth}, {"two", "there", ""}});
   EXPECT_EQ(message_of(error), "one; lower --max-depth (1 of 2 problems)\n  two, there");
 }
 

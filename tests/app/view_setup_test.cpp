@@ -115,7 +115,7 @@ TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
   };
   EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kOrthographic));
   options.pose.fov_deg = 40.0;
-  const std::string note = "promin: note: the camera is orthographic; --fov makes it a perspective one\n";
+  const std::string note = "promin: note: the camera is orthographic; --fov makes it perspective\n";
   EXPECT_EQ(say_and_view(), std::pair(note, Projection::kPerspective));
   options.camera = "side";
   EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
@@ -300,7 +300,7 @@ TEST(DescribeAssumptionsTest, OneSentenceTellsAll) {
   scene.environment.ambient = vec3(0.0F);
   scene.lights[0].diffuse = vec3(201.0F);
   EXPECT_EQ(assumptions_of(scene, {}),
-            "assumed: a studio's weaker light around the scene's own, a grey background, an exposure of -6 EV, tone "
+            "assumed: weak studio light in addition to the scene's own, a grey background, an exposure of -6 EV, tone "
             "mapping neutral");
 }
 
@@ -416,7 +416,7 @@ TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
   };
   EXPECT_EQ(warning_of({}), "");
   EXPECT_THAT(warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
-              HasSubstr("nothing of the scene is in the picture; --look-at 1 2 3 in place of a direction shows its"));
+              HasSubstr("the picture shows nothing of the scene; --look-at 1 2 3 looks at its middle"));
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ TEST_F(BvhFileTest, EveryFlippedBitIsRefused) {
 TEST_F(BvhFileTest, EveryOtherLengthIsRefused) {
   Bytes bytes = read_file(file_);
   bytes.push_back(std::byte{0});
-  EXPECT_THAT(refusal(bytes), HasSubstr("bytes where its header tells of"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("bytes, but its header declares"));
   bytes.pop_back();
   while (!bytes.empty()) {
     bytes.pop_back();
@@ -201,10 +201,10 @@ TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
   const Bytes good = read_file(file_);
   const std::string cure = ", " + file_.string() + "; build it again with promin-bvh build";
   EXPECT_EQ(refusal(with(good, 0, 'P')),
-            "not a BVH file, " + file_.string() + "; name a file that promin-bvh build has written");
-  EXPECT_EQ(refusal(sealed(with(good, kByteOrderPlace, 0x04030201))), "the BVH file is of another byte order" + cure);
+            "the file is not a BVH file, " + file_.string() + "; name a file that promin-bvh build has written");
+  EXPECT_EQ(refusal(sealed(with(good, kByteOrderPlace, 0x04030201))), "the BVH file has another byte order" + cure);
   EXPECT_EQ(refusal(sealed(with(good, kVersionPlace, 7))),
-            "the BVH file is of version 7 and this promin reads version 1" + cure);
+            "the BVH file has version 7 and this promin reads version 1" + cure);
   EXPECT_EQ(refusal(sealed(with(good, kLayoutHashPlace, uint64_t{5}))),
             "the BVH file has nodes of another layout than this promin's" + cure);
   EXPECT_EQ(refusal(with(good, kHeaderSize + 3, '!')), "the BVH file is damaged: its checksum does not match" + cure);
@@ -213,7 +213,8 @@ TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
   EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, std::array<uint64_t, 5>{~0U, ~0U, ~0U, ~0U, ~0U}))),
             "the BVH file does not name its builder" + cure);
   EXPECT_THAT(refusal(Bytes()), HasSubstr("the file is empty"));
-  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }),
+              HasSubstr("the scene is not a regular file"));
   EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasSubstr("not found"));
 }
 
@@ -302,7 +303,7 @@ const HostileTree kHostileTrees[] = {
     {"too_deep", [](Tree& t) { t.view.stats.depth = kMaxBvhDepth + 1; }, "tells of another tree"},
     {"cost_is_no_number", [](Tree& t) { t.view.stats.sah_cost = std::nan(""); }, "tells of another tree"},
     {"stack_of_nothing", [](Tree& t) { t.view.stack_size = 0; }, "and claims 0"},
-    {"deep_chain", [](Tree& t) { make_chain(t, 100'000); }, "lies deeper than any builder goes"},
+    {"deep_chain", [](Tree& t) { make_chain(t, 100'000); }, "lies deeper than in the tree of any builder"},
     {"no_nodes",
      [](Tree& t) {
        t.nodes.clear();
@@ -361,7 +362,7 @@ TEST_F(BvhFileTest, OtherGeometryMakesItStale) {
   };
   EXPECT_EQ(refusal_for(scene_), "");
 
-  const std::string stale = "the BVH file is stale: it was built over other geometry than the scene's, " +
+  const std::string stale = "the BVH file is stale: it was built from other geometry than the scene's, " +
                             file_.string() + "; build it again with promin-bvh build";
   for (size_t vertex = 0; vertex < 6; ++vertex) {
     for (int axis = 0; axis < 3; ++axis) {

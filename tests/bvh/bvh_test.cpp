@@ -361,9 +361,9 @@ TEST(BvhBuilders, AnUnknownNameIsAUsageErrorThatListsTheKnownOnes) {
     }
     return "no error";
   };
-  EXPECT_EQ(message_for("SHA"), "unknown BVH builder \"SHA\"; known: sah, median, spatial");
+  EXPECT_EQ(message_for("SHA"), "there is no BVH builder \"SHA\"; known: sah, median, spatial");
   EXPECT_EQ(message_for("medien"),
-            "unknown BVH builder \"medien\"; did you mean \"median\"? Known: sah, median, spatial");
+            "there is no BVH builder \"medien\"; did you mean \"median\"? Known: sah, median, spatial");
 }
 
 }  // namespace

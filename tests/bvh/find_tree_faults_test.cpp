@@ -120,7 +120,7 @@ TEST(FindTreeFaults, TheFirstIsNamedWhateverTheThreads) {
   EXPECT_EQ(by_one.count, packed.bounded_count);
   EXPECT_EQ(by_many.count, by_one.count);
   EXPECT_EQ(by_many.first, by_one.first);
-  EXPECT_EQ(by_one.first, "primitive 0 of object 1 reaches out of the box of its leaf or of a node above it");
+  EXPECT_EQ(by_one.first, "primitive 0 of object 1 extends outside the box of its leaf or of a node above it");
   EXPECT_EQ(told, 1.0);
 }
 

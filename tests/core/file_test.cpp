@@ -253,8 +253,8 @@ TEST_F(FileTest, ARemovedFolderIsNamedAsTheCause) {
   const std::string writing = refusal_of([] { write_text_file("a.txt", "x"); });
   write_text_file(folder_ / "elsewhere.txt", "x");
   fs::current_path(old_folder);
-  EXPECT_THAT(reading, HasSubstr("the current folder is gone, a.obj"));
-  EXPECT_THAT(writing, HasSubstr("the current folder is gone, a.txt"));
+  EXPECT_THAT(reading, HasSubstr("the current folder no longer exists, a.obj"));
+  EXPECT_THAT(writing, HasSubstr("the current folder no longer exists, a.txt"));
 }
 
 TEST(ErrorTest, SeveralProblemsAreCountedAndIndented) {

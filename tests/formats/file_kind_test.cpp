@@ -147,7 +147,7 @@ TEST_F(FilesOfScenesTest, WhatSaysNothingIsSaidToBeNothing) {
   EXPECT_THAT(refusal(folder_ / "missing.txt"), HasSubstr("unknown scene format \".txt\", "));
   EXPECT_THAT(refusal("a.PNG", "hello\n"), HasSubstr("a .png is a picture, not a scene, "));
   EXPECT_THAT(refusal(folder_ / "missing.exr"), HasSubstr("a .exr is a picture, not a scene, "));
-  EXPECT_THAT(refusal("a.stl", std::string(20, '\0')), HasSubstr("the file is no STL"));
+  EXPECT_THAT(refusal("a.stl", std::string(20, '\0')), HasSubstr("the file is not an STL file"));
   EXPECT_EQ(find_file_kind("", "", 0).name, "");
 }
 

@@ -269,7 +269,7 @@ const BadUri kBadUris[] = {
     {"Empty", "", "name is empty"},
     {"EmptyFile", "empty.bin", "the file is empty"},
     {"Folder", "sub", "is a folder"},
-    {"Short", "short.bin", "has 4 bytes, less than its byteLength of 42"},
+    {"Short", "short.bin", "has 4 bytes, fewer than its byteLength of 42"},
     {"Parent", "../secret.bin", "leaves the scene's folder"},
     {"ParentInside", "sub/../../secret.bin", "leaves the scene's folder"},
     {"EscapedParent", "%2e%2e/secret.bin", "leaves the scene's folder"},
@@ -354,7 +354,7 @@ TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
   std::string bytes = gltf.glb();
   const std::string length = "\"byteLength\":42";
   bytes.replace(bytes.rfind(length), length.size(), "\"byteLength\":48");
-  EXPECT_THAT(refusal("a.glb", bytes), HasSubstr("has 44 bytes, less than its byteLength of 48"));
+  EXPECT_THAT(refusal("a.glb", bytes), HasSubstr("has 44 bytes, fewer than its byteLength of 48"));
 }
 
 /// Whatever reads from a buffer makes its bytes needed.

@@ -134,8 +134,9 @@ TEST_F(GltfExtensionsTest, TexturesFallBackOnTheImageOfCoreGltf) {
   GltfBuilder gltf = textured_gltf({{"source", 1}, {"extensions", {{"MSFT_texture_dds", {{"source", 0}}}}}});
   gltf.json["extensionsUsed"] = {"MSFT_texture_dds"};
   const Scene scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre("1 texture uses MSFT_texture_dds, which is not known; an image that is named "
-                                          "beside it is taken, or none"));
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre("1 texture uses MSFT_texture_dds, which is not known; an alternative image is used, or none"));
   ASSERT_EQ(scene.images.size(), 1U);
   EXPECT_EQ(scene.images[0]->texels, std::vector<uint32_t>{0xFF204080});
 }
@@ -144,10 +145,11 @@ TEST_F(GltfExtensionsTest, TexturesWithoutAKnownImageAreAbsent) {
   GltfBuilder gltf = textured_gltf({{"extensions", {{"MSFT_texture_dds", {{"source", 0}}}}}});
   gltf.json["extensionsRequired"] = {"MSFT_texture_dds"};
   const Scene scene = load(gltf);
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("1 texture uses MSFT_texture_dds, which is required but not known; an image that is named "
-                          "beside it is taken, or none",
-                          "1 texture has no image that is known; materials are drawn without"));
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre(
+          "1 texture uses MSFT_texture_dds, which is required but not known; an alternative image is used, or none",
+          "1 texture has no image of a known format; materials are drawn without"));
   EXPECT_FALSE(std::get<MetallicRoughness>(scene.materials[0].model).base_color_texture.exists());
 }
 

@@ -86,29 +86,31 @@ TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
 
 const Repair kRepairs[] = {
     // The document
-    {"NoAsset", [](auto& g) { g.json.erase("asset"); }, "the version is missing, asset.version; glTF 2.0 is taken"},
+    {"NoAsset", [](auto& g) { g.json.erase("asset"); },
+     "the version is missing, asset.version; it is read as glTF 2.0"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
-     "the version is not written as glTF has it (2), asset.version; glTF 2.0 is taken"},
-    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; it is ignored"},
+     "the version is not written as glTF requires (2), asset.version; it is read as glTF 2.0"},
+    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; they are ignored"},
     {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; },
-     "another value stands where a string belongs (7), extensions.KHR_implicit_shapes.shapes[0].name; it is ignored"},
+     "another value stands where a string belongs (7), extensions.KHR_implicit_shapes.shapes[0].name; they are "
+     "ignored"},
     {"ExtensionsUsed",
      [](auto& g) {
        g.json["extensionsUsed"] = {"KHR_materials_ior", 3};
      },
-     "another value stands where a string belongs (3), extensionsUsed[1]; what holds it is ignored"},
+     "another value stands where a string belongs (3), extensionsUsed[1]; the object that contains they are ignored"},
     // Materials
     {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; },
-     "an index is out of range (index 1), meshes[0].primitives[0].material; it is ignored"},
+     "an index is out of range (index 1), meshes[0].primitives[0].material; they are ignored"},
     {"MaterialIsNoObject", [](auto& g) { g.json["materials"][0] = "red"; },
-     "another value stands where an object belongs (a JSON string), materials[0]; it is ignored"},
+     "another value stands where an object belongs (a JSON string), materials[0]; they are ignored"},
     {"MaterialsIsNoArray", [](auto& g) { g.json["materials"] = 1; },
-     "another value stands where an array belongs (1), materials; it is ignored"},
+     "another value stands where an array belongs (1), materials; they are ignored"},
     {"Metallic", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 2; },
      PROMIN_CLAMPED("2", "materials[0].pbrMetallicRoughness.metallicFactor", "0 to 1")},
     {"MetallicIsText", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "1"; },
      "another value stands where a number belongs (a JSON string), "
-     "materials[0].pbrMetallicRoughness.metallicFactor; it is ignored"},
+     "materials[0].pbrMetallicRoughness.metallicFactor; they are ignored"},
     {"BaseColor",
      [](auto& g) {
        g.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1.5, 1, 1};
@@ -120,17 +122,17 @@ const Repair kRepairs[] = {
      },
      PROMIN_CLAMPED("-1", "materials[0].emissiveFactor[1]", "0 to 1e+15")},
     {"AlphaMode", [](auto& g) { g.json["materials"][0]["alphaMode"] = "CUTOUT"; },
-     "a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; it is ignored"},
+     "a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; they are ignored"},
     {"Ior",
      [](auto& g) {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
      },
-     "a number is out of range (-1), materials[0].extensions.KHR_materials_ior.ior; it is ignored"},
+     "a number is out of range (-1), materials[0].extensions.KHR_materials_ior.ior; they are ignored"},
     {"PhongIor",
      [](auto& g) {
        material_extension(g, "PROMIN_materials_phong") = {{"ior", 0}};
      },
-     "a number is out of range (0), materials[0].extensions.PROMIN_materials_phong.ior; it is ignored"},
+     "a number is out of range (0), materials[0].extensions.PROMIN_materials_phong.ior; they are ignored"},
     {"Transmission",
      [](auto& g) {
        material_extension(g, "KHR_materials_transmission") = {{"transmissionFactor", 2}};
@@ -140,7 +142,8 @@ const Repair kRepairs[] = {
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationDistance", -1}};
      },
-     "a number is out of range (-1), materials[0].extensions.KHR_materials_volume.attenuationDistance; it is ignored"},
+     "a number is out of range (-1), materials[0].extensions.KHR_materials_volume.attenuationDistance; they are "
+     "ignored"},
     {"AttenuationColor",
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationColor", {1, -1, 1}}};
@@ -175,23 +178,23 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["samplers"] = {{{"magFilter", 9987}}};
      },
-     "a value is not one of 9728|9729 (\"9987\"), samplers[0].magFilter; it is ignored"},
+     "a value is not one of 9728|9729 (\"9987\"), samplers[0].magFilter; they are ignored"},
     {"SamplerIndex",
      [](auto& g) {
        g.json["textures"] = {{{"sampler", 4}}};
      },
-     "an index is out of range (index 4), textures[0].sampler; it is ignored"},
+     "an index is out of range (index 4), textures[0].sampler; they are ignored"},
     {"ImageView",
      [](auto& g) {
        g.json["images"] = {{{"bufferView", 99}, {"mimeType", "image/png"}}};
      },
-     "an index is out of range (index 99), images[0].bufferView; it is ignored"},
+     "an index is out of range (index 99), images[0].bufferView; they are ignored"},
     {"ImageViewPastItsBuffer",
      [](auto& g) {
        g.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 52}});
        g.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
      },
-     "the buffer view of an image ends behind its buffer (10 bytes), images[0]; the image is left out"},
+     "the buffer view of an image extends beyond its buffer (10 bytes), images[0]; the image is left out"},
     // Lights and cameras
     {"LightIndex", [](auto& g) { g.json["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 1; },
      "an index is out of range (index 1), nodes[3].extensions.KHR_lights_punctual.light; the light is left out"},
@@ -200,20 +203,20 @@ const Repair kRepairs[] = {
     {"LightType", [](auto& g) { light(g)["type"] = "area"; },
      "a value is not one of point|directional|spot (\"area\"), " PROMIN_LIGHT ".type; the light is left out"},
     {"LightRange", [](auto& g) { light(g)["range"] = 0; },
-     "a number is out of range (0), " PROMIN_LIGHT ".range; it is ignored"},
+     "a number is out of range (0), " PROMIN_LIGHT ".range; they are ignored"},
     {"ConeAngles",
      [](auto& g) {
        light(g)["spot"] = {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}};
      },
      "a spot's inner cone angle is not less than its outer, " PROMIN_LIGHT ".spot; its edge is sharp"},
     {"CameraIndex", [](auto& g) { g.json["nodes"][3]["camera"] = 1; },
-     "an index is out of range (index 1), nodes[3].camera; it is ignored"},
+     "an index is out of range (index 1), nodes[3].camera; they are ignored"},
     {"FieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"]["yfov"] = 3.2; },
      "a number is out of range (3.2), cameras[0].perspective.yfov; the camera is left out"},
     {"NoFieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"] = json::object(); },
      "\"yfov\" is missing, cameras[0].perspective; the camera is left out"},
     {"AspectRatio", [](auto& g) { g.json["cameras"][0]["perspective"]["aspectRatio"] = 0; },
-     "a number is out of range (0), cameras[0].perspective.aspectRatio; it is ignored"},
+     "a number is out of range (0), cameras[0].perspective.aspectRatio; they are ignored"},
     {"CameraType", [](auto& g) { g.json["cameras"][0]["type"] = "fisheye"; },
      "a value is not one of perspective|orthographic (\"fisheye\"), cameras[0].type; the camera is left out"},
     {"CameraWithoutParameters", [](auto& g) { g.json["cameras"][0].erase("perspective"); },
@@ -222,21 +225,21 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["extensions"]["OMI_environment_sky"]["skies"] = {{{"type", 3}}};
      },
-     "another value stands where a string belongs (3), extensions.OMI_environment_sky.skies[0].type; what holds it is "
-     "ignored"},
+     "another value stands where a string belongs (3), extensions.OMI_environment_sky.skies[0].type; the object that "
+     "contains they are ignored"},
     // Vertices
     {"NegativeColor",
      [](auto& g) {
        primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, 0, 0, 0, -1, 0, 0, 0, 0}, "VEC3");
      },
-     "a vertex colour is negative or no number (-1.000000), meshes[0].primitives[0].attributes.COLOR_0, element 1; 0 "
-     "is taken, or 1 for no number"},
+     "a vertex colour is negative or not a number (-1.000000), meshes[0].primitives[0].attributes.COLOR_0, element 1; "
+     "0 is used for a negative value, 1 for one that is not a number"},
     {"NanColors",
      [](auto& g) {
        primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, kNan, 0, 0, 0, 0, kNan, 0, 0}, "VEC3");
      },
-     "a vertex colour is negative or no number (nan), meshes[0].primitives[0].attributes.COLOR_0, element 0 and 1 "
-     "more; 0 is taken, or 1 for no number"},
+     "a vertex colour is negative or not a number (nan), meshes[0].primitives[0].attributes.COLOR_0, element 0 and 1 "
+     "more; 0 is used for a negative value, 1 for one that is not a number"},
     {"NanTextureCoordinate",
      [](auto& g) {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNan, 0, 1}, "VEC2");
@@ -256,27 +259,27 @@ const Repair kRepairs[] = {
      "the format of an attribute is not allowed (VEC3 of 5126), meshes[0].primitives[0].attributes.TEXCOORD_0; the "
      "attribute is left out"},
     {"NormalizedIndices", [](auto& g) { g.json["accessors"][1]["normalized"] = true; },
-     "indices are normalized, meshes[0].primitives[0].indices; they are read as integers"},
+     "the indices are normalized, meshes[0].primitives[0].indices; they are read as integers"},
     {"OddStride",
      [](auto& g) {
        g.json["bufferViews"][0]["byteStride"] = 14;
        g.json["bufferViews"][0]["byteLength"] = 40;
      },
-     "a stride is no multiple of 4 from 4 to 252 (14), bufferViews[0].byteStride; it is taken as it stands"},
+     "a stride is not a multiple of 4 from 4 to 252 (14), bufferViews[0].byteStride; it is used as it is"},
     {"NoStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 0; },
-     "a stride is no multiple of 4 from 4 to 252 (0), bufferViews[0].byteStride; the elements are taken as packed"},
+     "a stride is not a multiple of 4 from 4 to 252 (0), bufferViews[0].byteStride; the elements are read as packed"},
     // Nodes
     {"TwoParents",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2};
        g.json["nodes"][1]["children"] = {2};
      },
-     "a node has two parents (nodes[2]), nodes[1].children[0]; it is shown below each"},
+     "a node has two parents (nodes[2]), nodes[1].children[0]; it is shown below both"},
     {"ChildTwice",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2, 2};
      },
-     "a node has a child twice (nodes[2]), nodes[0].children[1]; it is shown once"},
+     "a node lists a child twice (nodes[2]), nodes[0].children[1]; it is shown once"},
     {"ChildAsRoot",
      [](auto& g) {
        g.json["nodes"][3]["children"] = {1};
@@ -289,8 +292,7 @@ const Repair kRepairs[] = {
        g.json["nodes"][0]["children"] = {1};
        g.json["scenes"] = {{{"nodes", {0, 1, 2, 3}}}};
      },
-     "a scene lists a node that lies below another (nodes[1]), scenes[0].nodes[1]; it is shown where it lies below "
-     "that"},
+     "a scene lists a node that lies below another (nodes[1]), scenes[0].nodes[1]; it is shown once, below that node"},
     {"RootTwice",
      [](auto& g) {
        g.json["scenes"] = {{{"nodes", {0, 1, 0, 2}}}};
@@ -300,10 +302,10 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["nodes"][0].update({{"scale", {1, 1, 1}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
      },
-     "a node has both a matrix and a translation, rotation or scale, nodes[0]; the matrix is taken"},
+     "a node has both a matrix and a translation, rotation or scale, nodes[0]; the matrix is used"},
     {"PerspectiveMatrix",
      [](auto& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
-     "the matrix is not affine (0.5), nodes[0].matrix[3]; its last row is taken as 0 0 0 1"},
+     "the matrix is not affine (0.5), nodes[0].matrix[3]; its last row is read as 0 0 0 1"},
     {"ZeroRotation",
      [](auto& g) {
        g.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
@@ -584,7 +586,7 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
   gltf.json["buffers"][0]["byteLength"] = 100;
   LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings, ElementsAre("a buffer is shorter than its byteLength (42 bytes for 100), buffers[0]; "
-                                          "what is there of it is read"));
+                                          "the existing part is read"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   // Padding that the view counts.
   gltf.json["bufferViews"][1]["byteLength"] = 8;
@@ -592,7 +594,7 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
   EXPECT_THAT(scene.warnings, SizeIs(1));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   gltf.json["bufferViews"][1]["byteLength"] = 10;
-  EXPECT_THAT(refusal("scene.gltf", gltf.json.dump()), HasSubstr("has 42 bytes, less than its byteLength of 100"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.json.dump()), HasSubstr("has 42 bytes, fewer than its byteLength of 100"));
 }
 
 TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
@@ -635,7 +637,7 @@ TEST_F(GltfRepairTest, EmptyBuffersHoldNothing) {
   gltf.text();
   gltf.json["buffers"].push_back({{"byteLength", 0}});
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings, ElementsAre("a buffer has no bytes, buffers[1]; nothing is read of it"));
+  EXPECT_THAT(scene.warnings, ElementsAre("a buffer has no bytes, buffers[1]; nothing is read from it"));
   EXPECT_NE(strict_refusal("strict.gltf", gltf.json.dump()), "");
 }
 
@@ -661,8 +663,8 @@ TEST_F(GltfRepairTest, LengthsInTheHeaderOfAGlbAreRepaired) {
   const size_t json_length = static_cast<unsigned char>(good[12]) + 256 * static_cast<unsigned char>(good[13]);
   const size_t binary = 20 + json_length;
   const std::pair<std::string, const char*> kFiles[] = {
-      {good.substr(0, good.size() - 2), "a GLB chunk ends behind the file (2 bytes)"},
-      {with(8, 0xFFFFFFFF), "the GLB header promises another number of bytes than the chunks have"},
+      {good.substr(0, good.size() - 2), "a GLB chunk extends beyond the end of the file (2 bytes)"},
+      {with(8, 0xFFFFFFFF), "the GLB header declares another number of bytes than the chunks have"},
       {with(8, 0), "the GLB header promises another number"},
       {with(8, good.size() - 4), "the GLB header promises another number"},
       {with(binary, 42), "a GLB chunk header is cut off"},
@@ -704,11 +706,11 @@ TEST_F(GltfRepairTest, MeshesOfWhichNoneCanBeDrawnAreRefused) {
   GltfBuilder gltf = triangle_gltf();
   primitive(gltf)["mode"] = 1;
   EXPECT_THAT(refusal("scene.gltf", gltf.text()),
-              HasSubstr("the scene holds nothing to draw (a mesh primitive holds points or lines"));
+              HasSubstr("the scene contains nothing to draw (a mesh primitive holds points or lines"));
   gltf.add_node({{"mesh", 0}});
   gltf.json["nodes"][0]["scale"] = {0, 0, 0};
   EXPECT_THAT(refusal("scene.gltf", gltf.text()),
-              HasSubstr("the scene holds nothing to draw (a mesh primitive holds points or lines"));
+              HasSubstr("the scene contains nothing to draw (a mesh primitive holds points or lines"));
   gltf.json["nodes"][1]["scale"] = {0, 0, 0};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("nothing to draw"))) << "all is hidden";
 }

@@ -78,10 +78,8 @@ TEST_F(GltfSkinTest, LastRowsOfInverseBindMatricesAreMadeAffine) {
   gltf_.json["skins"][0]["inverseBindMatrices"] = gltf_.add<float>(matrices, "MAT4");
   const LoadedScene scene = load();
   expect_all_near(corners_of(mesh_of(scene)), kPosed);
-  EXPECT_THAT(
-      scene.warnings,
-      ElementsAre("an inverse bind matrix is not affine (0.500000), skins[0].inverseBindMatrices, element 1; its "
-                  "last row is taken as 0 0 0 1"));
+  EXPECT_THAT(scene.warnings, ElementsAre("an inverse bind matrix is not affine (0.500000), "
+                                          "skins[0].inverseBindMatrices, element 1; its last row is read as 0 0 0 1"));
 }
 
 TEST_F(GltfSkinTest, JointsMayBeInNoScene) {
@@ -158,9 +156,10 @@ TEST_F(GltfSkinTest, BadWeightsAreRepaired) {
     primitive()["attributes"]["WEIGHTS_0"] = gltf_.add<float>({bad, 0, 0, 0, bad, 0, 0, 0, 0.25F, 0.25F, 0, 0}, "VEC4");
     const LoadedScene scene = load();
     expect_all_near(corners_of(mesh_of(scene)), kPosed);
-    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a vertex of a skinned mesh has no weights, or ones that are no "
-                                                      "numbers, meshes[0].primitives[0].attributes.WEIGHTS_0, element "
-                                                      "0 and 1 more; it goes with the first of its joints")));
+    EXPECT_THAT(scene.warnings,
+                ElementsAre(HasSubstr("a vertex of a skinned mesh has no weights, or weights that are not numbers, "
+                                      "meshes[0].primitives[0].attributes.WEIGHTS_0, element "
+                                      "0 and 1 more; it follows the first of its joints")));
   }
 }
 
@@ -173,8 +172,7 @@ TEST_F(GltfSkinTest, WithoutJointsAMeshStandsAsItIs) {
   gltf_.json["nodes"][0]["translation"] = {7, 0, 0};
   const LoadedScene unskinned = load();
   EXPECT_EQ(corners_of(mesh_of(unskinned))[1], vec3(8, 0, 0));
-  EXPECT_THAT(unskinned.warnings,
-              ElementsAre("a skin has no joints, skins[0]; its meshes stand as their nodes have them"));
+  EXPECT_THAT(unskinned.warnings, ElementsAre("a skin has no joints, skins[0]; its meshes are placed by their nodes"));
 }
 
 TEST_F(GltfSkinTest, IndicesThatLeadNowhereAreRefused) {

@@ -193,7 +193,7 @@ TEST_F(GltfTest, TheDefaultSceneIsShown) {
   GltfBuilder gltf = triangle_gltf();
   gltf.add_node({{"mesh", 0}});
   gltf.json["scenes"] = {{{"nodes", json::array()}}, {{"nodes", {0, 1}}}};
-  EXPECT_THAT(load(gltf).warnings, Contains("the scene holds nothing to draw"));
+  EXPECT_THAT(load(gltf).warnings, Contains("the scene contains nothing to draw"));
   gltf.json["scene"] = 1;
   EXPECT_THAT(load(gltf).objects, SizeIs(2));
 }
@@ -330,7 +330,7 @@ TEST_F(GltfTest, WhatIsNoAnalyticShapeShowsItsFallback) {
     GltfBuilder bare = shape_gltf(shape, changes);
     bare.json["meshes"][0]["primitives"][0]["attributes"] = json::object();
     bare.json["meshes"][0]["primitives"][0].erase("indices");
-    EXPECT_THAT(refusal("scene.gltf", bare.text()), HasSubstr("the scene holds nothing to draw"));
+    EXPECT_THAT(refusal("scene.gltf", bare.text()), HasSubstr("the scene contains nothing to draw"));
     bare.show({{"attributes", {{"POSITION", 0}}}});
     const LoadedScene nothing = load(bare);
     EXPECT_TRUE(std::holds_alternative<world::NotDrawn>(nothing.objects.at(0).shape));
@@ -620,7 +620,7 @@ TEST_F(GltfTest, ClassicMaterialsAreOpaqueAndHaveTwoSides) {
   const LoadedScene scene = load(gltf);
   EXPECT_EQ(scene.materials.at(0).alpha_mode, AlphaMode::kOpaque);
   EXPECT_TRUE(scene.materials.at(0).is_double_sided);
-  EXPECT_THAT(scene.warnings, ElementsAre("material \"old\": its alphaMode is ignored, it is drawn opaque"));
+  EXPECT_THAT(scene.warnings, ElementsAre("material \"old\": its alphaMode is ignored and it is drawn opaque"));
 }
 
 TEST_F(GltfTest, PhongMaterialsHaveNoTextures) {
@@ -629,7 +629,7 @@ TEST_F(GltfTest, PhongMaterialsHaveNoTextures) {
                                     {"extensions", {{"PROMIN_materials_phong", json::object()}}}});
   gltf.json["images"] = {{{"uri", "missing.png"}}};
   gltf.json["textures"] = {{{"source", 0}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"old\": its textures are ignored, its factors are used"));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"old\": its textures are ignored and its factors are used"));
 }
 
 /// A PNG of one pixel: 80 hexadecimal of red, 40 of green, 20 of blue.
@@ -657,7 +657,7 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     gltf.json["textures"] = {{{"source", 0}}};
     return load(gltf).warnings;
   };
-  const std::string one = " is rough glass: only a sky is blurred through it, and objects are seen sharp";
+  const std::string one = " is rough glass: only a sky is blurred through it, and objects look sharp";
   EXPECT_THAT(warnings_of(json::object()), ElementsAre("material \"frosted\"" + one));
   EXPECT_THAT(warnings_of({{"name", nullptr}}), ElementsAre("material 0" + one));
   const json textured = {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}};
@@ -673,10 +673,8 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     several.json["meshes"][0]["primitives"].push_back(several.json["meshes"][0]["primitives"][0]);
   }
   for (int i = 0; i < 4; ++i) several.json["meshes"][0]["primitives"][i]["material"] = std::max(i, 1);
-  EXPECT_THAT(
-      load(several).warnings,
-      ElementsAre("material \"frosted\" and 2 others like it are rough glass: only a sky is blurred through it, "
-                  "and objects are seen sharp"))
+  EXPECT_THAT(load(several).warnings, ElementsAre("material \"frosted\" and 2 others like it are rough glass: only a "
+                                                  "sky is blurred through it, and objects look sharp"))
       << "nothing has the first material";
 }
 
@@ -731,7 +729,7 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
   EXPECT_THAT(scene.warnings,
               ElementsAre("a file does not exist (\"missing.png\"), image \"bumps\"; materials are drawn "
                           "without it: put it beside the scene",
-                          "a picture cannot be used: it is of no known format, image images[1]; materials "
+                          "a picture cannot be used: its format is unknown, image images[1]; materials "
                           "are drawn without it"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
   EXPECT_THAT(message_of([&] { load_scene(folder_ / "scene.gltf", {.is_strict = true}); }),
@@ -872,7 +870,7 @@ TEST_F(GltfTest, GradientSkiesAreRead) {
   skies[0]["gradient"]["sunCurve"] = 4;
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("ambientSkyContribution"), HasSubstr("suns")));
   skies[0]["gradient"]["bottomCurve"] = 0;
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("bottomCurve; it is ignored")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("bottomCurve; they are ignored")));
   skies[0]["gradient"].erase("bottomCurve");
   skies[0]["gradient"].erase("topColor");
   EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("\"topColor\" is missing")));
@@ -922,14 +920,14 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, -1)).x, 1.0, 1e-6);
   EXPECT_NEAR(sky_radiance(scene.environment, dvec3(1, 0, 1)).x, 0.0, 1e-6);
   gltf.json["images"] = {{{"bufferView", 0}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre("the sky's panorama images[0] is ignored: the picture is of no known "
-                                               "format"));
+  EXPECT_THAT(load(gltf).warnings,
+              ElementsAre("the sky's panorama images[0] is ignored: the picture has an unknown format"));
   gltf.json["images"] = {{{"uri", "../sky.exr"}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("leaves the scene's folder")));
   skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
   skies[0]["panorama"] = {{"equirectangular", 2}};
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular; it is ignored")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular; they are ignored")));
 }
 
 // Cameras
@@ -1007,7 +1005,7 @@ TEST_F(GltfTest, BuffersThatNoMeshNeedsMayLackBytes) {
   };
   const auto lack = [](int size) {
     return ElementsAre("buffers[1] has " + std::to_string(size) +
-                       " bytes, less than its byteLength of 24; no mesh needs it");
+                       " bytes, fewer than its byteLength of 24; no mesh needs it");
   };
   EXPECT_THAT(warnings_of({{"uri", "whole.bin"}}), IsEmpty());
   EXPECT_THAT(warnings_of({{"uri", "none.bin"}}), lack(0));

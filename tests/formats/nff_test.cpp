@@ -65,7 +65,7 @@ TEST_F(NffTest, NormalsAgainstTheWindingAreWarnedOf) {
   const std::string right = "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n";
   EXPECT_THAT(load(kMaterial + right).warnings, Each(Not(HasSubstr("against"))));
   EXPECT_THAT(load(kMaterial + turned + right + turned).warnings,
-              Contains("2 triangles have vertex normals that lie against their winding: they are turned"));
+              Contains("2 triangles have vertex normals that point against their winding: the normals are reversed"));
 }
 
 TEST_F(NffTest, LinesMeanNothing) {
@@ -223,7 +223,7 @@ TEST_F(NffTest, PatchesHaveNormals) {
   EXPECT_THAT(flat.warnings, Contains(HasSubstr("a normal of no length")));
   const Scene unknown = load(kMaterial + "pp 3 0 0 0 nan inf 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
   EXPECT_THAT(shape_of<Mesh>(unknown, 0).normals, IsEmpty());
-  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is drawn sharp")));
+  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is drawn flat")));
 }
 
 TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
@@ -235,7 +235,7 @@ TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
 
 TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
   for (const char* text : {"\n", "# nothing", "b 1 1 1\nf 1 1 1 1 1 1 1 1\n"}) {
-    EXPECT_THAT(load(text).warnings, Contains("the scene holds nothing to draw"));
+    EXPECT_THAT(load(text).warnings, Contains("the scene contains nothing to draw"));
   }
 }
 
@@ -266,15 +266,17 @@ const Repair kRepairs[] = {
     {"NegativeKd", "f 1 1 1 -0.5 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"-0.5\")"},
     {"NanInMaterial", "f nan 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"nan\")"},
     {"WordInMaterial", "f 0,5 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"0,5\")"},
-    {"ShortMaterial", "f 1 1 1 1 1 1 0", "\"f\" has too few numbers, line 1; those that lack are taken for the least"},
+    {"ShortMaterial", "f 1 1 1 1 1 1 0",
+     "\"f\" has too few numbers, line 1; the missing ones are set to the smallest value allowed"},
     {"LongMaterial", "f 1 1 1 1 1 1 0 0 1 2", "\"f\" has more numbers than it takes (\"1\"), line 1 and 1 more"},
     {"NegativeBackground", "b 0 0 -1", "\"b\" has a number that is not from 0 to 1e7"},
     {"LongBackground", "b 0 0 1 1", "\"b\" has more numbers"},
     {"NegativeLight", "l 0 0 0 1 1 -1", "\"l\" has a number that is not from 0 to 1e7"},
     {"LightOfTwo", "l 0 0 0 1 1", "\"l\" has too few numbers"},
-    {"LightNowhere", "l 0 nan 0 1 1 1", "\"l\" has a coordinate that is no number up to 1e15 (\"nan\"), line 1; it is"},
+    {"LightNowhere", "l 0 nan 0 1 1 1",
+     "\"l\" has a coordinate that is not a number up to 1e15 (\"nan\"), line 1; it is"},
     {"ShortLight", "l 0 0", "\"l\" has a coordinate"},
-    {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" is without from, at, up or angle"},
+    {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" lacks from, at, up or angle"},
     {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in one place"},
     {"ViewOfNan", "v from 1 nan 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
     {"ViewOfTwo", "v from 1 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
@@ -287,7 +289,8 @@ const Repair kRepairs[] = {
     {"NoPixels", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 512", "a resolution that is not of whole"},
     {"TooManyPixels", "v resolution 99999 512", "a resolution that is not of whole"},
     {"HalfAPixel", "v resolution 5.5 512", "a resolution that is not of whole"},
-    {"SphereNan", "s nan 0 0 1", "\"s\" has a coordinate that is no number up to 1e15 (\"nan\"), line 1; it is left"},
+    {"SphereNan", "s nan 0 0 1",
+     "\"s\" has a coordinate that is not a number up to 1e15 (\"nan\"), line 1; it is left"},
     {"SphereInfinite", "s 0 0 inf 1", "\"s\" has a coordinate"},
     {"SphereBeyondDouble", "s 1e999 0 0 1", "\"s\" has a coordinate"},
     {"SphereTooFar", "s 1e16 0 0 1", "\"s\" has a coordinate"},
@@ -296,7 +299,7 @@ const Repair kRepairs[] = {
     {"RadiusTooSmall", "s 0 0 0 1e-30", "\"s\" has a radius"},
     {"Radii", "c 0 0 0 0 1 0 0 0", "\"c\" has two radii of 0"},
     {"Signs", "c 0 0 0 1 1 0 0 -1", "\"c\" has one radius that is negative"},
-    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "\"c\" has base and apex in one point, or too far from each other, line 2"},
+    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "\"c\" has its base and apex at the same point, or too far apart, line 2"},
     {"ConeNan", "c 0 0 0 nan 1 1 1 1", "\"c\" has a coordinate"},
     {"TwoCorners", "p 2 0 0 0 1 1 1", "\"p\" has fewer than 3 corners"},
     {"NoCorners", "pp 0", "\"pp\" has fewer than 3 corners"},
@@ -332,22 +335,22 @@ TEST_P(BadNffTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadNff[] = {
-    {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is no statement of NFF", ": line 2"},
+    {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is not a statement of NFF", ": line 2"},
     {"UpperCase", "S 0 0 0 1", "\"S\" is no statement", ": line 1"},
     {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is no statement", ": line 2"},
     {"NoNumber", "s 0 0\nx 1\n", "\"x\" is no number", ": line 2"},
     {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "\"s\" is no number", ": line 2; write s x y z radius"},
-    {"HugeCount", "p 99999999999999999999 0 0 0", "is no number of corners", ": line 1"},
-    {"LargeCount", "p 4000000000 0 0 0", "is no number of corners", ": line 1"},
-    {"NegativeCount", "pp -3 0 0 0", "\"-3\" is no number of corners", ": line 1"},
-    {"BrokenCount", "p 3.5 0 0 0", "\"3.5\" is no number of corners", ": line 1"},
+    {"HugeCount", "p 99999999999999999999 0 0 0", "is not a number of corners", ": line 1"},
+    {"LargeCount", "p 4000000000 0 0 0", "is not a number of corners", ": line 1"},
+    {"NegativeCount", "pp -3 0 0 0", "\"-3\" is not a number of corners", ": line 1"},
+    {"BrokenCount", "p 3.5 0 0 0", "\"3.5\" is not a number of corners", ": line 1"},
     {"CutInPolygon", "p 3 0 0 0\n1 1 1\n0 1\n", "the file ends within \"p\"", ": line 3"},
     {"CutInPatch", "pp 3 0 0 0 0 0 1 1 1 1", "the file ends within \"pp\"", ": line 1"},
     {"CutBeforeCount", "b 0 0 0\np", "the file ends within \"p\"", ": line 2"},
     {"CutInMaterial", "f 1 1 1 0.5", "the file ends within \"f\"", ": line 1"},
     {"CutInCone", "c 1 1 1 0.5 2 2 2", "the file ends within \"c\"", ": line 1"},
     {"CutInView", "v\nfrom 0 0 1\nat 0", "the file ends within \"v\"", ": line 3"},
-    {"Binary", "\x01\x02\xff\n", "is no statement of NFF", ": line 1"},
+    {"Binary", "\x01\x02\xff\n", "is not a statement of NFF", ": line 1"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff), name_of_bad_file);

@@ -216,7 +216,7 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   const LoadedScene scene = load(text);
   ASSERT_THAT(scene.objects, SizeIs(2)) << "an object without a face is none";
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(1));
-  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is no three numbers up to 1e15"),
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
                                                 HasSubstr("\"-inf\" is no number"), HasSubstr("line 13 and 2 more"),
                                                 HasSubstr("the face is left out"))));
   expect_strict_refusal(text, "a face has a vertex that is no three numbers", ": line 13");
@@ -245,8 +245,8 @@ TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
   ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
   EXPECT_EQ(mesh.normals.at(mesh.triangles[0].z), vec3(1, 0, 0));
   for (const size_t sharp : {1, 2}) EXPECT_EQ(mesh.normals.at(mesh.triangles[sharp].x), vec3(0, 0, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a normal is no three numbers up to 1e15 (\"nan\"), line 5 and 2 more; "
-                                          "the faces that use it are drawn sharp",
+  EXPECT_THAT(scene.warnings, ElementsAre("a normal is not three numbers up to 1e15 (\"nan\"), line 5 and 2 more; "
+                                          "the faces that use it are drawn flat",
                                           HasSubstr("a normal has more than 3 numbers, line 8")));
   expect_strict_refusal(text, "a normal is no three numbers", ": line 5");
 }
@@ -255,7 +255,7 @@ TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   const LoadedScene none = load(kSquare + "f 1//1 2//2 3//3\nf 1//1 3//3 4//4\n");
   EXPECT_THAT(mesh_of(none).normals, IsEmpty());
   EXPECT_THAT(none.warnings,
-              ElementsAre("a face names a normal that is not there, line 5 and 1 more; it is drawn sharp"));
+              ElementsAre("a face refers to a normal that does not exist, line 5 and 1 more; it is drawn flat"));
   const LoadedScene some = load(kSquare +
                                 "vn 1 0 0\nf 1//1 2//1 3//2\nf 1//1 3//-2 4//0\nf 1//1 3//x 4//1\n"
                                 "f 1//1 2//1 3//1\nf 1//1 2//1 3//99999999999999999999\n");
@@ -270,8 +270,9 @@ TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
 TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
   const LoadedScene scene = load(kSquare + "vt 0 0\nf 1/1 2/2 3/x\nf 1/-9 2/1 3/0\nf 1/1 2/1 3/1\n");
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3));
-  EXPECT_THAT(scene.warnings, ElementsAre("a face names texture coordinates that are not there, line 6 and 1 more; it "
-                                          "is drawn without them"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("a face refers to texture coordinates that do not exist, line 6 and 1 more; it "
+                          "is drawn without them"));
   expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that are not there", ": line 5");
   expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is no number", ": line 5");
 }
@@ -357,7 +358,7 @@ TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   material("illum 4\n", &warnings);
   EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) with a d of 1, it is drawn opaque"));
   material("illum 7\nNi -1\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is no index of refraction, 1.5 is taken"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; 1.5 is used"));
   material("map_Ns wood.png\ndisp wood.png\n", &warnings);
   EXPECT_THAT(warnings,
               ElementsAre("material \"m\": some of its texture maps are ignored, the first is map_Ns in m.mtl line 2"));
@@ -369,16 +370,17 @@ TEST_F(ObjTest, NumbersOfMaterialsThatAreNoneAreIgnored) {
   EXPECT_EQ(m.phong().diffuse, vec3(1, 0, 0));
   EXPECT_EQ(m.phong().ambient, vec3(1, 0, 0));
   EXPECT_EQ(m.phong().specular, vec3(0));
-  EXPECT_THAT(warnings, ElementsAre("Ks of a material is no number from 0 to 1e15 (\"nan\"), mtllib m.mtl line 3 and 1 "
-                                    "more; the statement is ignored",
-                                    HasSubstr("Ns of a material"), HasSubstr("Ka of a material")));
+  EXPECT_THAT(warnings,
+              ElementsAre("Ks of a material is not a number from 0 to 1e15 (\"nan\"), mtllib m.mtl line 3 and 1 "
+                          "more; the statement is ignored",
+                          HasSubstr("Ns of a material"), HasSubstr("Ka of a material")));
   for (const char* line : {"Kd x\n", "Ke 1e999 0 0\n", "illum -1\n", "Ns 1e16\n", "d full\n", "Tr x\n", "Ni nan\n"}) {
     EXPECT_EQ(material(std::string("Kd 1 0 0\nd 0.5\n") + line, &warnings).phong().diffuse, vec3(1, 0, 0)) << line;
     EXPECT_THAT(warnings, ElementsAre(HasSubstr("the statement is ignored"))) << line;
     expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "is no number", ": mtllib m.mtl line 4");
   }
   EXPECT_EQ(material("Kd -0.5 0.25 -1e-9\n", &warnings).phong().diffuse, vec3(0, 0.25F, 0));
-  EXPECT_THAT(warnings, ElementsAre("Kd of a material is negative, mtllib m.mtl line 2; it counts as 0"));
+  EXPECT_THAT(warnings, ElementsAre("Kd of a material is negative, mtllib m.mtl line 2; 0 is used"));
   expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "is negative", ": mtllib m.mtl line 2");
   EXPECT_EQ(material("Ns 10 of 1000\n", &warnings).phong().shininess, 10) << "one number is read of one";
   EXPECT_THAT(warnings, IsEmpty());
@@ -416,7 +418,7 @@ TEST_F(ObjTest, WhatWouldBeInvisibleByTrIsOpaque) {
 TEST_F(ObjTest, WhatIsInvisibleByDIsSaid) {
   std::vector<std::string> warnings;
   EXPECT_EQ(material("d 0\n", &warnings).alpha, 0.0F);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is invisible, by its d of 0"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is invisible because its d is 0"));
   material("d 0\nTf 1 1 1\nillum 4\n", &warnings);
   EXPECT_THAT(warnings, IsEmpty()) << "glass";
 }
@@ -653,7 +655,7 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
   EXPECT_THAT(scene.warnings,
               testing::UnorderedElementsAre(
                   testing::StartsWith("a file does not exist (\"none.png\"); materials are drawn without it"),
-                  testing::StartsWith("a picture cannot be used: it is of no known format, image \"broken.png\""),
+                  testing::StartsWith("a picture cannot be used: its format is unknown, image \"broken.png\""),
                   testing::StartsWith("a file's name leaves the scene's folder (\"../b.png\"); materials"),
                   testing::StartsWith("the file is empty, image \"empty.png\"")));
   const Material& material = scene.materials.at(0);
@@ -911,7 +913,7 @@ TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
   write_picture("m.png", {5, 0, 0, 6, 0, 0}, {2, 1});
   const LoadedScene scene = load_with("map_Pr r.png\nmap_Pm m.png\n");
   EXPECT_THAT(scene.warnings,
-              ElementsAre("images \"r.png\" and \"m.png\" differ in size, the smaller one is enlarged"));
+              ElementsAre("images \"r.png\" and \"m.png\" differ in size; the smaller one is enlarged"));
   const auto& model = std::get<MetallicRoughness>(scene.materials.at(0).model);
   EXPECT_THAT(image_of(scene, model.metallic_roughness_texture).texels,
               ElementsAre(0xFF0501FFU, 0xFF0502FFU, 0xFF0603FFU, 0xFF0604FFU));

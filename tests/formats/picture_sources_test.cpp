@@ -108,7 +108,7 @@ TEST_F(PictureSourcesTest, WhatIsDamagedButDecodedIsShownWithAWarning) {
   EXPECT_EQ(source.image->texels.size(), 256U);
   EXPECT_THAT(report_.warnings(),
               ElementsAre(AllOf(testing::StartsWith("a picture is damaged (Corrupt JPEG data: "),
-                                testing::EndsWith("), image \"photo\"; it is shown as it is decoded"))));
+                                testing::EndsWith("), image \"photo\"; the part that can be decoded is shown"))));
   LoadReport strict(folder_ / "scene.gltf", true);
   source.file = file;
   decode_pictures({&source, 1}, strict);

@@ -186,7 +186,7 @@ TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
   const LoadedScene scene = load(file);
   EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
   EXPECT_THAT(mesh_of(scene).positions, SizeIs(4));
-  EXPECT_THAT(scene.warnings, ElementsAre("a face has a vertex coordinate that is no number up to 1e15, vertex 4 "
+  EXPECT_THAT(scene.warnings, ElementsAre("a face has a vertex coordinate that is not a number up to 1e15, vertex 4 "
                                           "and 1 more; the face is left out"));
   EXPECT_THROW(load_scene(folder_ / "scene.ply", {.is_strict = true}), InputError);
 }
@@ -263,7 +263,7 @@ TEST_F(PlyTest, ColorsThatLackAChannelAreWarnedOfOnce) {
   const std::string properties = "property uchar green\nproperty uchar blue\nproperty uchar alpha\n";
   const LoadedScene scene = load(triangle(properties, {"1 1 1", "1 1 1", "1 1 1"}));
   EXPECT_THAT(mesh_of(scene).colors, IsEmpty());
-  EXPECT_THAT(scene.warnings, ElementsAre("colours of vertices are ignored, as red, green or blue is missing"));
+  EXPECT_THAT(scene.warnings, ElementsAre("colours of vertices are ignored because red, green or blue is missing"));
   EXPECT_THAT(load(triangle("property uchar alpha\n", {"1", "1", "1"})).warnings, IsEmpty());
 }
 
@@ -271,13 +271,13 @@ TEST_F(PlyTest, ColorsOutOfRangeAreClamped) {
   const LoadedScene scene =
       load(triangle("property float red\nproperty float green\nproperty float blue\n", {"-1 2 nan", "0 0 0", "0 0 0"}));
   EXPECT_EQ(mesh_of(scene).colors.at(0), vec4(0, 1, 1, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a colour is no number, line 15; 1 is taken",
+  EXPECT_THAT(scene.warnings, ElementsAre("a colour is not a number, line 15; 1 is taken",
                                           "vertex colours below 0 or above 1 are clamped"));
 }
 
 TEST_F(PlyTest, WhatIsIgnoredIsSaid) {
   EXPECT_THAT(load(triangle("property float s\nproperty float t\n", {"0 0", "0 0", "0 0"})).warnings,
-              ElementsAre("texture coordinates are ignored, as no comment TextureFile names a picture"));
+              ElementsAre("texture coordinates are ignored because no comment TextureFile names a picture"));
   EXPECT_THAT(load(triangle("", {"4", "", ""})).warnings,
               ElementsAre("numbers beyond the properties of an element are ignored"));
 }
@@ -288,7 +288,7 @@ TEST_F(PlyTest, WordsThatAreNoNumbersCostWhatTheySay) {
   EXPECT_EQ(mesh_of(colored).colors.at(0), vec4(1, 0, 0, 1));
   const LoadedScene smooth = load(triangle(kNormal, {"-1.#IND 0 x", "0 0 1", "0 0 1"}));
   EXPECT_THAT(mesh_of(smooth).normals, testing::Each(vec3(0, 0, 1)));
-  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is drawn sharp")));
+  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is drawn flat")));
   EXPECT_THAT(load(triangle("property float quality\n", {"x", "y", "z"})).warnings, IsEmpty());
 }
 
@@ -349,7 +349,7 @@ TEST_F(PlyTest, ColorsOfVerticesComeBeforeThoseOfFaces) {
       "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n3 0 1 2 0 0 255\n";
   const LoadedScene scene = load(file);
   EXPECT_THAT(mesh_of(scene).colors, testing::Each(vec4(1, 0, 0, 1)));
-  EXPECT_THAT(scene.warnings, ElementsAre("colours of faces are ignored, as the vertices have colours"));
+  EXPECT_THAT(scene.warnings, ElementsAre("colours of faces are ignored because the vertices have colours"));
 }
 
 // Textures
@@ -407,8 +407,9 @@ TEST_F(PlyTextureTest, FacesHaveTextureCoordinatesAndTexturesOfTheirOwn) {
   EXPECT_EQ(mesh.triangles.at(1), uvec3(0, 2, 3)) << "corners with the same coordinates are shared";
   EXPECT_EQ(mesh.uvs.at(3), vec4(0, 0.5F, 0, 0));
   EXPECT_EQ(mesh.triangles.at(2), uvec3(0, 1, 2));
-  EXPECT_THAT(scene.warnings, ElementsAre("a face has not two texture coordinates for each corner, line 26; it is "
-                                          "drawn without a texture"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("a face does not have two texture coordinates for each corner, line 26; it is "
+                          "drawn without a texture"));
   EXPECT_THAT(validate(scene), IsEmpty());
 }
 
@@ -461,7 +462,7 @@ TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {
       "0 0 0 0 0\n1 0 0 0 0\n0 1 0 0 0\n3 0 1 2 1\n3 0 1 2 0\n";
   const Scene scene = load_textured(file);
   EXPECT_THAT(only_mesh(scene).triangle_materials, ElementsAre(1, 0));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a face names a texture that is not there")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a face refers to a texture that does not exist")));
 }
 
 TEST_F(PlyTextureTest, SizesAreReadAloneWhereAskedFor) {
@@ -519,7 +520,7 @@ const BadFile kBadPly[] = {
      "no faces", ""},
     {"CountOfALie", text_header("element vertex 1000000000\n" + kPlace) + kSquare, "has room for", ""},
     {"CountOfAHugeLie", text_header("element vertex 9223372036854775807\n" + kPlace) + kSquare, "has room for", ""},
-    {"CutBinaryHeader", cut_binary("1000"), "1000 rows of \"face\", the file has room for 9", ""},
+    {"CutBinaryHeader", cut_binary("1000"), "1000 rows of \"face\", but the file has room for 9", ""},
     {"CutBinary", cut_binary("1"), "a count that the file has no room for", ": face 0"},
     {"CutText", square("3 0 1 2\n", 2), "ends within its rows", ""},
     {"CutRow", square("3 0 1\n3 0 1 2\n", 2), "fewer numbers", ": line 16"},

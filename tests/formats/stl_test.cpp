@@ -86,13 +86,13 @@ TEST_F(StlTest, ABinaryFileMayBeginAsATextDoes) {
   longer.add({{kTriangle[0], kTriangle[1], kTriangle[2]}});
   const LoadedScene scene = load(longer.bytes() + "tail");
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle) << "zeros in its header tell it";
-  EXPECT_THAT(scene.warnings, ElementsAre("bytes behind the last facet are ignored"));
+  EXPECT_THAT(scene.warnings, ElementsAre("bytes after the last facet are ignored"));
 }
 
 TEST_F(StlTest, WhatIsIgnoredIsSaid) {
   StlBuilder stl;
   stl.add({{kTriangle[0], kTriangle[1], kTriangle[2]}}, 0x001F);
-  EXPECT_THAT(load(stl.bytes()).warnings, ElementsAre("the bytes behind the facets are no colours, and ignored"));
+  EXPECT_THAT(load(stl.bytes()).warnings, ElementsAre("the bytes after each facet are not colours and are ignored"));
   EXPECT_THAT(load("solid\ncolor 1 0 0\n" + kFacet + "endsolid\n").warnings,
               ElementsAre("1 statements of STL are ignored, the first is \"color\" in line 2"));
 }
@@ -143,11 +143,12 @@ TEST_F(StlTest, FacetsThatAreNoTrianglesAreSaid) {
       load("solid\n" + begin + "endfacet\n" + begin + "vertex 1 1 0\nvertex 0 1 0\nendfacet\n" + begin +
            "vertex 0 nan inf\nendfacet\n" + begin + "vertex 0 1e16 0\nendfacet\n" + kFacet);
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3)) << "two of the square";
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("a facet has fewer than 3 corners (2), line 5; the facet is left out",
-                          "a facet has more than 3 corners (4), line 11; it is cut in triangles",
-                          "a facet has a vertex coordinate that is no number up to 1e15 (\"nan\"), line 15 and 1 more; "
-                          "the facet is left out"));
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre("a facet has fewer than 3 corners (2), line 5; the facet is left out",
+                  "a facet has more than 3 corners (4), line 11; it is divided into triangles",
+                  "a facet has a vertex coordinate that is not a number up to 1e15 (\"nan\"), line 15 and 1 more; "
+                  "the facet is left out"));
   EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
 }
 
@@ -159,8 +160,9 @@ TEST_F(StlTest, BinaryFacetsWithoutAPlaceAreLeftOut) {
   const LoadedScene scene = load(stl.bytes());
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   EXPECT_THAT(mesh_of(scene).colors, testing::Each(vec4(1, 0, 0, 1))) << "that of its facet";
-  EXPECT_THAT(scene.warnings, ElementsAre("a facet has a vertex coordinate that is no number up to 1e15, facet 0 and 1 "
-                                          "more; the facet is left out"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("a facet has a vertex coordinate that is not a number up to 1e15, facet 0 and 1 "
+                          "more; the facet is left out"));
 }
 
 TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
@@ -171,7 +173,7 @@ TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
     std::memcpy(bytes.data() + 80, &count, sizeof(count));
     const LoadedScene scene = load(bytes);
     EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3));
-    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the count of facets was never written")));
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the number of facets was never written")));
     EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
     // Where the size is no sign, the file is refused.
     EXPECT_THAT(refusal(bytes + "x"), testing::AnyOf(HasSubstr("holds nothing to draw"), HasSubstr("has room for 3")));
@@ -219,7 +221,7 @@ TEST_F(StlTest, ColorsAreThoseOfMagics) {
 
 TEST_F(StlTest, WithoutFacetsThereIsNothingToShow) {
   for (const std::string& file : {StlBuilder().bytes(), std::string("solid x\nendsolid x\n")}) {
-    EXPECT_THAT(refusal(file), HasSubstr("the scene holds nothing to draw"));
+    EXPECT_THAT(refusal(file), HasSubstr("the scene contains nothing to draw"));
   }
 }
 
@@ -232,11 +234,11 @@ TEST_P(BadStlTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadStl[] = {
-    {"Short", "stl", "the file is no STL", ""},
+    {"Short", "stl", "the file is not an STL file", ""},
     {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is no number", ": line 3"},
     {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is no number", ": line 4"},
     {"TooLarge", "solid\nfacet\nvertex 0 0 1e16\nvertex 0 0 0\nvertex 1 1 1\nendfacet\n",
-     "nothing to draw (a facet has a vertex coordinate that is no number up to 1e15 (\"1e16\"), line 3", ""},
+     "nothing to draw (a facet has a vertex coordinate that is not a number up to 1e15 (\"1e16\"), line 3", ""},
     {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",
      "nothing to draw (a facet has fewer than 3 corners (2), line 5", ""},
     {"LostVertex", "solid\nvertex 0 0 0\n", "lies in no facet", ": line 2"},
@@ -250,8 +252,8 @@ INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl), name_of_
 TEST_F(StlTest, BrokenBinaryFilesSayWhy) {
   StlBuilder stl;
   for (int i = 0; i < 3; ++i) stl.add({{kTriangle[0], kTriangle[1], kTriangle[2]}});
-  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("tells of 3 facets and has room for 2"));
-  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("tells of 4294967295 facets and has room for 0"));
+  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("tells of 3 facets, but has room for 2"));
+  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("tells of 4294967295 facets, but has room for 0"));
 }
 
 }  // namespace

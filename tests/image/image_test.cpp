@@ -253,8 +253,8 @@ TEST_F(ImageTest, PicturesWhosePartsDoNotSuitAreRefused) {
 
 TEST_F(ImageTest, UnreadablePicturesSayWhy) {
   std::ofstream(folder_ / "text.exr") << "not a picture";
-  EXPECT_THAT(message_of_reading(folder_ / "none.exr"), HasSubstr("no such picture"));
-  EXPECT_THAT(message_of_reading(folder_), HasSubstr("no such picture"));
+  EXPECT_THAT(message_of_reading(folder_ / "none.exr"), HasSubstr("the picture does not exist"));
+  EXPECT_THAT(message_of_reading(folder_), HasSubstr("the picture does not exist"));
   const std::string message = message_of_reading(folder_ / "text.exr");
   EXPECT_THAT(message, HasSubstr("cannot read the picture"));
   EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -134,8 +134,8 @@ TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
   EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasSubstr("is damaged"));
   EXPECT_THAT(find_missing(job), ElementsAre(0, 1, 2, 3, 5));
   EXPECT_THAT(run(job), ElementsAre(0, 1, 2, 3, 5));
-  EXPECT_THAT(bad_,
-              ElementsAre("0 is damaged", "1 is cut", "2 the file is empty", "3 is another piece", "5 is damaged"));
+  EXPECT_THAT(bad_, ElementsAre("0 is damaged", "1 is cut", "2 the file is empty", "3 the file holds another piece",
+                                "5 is damaged"));
   EXPECT_EQ(read(job.file_of(0)), whole);
   EXPECT_THAT(find_missing(job), IsEmpty());
 }
@@ -151,23 +151,23 @@ TEST_F(JobTest, PiecesOfAnotherJobAreForeign) {
   fs::copy_file(job.file_of(2), foreign.file_of(2));
   std::string why;
   EXPECT_EQ(foreign.state_of(2, &why), PieceState::kBad);
-  EXPECT_EQ(why, "is of another job");
+  EXPECT_EQ(why, "the piece belongs to another job");
 }
 
 TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   Job::create(job_folder_, make_manifest());
   const std::pair<void (*)(Manifest&), const char*> cases[] = {
       {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", and \"8\" now"},
-      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given or its default now"},
+      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given or has its default value now"},
       {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
-       "its --crop is not given or its default, and is \"0 0 1 1\" now"},
+       "its --crop is not given or has its default value, and is \"0 0 1 1\" now"},
       {[](Manifest& m) { m.options[0].second = "2"; }, "its version is \"1\", and \"2\" now"},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
       {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
       {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, and 4 now"},
       {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is other now"},
-      {[](Manifest& m) { m.kind = "rays"; }, "it is of the kind \"bytes\""}};
+      {[](Manifest& m) { m.kind = "rays"; }, "its kind is \"bytes\""}};
   for (const auto& [change, sentence] : cases) {
     Manifest other = make_manifest();
     change(other);

@@ -206,7 +206,7 @@ PictureReport compare_picture(const world::Scene& scene, const Picture& expected
   const bool is_complete = aovs.depth.size() == count && aovs.normal.size() == count && aovs.object.size() == count &&
                            aovs.primitive.size() == count;
   if (image.size != expected.size || image.pixels.size() != count || (has_aovs && !is_complete)) {
-    throw std::invalid_argument("the pictures differ in size");
+    throw std::invalid_argument("the pictures have different sizes");
   }
   return Comparison(scene, expected, image, aovs, bounds).run();
 }

@@ -108,9 +108,9 @@ TEST_F(NpyTest, ReadsEveryVersionAndSpelling) {
 
 TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
   const std::string data = bytes_of(std::vector<float>(8, 1.0F));
-  EXPECT_THAT(refusal(""), HasSubstr("not a NumPy array file"));
-  EXPECT_THAT(refusal("PK\x03\x04 an .npz"), HasSubstr("not a NumPy array file"));
-  EXPECT_THAT(refusal(npy(header_of(1), data, 4)), HasSubstr("not a NumPy array file"));
+  EXPECT_THAT(refusal(""), HasSubstr("the file is not a NumPy array"));
+  EXPECT_THAT(refusal("PK\x03\x04 an .npz"), HasSubstr("the file is not a NumPy array"));
+  EXPECT_THAT(refusal(npy(header_of(1), data, 4)), HasSubstr("the file is not a NumPy array"));
   EXPECT_THAT(refusal(npy(header_of(1), data).substr(0, 30)), HasSubstr("ends within its header"));
   EXPECT_THAT(refusal(npy("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 8), }", data)), HasSubstr("'<i4'"));
   EXPECT_THAT(refusal(npy("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 8), }", data)), HasSubstr("Fortran"));
@@ -134,12 +134,13 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
   EXPECT_THAT(refusal(npy("{'descr': '<f4' 'fortran_order': False, 'shape': (1, 8)}", data)),
               HasSubstr("header is damaged"));
   const std::string message = refusal(npy(header_of(1), data + "x"));
-  EXPECT_THAT(message, HasSubstr("1 rays, the file holds 33 bytes"));
-  EXPECT_THAT(refusal(npy(header_of(2), data)), HasSubstr("2 rays, the file holds 32 bytes"));
+  EXPECT_THAT(message, HasSubstr("1 rays, but the file holds 33 bytes"));
+  EXPECT_THAT(refusal(npy(header_of(2), data)), HasSubstr("2 rays, but the file holds 32 bytes"));
   // The product with 32 would wrap to the right size.
-  EXPECT_THAT(refusal(npy(header_of((uint64_t{1} << 59) + 1), data)), HasSubstr("rays, the file holds 32 bytes"));
-  EXPECT_THAT(message_of([&] { RayReader(folder_ / "none.npy"); }), HasSubstr("file not found"));
-  EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }), HasSubstr("not a regular file"));
+  EXPECT_THAT(refusal(npy(header_of((uint64_t{1} << 59) + 1), data)), HasSubstr("rays, but the file holds 32 bytes"));
+  EXPECT_THAT(message_of([&] { RayReader(folder_ / "none.npy"); }), HasSubstr("the file does not exist"));
+  EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }),
+              HasSubstr("the scene is not a regular file"));
 }
 
 // Any flipped or missing byte of the header gives rays or a sentence, never a crash.

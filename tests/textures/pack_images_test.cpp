@@ -149,10 +149,9 @@ TEST(PackImages, WhatIsHalvedIsSaid) {
   for (const uint32_t side : {1024, 512, 16}) scene.add(uvec2(side), false);
   const std::optional<Problem> warning = pack_images(scene.images, scene.textures, 600 << 10).warning;
   ASSERT_TRUE(warning.has_value());
-  EXPECT_EQ(
-      warning->sentence(),
-      "2 of 3 images of textures are halved in size, 1 of these more than once, so that 6 MiB become 1 MiB; raise "
-      "the memory of textures, or make images smaller");
+  EXPECT_EQ(warning->sentence(),
+            "2 of 3 images of textures are halved in size, 1 of these more than once, so that 6 MiB become 1 MiB; "
+            "raise the memory for textures, or make images smaller");
   EXPECT_EQ(warning->setting, Setting::kTextureMemory);
 }
 

@@ -563,7 +563,7 @@ def fails_in_a_sentence(bin_folder, scenes, folder):
     """What the driver answers when a device is lost or its memory is short: at the start, and when the window flies."""
     lost, no_memory = -4, -2
     for call, number, result, sentence in (
-        ("vkAllocateMemory", 3, no_memory, "out of device memory, "),
+        ("vkAllocateMemory", 3, no_memory, "the device has not enough memory, "),
         ("vkQueueSubmit", 12, lost, "the device was lost, "),
     ):
         # The path is of no other layers: those of validation are not there.

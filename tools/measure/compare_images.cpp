@@ -21,8 +21,8 @@ std::string name_size(const Image& image) {
 
 void require_same_size(const Image& a, const Image& b) {
   if (a.size != b.size) {
-    throw InputError(
-        {"the pictures differ in size", name_size(a) + " against " + name_size(b), "render both at one size"});
+    throw InputError({"the pictures have different sizes", name_size(a) + " against " + name_size(b),
+                      "render both at the same size"});
   }
   if (a.pixels.empty()) throw InputError({"the pictures have no pixels", name_size(a), "render them again"});
 }

@@ -87,7 +87,7 @@ void check_validation(const gpu::Device& device) {
   const uint64_t count = gpu::validation_message_count(device);
   if (count == 0) return;
   throw RunError({fmt::format("the Vulkan validation layers reported {} problems", count), gpu::info_of(device).name,
-                  "report them as a bug of promin"});
+                  "report them as a bug in promin"});
 }
 
 void report(const ReportOptions& options) {

@@ -9,8 +9,8 @@
 
 namespace promin {
 
-/// The elements of an accessor as fp32, component after component: normalized integers become [0, 1] or [-1, 1]
-/// (glTF 2.0, section 3.11), sparse ones are applied, an accessor without a buffer view is zeros.
+/// Returns the elements of an accessor as fp32, component after component. Normalized integers are mapped to [0, 1] or
+/// [-1, 1] (glTF 2.0, section 3.11), sparse elements are applied, and an accessor without a buffer view is all zeros.
 /// Adds a problem for a sparse index out of range.
 std::vector<float> read_floats(const GltfDocument& document, int accessor, LoadReport& report);
 

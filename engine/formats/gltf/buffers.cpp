@@ -95,7 +95,7 @@ uint64_t size_of_uri(const std::string& uri, const std::string& place, const Loa
 }
 
 std::string say_too_short(uint64_t size, uint64_t length) {
-  return "has " + std::to_string(size) + " bytes, less than its byteLength of " + std::to_string(length);
+  return "has " + std::to_string(size) + " bytes, fewer than its byteLength of " + std::to_string(length);
 }
 
 /// The buffer that the bytes of a view lie in, compressed or not, and the byte where they end.
@@ -218,7 +218,7 @@ class BufferReader {
       // One that cannot be used is null (check_gltf_schema).
       if (source.is_null()) continue;
       if (source["byteLength"] == 0) {
-        report_.repair({"a buffer has no bytes", "", place_of(index), "leave it out", "nothing is read of it"});
+        report_.repair({"a buffer has no bytes", "", place_of(index), "remove it", "nothing is read from it"});
       } else if (needed_[index] == 0) {
         weigh_unneeded(source, index);
       } else if (needed_by_meshes_[index] > 0) {
@@ -273,7 +273,7 @@ class BufferReader {
     }
     report_.repair({"a buffer is shorter than its byteLength",
                     std::to_string(bytes.size()) + " bytes for " + std::to_string(length), place_of(index),
-                    "export the file again", "what is there of it is read"});
+                    "export the file again", "the existing part is read"});
     if (needed <= bytes.size()) return;
     Bytes& own = buffers_.own.emplace_back(bytes.begin(), bytes.end());
     own.resize(needed);

@@ -15,22 +15,23 @@
 
 namespace promin {
 
-/// The bytes that a URI names, in a file beside the scene or in itself, or the first `most_bytes` of them (of a URI
-/// with its own bytes up to three more); nullopt once the report holds the reason.
+/// Returns the bytes that a URI refers to, in a file beside the scene or in the URI itself, or the first `most_bytes`
+/// of them (for a data: URI up to three more). Returns nullopt after reporting the reason.
 std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, const std::string& place,
                                                     LoadReport& report,
                                                     uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
-/// Which buffer views hold instances, or attributes or indices of meshes that are read, or images where they count.
+/// Returns for each buffer view whether it holds instances, attributes or indices of meshes that are read, or, with
+/// `with_images`, images.
 std::vector<bool> find_needed_views(const GltfDocument& document, bool with_images);
 
-/// Whether the buffer of a view, or of what it is compressed to, has its bytes.
+/// Returns whether the buffer of a view, or of its compressed data, has its bytes.
 bool has_bytes(const GltfDocument& document, size_t view);
 
 /// The bytes of every buffer of a document: from data: URIs, files beside the scene (see find_beside_scene) or the
-/// GLB's binary chunk. One that needed views lie in, or what they are compressed to, has all of their bytes, any other
-/// is empty. Missing bytes of a buffer that meshes need are a refusal. Those of other buffers are a warning. Problems
-/// go to the report.
+/// GLB's binary chunk. A buffer with needed views, or with their compressed data, has all of their bytes; others are
+/// empty. Missing bytes of a buffer that meshes need are an error; those of other buffers cause a warning. Problems go
+/// to the report.
 GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,
                               LoadReport& report);
 

@@ -117,8 +117,8 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
                     LoadReport& report) {
   const auto count = accessor["count"].get<uint64_t>();
   if (count == 0) {
-    report.repair(
-        {"an accessor has no elements", "", place + ".count", "leave out what uses it", "nothing is drawn of it"});
+    report.repair({"an accessor has no elements", "", place + ".count", "remove the parts that use it",
+                   "nothing is drawn from it"});
   }
   const std::string type = accessor["type"];
   const int component_type = accessor["componentType"];
@@ -169,7 +169,7 @@ std::string say_format(const json& accessor) {
 void check_format(const json& accessor, std::string_view attribute, const std::string& place, LoadReport& report) {
   if (has_format(accessor, attribute) || !is_read_attribute(attribute)) return;
   report.refuse("the accessor's format (" + say_format(accessor) + ") is not allowed here", place,
-                "export it as the glTF specification has it");
+                "export it as the glTF specification requires");
 }
 
 /// Checks what is beside each other in each instance.
@@ -195,7 +195,7 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   const bool has_wrong_format = is_read_attribute(name) && !has_format(accessor, name);
   if (has_wrong_format) {
     report.repair({"the format of an attribute is not allowed", say_format(accessor), place,
-                   "export it as the glTF specification has it", "the attribute is left out"});
+                   "export it as the glTF specification requires", "the attribute is left out"});
   } else if (count != vertex_count) {
     report.repair({"an attribute has another number of elements than there are vertices",
                    std::to_string(count) + " for " + std::to_string(vertex_count), place,
@@ -242,7 +242,8 @@ void check_primitive(json& primitive, const json& accessors, const std::string& 
   const json& indices = accessors[primitive["indices"].get<size_t>()];
   check_format(indices, "indices", place + ".indices", report);
   if (indices.value("normalized", false)) {
-    report.repair({"indices are normalized", "", place + ".indices", "write integers", "they are read as integers"});
+    report.repair(
+        {"the indices are normalized", "", place + ".indices", "write integers", "they are read as integers"});
   }
 }
 
@@ -274,12 +275,12 @@ void check_view(const json& view, uint64_t available, const std::string& place, 
                   place, "correct its byteOffset or byteLength");
   }
   if (view["byteLength"] == 0) {
-    report.repair({"a buffer view has no bytes", "", place, "leave out what uses it", "nothing is read of it"});
+    report.repair({"a buffer view has no bytes", "", place, "remove the parts that use it", "nothing is read of it"});
   }
   if (const auto stride = view.find("byteStride"); stride != view.end()) {
     if (*stride >= 4 && *stride <= 252 && stride->get<uint64_t>() % 4 == 0) return;
-    report.repair({"a stride is no multiple of 4 from 4 to 252", stride->dump(), place + ".byteStride",
-                   "pad the elements", *stride == 0 ? "the elements are taken as packed" : "it is taken as it stands"});
+    report.repair({"a stride is not a multiple of 4 from 4 to 252", stride->dump(), place + ".byteStride",
+                   "pad the elements", *stride == 0 ? "the elements are read as packed" : "it is used as it is"});
   }
 }
 
@@ -294,7 +295,7 @@ void check_images(json& document, LoadReport& report) {
     const auto available = document["buffers"][view["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
     const uint64_t end = view.value("byteOffset", uint64_t{0}) + view["byteLength"].get<uint64_t>();
     if (end <= available) continue;
-    report.repair({"the buffer view of an image ends behind its buffer", std::to_string(end - available) + " bytes",
+    report.repair({"the buffer view of an image extends beyond its buffer", std::to_string(end - available) + " bytes",
                    place, "export the file again", "the image is left out"});
     image.erase("bufferView");
   }

@@ -37,12 +37,12 @@ std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
     take_out(nodes[i]["children"], [&](size_t child, size_t position) {
       const std::string place = node_place(i) + ".children[" + std::to_string(position) + "]";
       if (parents[child] == i) {
-        report.repair({"a node has a child twice", node_place(child), place, "name it once", "it is shown once"});
+        report.repair({"a node lists a child twice", node_place(child), place, "list it once", "it is shown once"});
         return true;
       }
       if (parent_counts[child]++ > 0) {
         report.repair(
-            {"a node has two parents", node_place(child), place, "copy the node instead", "it is shown below each"});
+            {"a node has two parents", node_place(child), place, "copy the node instead", "it is shown below both"});
       }
       parents[child] = i;
       return false;
@@ -81,7 +81,7 @@ void make_affine(json& matrix, const std::string& place, bool is_strict, LoadRep
     if (number == wanted) continue;
     if (std::abs(number - wanted) > kMostRounding || is_strict) {
       report.repair({"the matrix is not affine", matrix[i].dump(), place + ".matrix[" + std::to_string(i) + "]",
-                     "make its last row 0 0 0 1", "its last row is taken as 0 0 0 1"});
+                     "make its last row 0 0 0 1", "its last row is read as 0 0 0 1"});
     }
     matrix[i] = wanted;
   }
@@ -92,7 +92,7 @@ void check_transform(json& node, const std::string& place, bool is_strict, LoadR
     make_affine(node["matrix"], place, is_strict, report);
     if (node.erase("translation") + node.erase("rotation") + node.erase("scale") > 0) {
       report.repair({"a node has both a matrix and a translation, rotation or scale", "", place, "keep one of them",
-                     "the matrix is taken"});
+                     "the matrix is used"});
     }
   }
   const dvec4 rotation = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
@@ -130,7 +130,7 @@ void check_scene(json& listed, const json& nodes, const std::vector<uint32_t>& p
       report.repair({"a scene lists a node twice", node_place(node), at, "list it once", "it is shown once"});
     } else if (is_below[node]) {
       report.repair({"a scene lists a node that lies below another", node_place(node), at, "list root nodes only",
-                     "it is shown where it lies below that"});
+                     "it is shown once, below that node"});
     } else if (parent_counts[node] > 0) {
       report.repair({"a scene lists a node that has a parent", node_place(node), at, "list root nodes only",
                      "it is shown as a root, without the parent's transform"});

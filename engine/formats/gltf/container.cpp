@@ -36,7 +36,7 @@ std::string_view as_text(std::span<const std::byte> bytes) {
 /// Holds the length in the header against where the chunks end.
 void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
   if (length != end) {
-    report.repair({"the GLB header promises another number of bytes than the chunks have",
+    report.repair({"the GLB header declares another number of bytes than the chunks have",
                    std::to_string(length) + " for " + std::to_string(end), "byte 8", kExportAgain,
                    "the chunks are read"});
   }
@@ -60,10 +60,10 @@ std::span<const std::byte> take_chunk(std::span<const std::byte> bytes, size_t o
   const size_t left = bytes.size() - offset;
   if (length <= left) return bytes.subspan(offset, length);
   const std::string what =
-      "a GLB chunk promises " + std::to_string(length) + " bytes, " + std::to_string(left) + " are left";
+      "a GLB chunk declares " + std::to_string(length) + " bytes, " + std::to_string(left) + " remain";
   if (length - left > kMostPadding) refuse_file(report, what, place);
-  report.repair({"a GLB chunk ends behind the file", std::to_string(length - left) + " bytes", place, kExportAgain,
-                 "what is there of it is read"});
+  report.repair({"a GLB chunk extends beyond the end of the file", std::to_string(length - left) + " bytes", place,
+                 kExportAgain, "the existing part is read"});
   return bytes.subspan(offset);
 }
 
@@ -88,7 +88,7 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
     offset += chunk_length;
     if (is_first && chunk_type != kJsonChunk) refuse_file(report, "the first GLB chunk must be JSON", place);
     if (!is_first && chunk_type == kJsonChunk) {
-      report.repair({"a further GLB chunk is JSON", "", place, kExportAgain, "it is ignored"});
+      report.repair({"a second GLB chunk is JSON", "", place, kExportAgain, "it is ignored"});
     }
     if (is_first) container.json = as_text(chunk);
     if (chunk_type == kBinaryChunk && !container.binary) container.binary = chunk;

@@ -11,16 +11,16 @@
 
 namespace promin {
 
-/// The parts of a .gltf or .glb file; views into its bytes.
+/// The parts of a .gltf or .glb file, as views into its bytes.
 struct GltfContainer {
   std::string_view json;
   /// The binary chunk of a GLB file.
   std::optional<std::span<const std::byte>> binary;
 };
 
-/// Takes a file apart, GLB by its magic number (glTF 2.0, section 4.4). Every length is checked against the bytes
-/// there are: a chunk that is cut off by more than padding is refused, a wrong length in the header is repaired, and
-/// what follows the GLB's end is warned of. Throws InputError.
+/// Splits a file into its parts; a magic number identifies a GLB file (glTF 2.0, section 4.4). Every length is checked
+/// against the size of the file: a chunk that lacks more than padding is refused, a wrong length in the header is
+/// repaired, and bytes after the end of the GLB cause a warning. Throws InputError.
 GltfContainer split_gltf(std::span<const std::byte> bytes, LoadReport& report);
 
 }  // namespace promin

@@ -18,7 +18,7 @@ namespace promin {
 // Typed views of the parts of a document that several readers share, with the specification's defaults. An index that
 // the file leaves out is -1.
 
-/// Modes of a mesh primitive; lower ones are points and lines, 6 is a fan.
+/// Modes of a mesh primitive. Lower ones are points and lines, 6 is a fan.
 inline constexpr int kGltfTriangles = 4;
 inline constexpr int kGltfTriangleStrip = 5;
 
@@ -26,7 +26,7 @@ struct GltfBufferView {
   int buffer = -1;
   size_t byte_offset = 0;
   size_t byte_length = 0;
-  /// 0: the elements are tightly packed.
+  /// 0 if the elements are tightly packed.
   size_t byte_stride = 0;
 };
 
@@ -43,7 +43,7 @@ struct GltfAccessor {
   int view = -1;
   size_t byte_offset = 0;
   int component_type = 0;
-  /// Components of an element.
+  /// Number of components of an element.
   size_t component_count = 0;
   size_t count = 0;
   bool is_normalized = false;
@@ -63,7 +63,7 @@ struct GltfPrimitive {
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
-  /// Of morph targets, where a node has none of its own.
+  /// Weights of morph targets, for nodes without weights.
   std::vector<double> weights;
 };
 
@@ -73,26 +73,26 @@ struct GltfNode {
   int camera = -1;
   int skin = -1;
   std::vector<int> children;
-  /// Of its mesh's morph targets.
+  /// Weights of its mesh's morph targets.
   std::optional<std::vector<double>> weights;
 };
 
-/// Whether some weight of a morph target is another than 0.
+/// Returns whether some weight of a morph target is not 0.
 bool has_morph(const std::vector<double>& weights);
 
-/// The bytes of a document's buffers. Not to be copied: one part points into another.
+/// The bytes of a document's buffers. It must not be copied, because one part points into another.
 struct GltfBuffers {
   GltfBuffers() = default;
   GltfBuffers(GltfBuffers&&) = default;
   GltfBuffers& operator=(GltfBuffers&&) = default;
 
-  /// The bytes of each buffer; empty where nothing reads it. They are views into `own` and into GltfDocument::glb.
+  /// The bytes of each buffer; empty if nothing reads it. They are views into `own` and GltfDocument::glb.
   std::vector<std::span<const std::byte>> bytes;
   std::vector<std::vector<std::byte>> own;
 };
 
-/// A glTF file, read, checked and decompressed: every index, type, range and length in it can be relied on. What only
-/// one reader needs (materials, cameras, extensions) it takes from `json`.
+/// A glTF file after reading, checking and decompressing: every index, type, range and length in it is valid. Data that
+/// only one reader needs (materials, cameras, extensions) stays in `json`.
 struct GltfDocument {
   nlohmann::json json;
   std::vector<GltfBufferView> views;
@@ -101,18 +101,18 @@ struct GltfDocument {
   std::vector<GltfNode> nodes;
   /// See check_gltf_extensions.
   std::vector<FileExtension> extensions;
-  /// The scene that is shown, if there are any.
+  /// Index of the scene to show, if there is one.
   size_t scene = 0;
   GltfBuffers buffers;
   /// The bytes of a GLB file, whose binary chunk is a buffer; empty for a text file.
   std::vector<std::byte> glb;
 };
 
-/// The bytes of a buffer view that is needed (find_needed_views), decompressed once the document is.
+/// Returns the bytes of a needed buffer view (find_needed_views), decompressed after the document has been.
 std::span<const std::byte> bytes_of_view(const GltfDocument& document, int view);
 
-/// Reads the file that the report is about. Checks come in three rounds (the file's frame, the schema, what the
-/// schema cannot say); each throws InputError with all of its problems.
+/// Reads the report's file. It is checked in three rounds: the container, the schema, and rules that the schema cannot
+/// express. Each round throws InputError with all of its problems.
 GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

@@ -65,7 +65,7 @@ uint64_t read_count(draco::DecoderBuffer& buffer) {
 Promise read_promise(std::span<const std::byte> stream) {
   draco::DecoderBuffer buffer = buffer_of(stream);
   for (const char letter : std::string_view("DRACO")) {
-    if (read<char>(buffer) != letter) throw DracoError("it is none of Draco's");
+    if (read<char>(buffer) != letter) throw DracoError("it does not begin as Draco data does");
   }
   const auto major = read<uint8_t>(buffer);
   const auto minor = read<uint8_t>(buffer);
@@ -77,7 +77,8 @@ Promise read_promise(std::span<const std::byte> stream) {
   const auto method = read<uint8_t>(buffer);
   if ((read<uint16_t>(buffer) & kHasMetadata) != 0) {
     draco::GeometryMetadata skipped;
-    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &skipped)) throw DracoError("its metadata is broken");
+    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &skipped))
+      throw DracoError("its metadata is damaged");
   }
   Promise promise;
   if (method == kSequential) {
@@ -88,7 +89,7 @@ Promise read_promise(std::span<const std::byte> stream) {
     promise.vertices = read_count(buffer);
     promise.faces = read_count(buffer);
   } else {
-    throw DracoError("its method of coding is not known");
+    throw DracoError("its encoding method is unknown");
   }
   return promise;
 }
@@ -120,7 +121,7 @@ class PrimitiveDecoder {
     draco::DecoderBuffer buffer = buffer_of(stream);
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) throw DracoError("it is broken");
+    if (!decoded.ok()) throw DracoError("it is damaged");
     mesh_ = std::move(decoded).value();
     check_counts();
     take_indices();
@@ -279,7 +280,7 @@ void decode_gltf_draco(GltfDocument& document, LoadReport& report) {
       take_result(document, task);
       continue;
     }
-    report.refuse("the stream of Draco cannot be used: " + task.problem,
+    report.refuse("the Draco stream cannot be used: " + task.problem,
                   "meshes[" + std::to_string(task.mesh) + "].primitives[" + std::to_string(task.primitive) +
                       "].extensions.KHR_draco_mesh_compression",
                   "compress the file again");

@@ -6,12 +6,12 @@
 
 namespace promin {
 
-/// The compressed form of a mesh primitive (KHR_draco_mesh_compression); null where it has none.
+/// Returns the compressed form of a mesh primitive (KHR_draco_mesh_compression), or null.
 const nlohmann::json* find_draco(const nlohmann::json& primitive);
 
-/// Decodes the compressed mesh primitives of a document on all cores, and gives each accessors of its own, over buffers
-/// of their own. A stream that is broken, or holds other numbers of triangles or vertices than the primitive's
-/// accessors say, goes to the report; what its header promises is held against these before memory is taken for it.
+/// Decodes the compressed mesh primitives of a document on all cores, and gives each its own accessors and buffers.
+/// Reports a stream that is damaged, or whose numbers of triangles or vertices differ from those of the primitive's
+/// accessors. The numbers in its header are checked before memory is allocated for them.
 void decode_gltf_draco(GltfDocument& document, LoadReport& report);
 
 }  // namespace promin

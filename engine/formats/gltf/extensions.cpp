@@ -149,10 +149,9 @@ void warn_of_unknown(const Extension& extension, LoadReport& report) {
     const std::string subject = extension.material_count == 1 ? "it is" : "they are";
     report.warn(say_users(extension.material_count, "material") + rest + subject + " drawn without it");
   } else if (extension.texture_count > 0) {
-    report.warn(say_users(extension.texture_count, "texture") + rest +
-                "an image that is named beside it is taken, or none");
+    report.warn(say_users(extension.texture_count, "texture") + rest + "an alternative image is used, or none");
   } else if (is_required) {
-    report.warn("the file requires " + name + ", which is not known; it is shown without it");
+    report.warn("the file requires " + name + ", which is unknown; the scene is shown without it");
   } else if (!name.starts_with("KHR_materials_") && !name.starts_with("KHR_texture_")) {
     report.warn("the extension " + name + " is ignored");
   }
@@ -170,9 +169,9 @@ std::vector<FileExtension> check_gltf_extensions(const json& document, bool is_s
       report.refuse("the required extension " + extension.name + " is not implemented",
                     "extensionsRequired[" + std::to_string(extension.required) + "]", "export the scene without it");
     } else if (extension.required >= 0 && !extension.geometry_place.empty()) {
-      report.refuse("the required extension " + extension.name +
-                        " is not implemented, and without it there is no telling what the geometry is",
-                    extension.geometry_place, "export the scene without it");
+      report.refuse(
+          "the required extension " + extension.name + " is not implemented, and without it the geometry is unknown",
+          extension.geometry_place, "export the scene without it");
     } else {
       warn_of_unknown(extension, report);
     }

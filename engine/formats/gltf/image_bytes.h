@@ -9,9 +9,8 @@
 
 namespace promin {
 
-/// Finds the file of images[index], which lies in the document's buffers, beside the scene or in the document's text,
-/// and takes it as read_picture does. Whatever is wrong with it is the source's problem; the report holds no more than
-/// that a file was looked for.
+/// Finds the file of images[index] in the document's buffers, beside the scene or in the document's text, and reads it
+/// as read_picture does. Problems are stored in the source; the report only records that the file was searched for.
 void read_gltf_image(const GltfDocument& document, size_t index, PictureSource& source, LoadReport& report);
 
 }  // namespace promin

@@ -10,11 +10,12 @@
 
 namespace promin {
 
-/// How often a node shows its mesh (EXT_mesh_gpu_instancing); nullopt where the node is shown once, as it is.
+/// Returns the number of instances of a node's mesh (EXT_mesh_gpu_instancing); nullopt for a node without the
+/// extension.
 std::optional<uint64_t> count_gltf_instances(const GltfDocument& document, const PlacedNode& placed);
 
-/// The places in the world of a node with instances, in their order: the node's transform times that of each. Numbers
-/// that are not finite go to the report; a rotation without length turns nothing, with a warning.
+/// Returns the transforms to the world of a node's instances, in their order: the node's transform times that of each
+/// instance. Reports numbers that are not finite. A rotation of length 0 is ignored with a warning.
 std::vector<dmat4> place_gltf_instances(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
 }  // namespace promin

@@ -9,7 +9,7 @@
 
 namespace promin {
 
-// Short ways into a glTF document that follows the schema (schema.h).
+// Access functions for a glTF document that follows the schema (schema.h).
 
 /// The array `name` of an object; an empty one if there is none.
 const nlohmann::json& elements_of(const nlohmann::json& object, const char* name);
@@ -20,7 +20,7 @@ const nlohmann::json* find_extension(const nlohmann::json& element, const char* 
 dvec3 vec3_of(const nlohmann::json& object, const char* name, const dvec3& otherwise);
 dvec4 vec4_of(const nlohmann::json& object, const char* name, const dvec4& otherwise);
 
-/// What a warning calls an element: its name in quotes, or its place ("materials[3]").
+/// Returns the title of an element in warnings: its name in quotes, or its place ("materials[3]").
 std::string title_of(const nlohmann::json& document, const char* array, size_t index);
 
 }  // namespace promin

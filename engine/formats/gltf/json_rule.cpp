@@ -66,7 +66,7 @@ std::string say_left_out(const JsonRule& rule) {
   if (name.ends_with("Texture")) return "the texture is left out";
   if (name == "cameras[]") return "the camera is left out";
   if (name == "lights[]" || name == "KHR_lights_punctual") return "the light is left out";
-  return "what holds it is ignored";
+  return "the object that contains it is ignored";
 }
 
 /// Where a value stands in a document, in words only where a message needs them.
@@ -195,7 +195,7 @@ class RuleCheck {
   bool expect(bool is_met, const json& value, const Place& place, const std::string& wanted) {
     if (is_met) return true;
     const std::string got = value.is_number() ? value.dump() : std::string("a JSON ") + value.type_name();
-    return fail("another value", got, "stands where " + wanted + " belongs", place, "write " + wanted);
+    return fail("another value", got, "is given where " + wanted + " is expected", place, "write " + wanted);
   }
 
   /// JSON has one kind of number: 3.0 is a valid index, and 1e99 an integer out of range.

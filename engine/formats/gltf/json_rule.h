@@ -14,7 +14,7 @@ namespace promin {
 
 enum class JsonKind { kObject, kArray, kText, kBoolean, kInteger, kNumber, kNumbers, kIndex, kChoice };
 
-/// What must stand at a path. "[]" is every element of an array, "*" every member of an object.
+/// The rule for the value at a path. "[]" is every element of an array, "*" every member of an object.
 struct JsonRule {
   std::string_view path;
   JsonKind kind = JsonKind::kObject;
@@ -26,19 +26,19 @@ struct JsonRule {
   size_t count = 0;
   /// kIndex: path of the array it points into. kChoice: the values, separated by '|'.
   std::string_view target = {};
-  /// Whether a value that breaks the rule is left out, with a warning, instead of refused. Where it is required, what
-  /// holds it is left out.
+  /// Whether a value that breaks the rule is removed with a warning, and not refused. If the value is required, the
+  /// object that contains it is removed.
   bool is_repaired = false;
-  /// Whether a repaired number out of range is clamped. That gives no warning where the number is off by rounding.
+  /// Whether a repaired number out of range is clamped. There is no warning if the number is only off by rounding.
   bool is_clamped = true;
-  /// What is left out instead: a part of `path` from its beginning; empty for the above.
+  /// The part to remove instead: a prefix of `path`; empty for the default above.
   std::string_view part = {};
 };
 
-/// By how much numbers that exporters rounded may miss their range.
+/// The largest distance from the range of a number that an exporter rounded.
 inline constexpr double kMostRounding = 1e-3;
 
-/// How tables write their rows: `index("scene", "scenes")`.
+/// Functions for rows of tables: `index("scene", "scenes")`.
 namespace rules {
 
 constexpr JsonRule object(std::string_view path) {
@@ -83,18 +83,18 @@ constexpr JsonRule leaving_out(std::string_view part, JsonRule rule) {
 
 }  // namespace rules
 
-/// Holds a document against rules; problems and repairs go to the report with their path in the document. Integers
-/// written as 3.0 become 3. What is left out is gone, or null where it is an element of an array, or an empty object
-/// where that element is no object at all.
+/// Checks a document against rules. Problems and repairs go to the report with their path in the document. Integers
+/// written as 3.0 become 3. Removed members are erased; removed elements of an array become null, or an empty object if
+/// they are not objects.
 class JsonCheck {
  public:
   JsonCheck(nlohmann::json& document, bool is_strict, LoadReport& report)
       : document_(document), is_strict_(is_strict), report_(report) {}
 
-  /// In the array at the path `only_used`, if there is one, only elements that indices point to are checked.
+  /// Checks a rule. In the array at the path `only_used`, if given, it checks only elements that indices refer to.
   void check(const JsonRule& rule, std::string_view only_used = {});
 
-  /// Whether an index that was checked points to the element of the array at `target`.
+  /// Returns whether a checked index refers to this element of the array at `target`.
   bool is_used(std::string_view target, size_t element) const;
 
  private:
@@ -104,7 +104,7 @@ class JsonCheck {
   std::map<std::string_view, std::vector<bool>> used_;
 };
 
-/// Holds a document against one rule.
+/// Checks a document against one rule.
 void check_json_rule(nlohmann::json& document, const JsonRule& rule, LoadReport& report);
 
 }  // namespace promin

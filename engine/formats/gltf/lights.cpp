@@ -25,7 +25,7 @@ LightKind kind_of(const std::string& type) {
   if (type == "directional") return LightKind::kDirectional;
   if (type == "point") return LightKind::kPoint;
   if (type == "spot") return LightKind::kSpot;
-  throw std::logic_error("a light of type \"" + type + "\" has no kind");
+  throw std::logic_error("a light of type \"" + type + "\" is not known");
 }
 
 void read_cone(const json& source, const std::string& place, Light& light, LoadReport& report) {
@@ -53,7 +53,7 @@ void read_power(const json& source, const std::string& title, Light& light, Load
     if (classic->value("attenuation", "none") == "none") {
       light.attenuation = Attenuation::kNone;
     } else if (light.kind == LightKind::kDirectional) {
-      report.warn("light " + title + " is directional, its attenuation is ignored");
+      report.warn("light " + title + " is directional; its attenuation is ignored");
     }
   }
   if (light.kind == LightKind::kDirectional) light.attenuation = Attenuation::kNone;
@@ -97,7 +97,7 @@ std::optional<T> value_of(const json& object, const char* name) {
 /// The picture of a panorama. On nullopt the report holds the reason.
 std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const json& source, LoadReport& report) {
   if (source.contains("cubemap") && !source.contains("equirectangular")) {
-    report.warn("the sky is a cube map, only equirectangular panoramas are drawn: there is no sky");
+    report.warn("the sky is a cube map, but only equirectangular panoramas are drawn: the scene has no sky");
     return std::nullopt;
   }
   const json& textures = elements_of(document.json, "textures");
@@ -105,7 +105,7 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   const auto texture = value_of<size_t>(source, "equirectangular");
   const auto image = texture ? value_of<size_t>(textures[*texture], "source") : std::nullopt;
   if (!image || !images.is_array() || *image >= images.size()) {
-    report.warn("the sky's panorama has no image that is known: there is no sky");
+    report.warn("the sky's panorama has no image of a known format: the scene has no sky");
     return std::nullopt;
   }
   const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
@@ -129,11 +129,11 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
 /// What of a sky with directions is not modelled.
 void warn_about_sky(const json& sky, LoadReport& report) {
   if (sky.value("ambientSkyContribution", 1.0) < 1.0) {
-    report.warn("ambientSkyContribution is ignored, all of the ambient light is the sky's");
+    report.warn("ambientSkyContribution is ignored; all ambient light comes from the sky");
   }
   const auto gradient = sky.find("gradient");
   if (gradient != sky.end() && (gradient->contains("sunAngleMax") || gradient->contains("sunCurve"))) {
-    report.warn("suns are not drawn in the sky, they only light");
+    report.warn("suns light the scene but are not drawn in the sky");
   }
 }
 
@@ -205,7 +205,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
     }
   } else if (type != "plain") {
     report.warn("the sky is of type " + quote(type) +
-                ", only plain ones, gradients and panoramas are drawn: the background is black");
+                ", but only plain skies, gradients and panoramas are drawn: the background is black");
   } else if (sky.contains("plain")) {
     color = vec3_of(sky["plain"], "color", dvec3(0.0));
   }

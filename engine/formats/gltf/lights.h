@@ -10,14 +10,14 @@
 
 namespace promin {
 
-/// The light a node carries (KHR_lights_punctual; PROMIN_lights_phong makes it a classic one), if it does. The node's
-/// scale is ignored; the light travels along its -Z. One without a direction, or too far away, is left out with a
-/// warning.
+/// Returns the light of a node, if it has one (KHR_lights_punctual; PROMIN_lights_phong makes it a classic light). The
+/// node's scale is ignored, and the light travels along its -Z. A light without a direction, or too far away, is left
+/// out with a warning.
 std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
-/// Sets the scene's surroundings from OMI_environment_sky: background and ambient light of a plain sky, the sky where
-/// it is a gradient or an equirectangular panorama beside the file; a black background and nothing else without it. A
-/// panorama that cannot be read is a warning.
+/// Sets the scene's environment from OMI_environment_sky: background and ambient light for a plain sky, or the sky for
+/// a gradient or an equirectangular panorama. Without the extension only a black background is set. A panorama that
+/// cannot be read causes a warning.
 void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& report);
 
 }  // namespace promin

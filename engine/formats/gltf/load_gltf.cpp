@@ -81,7 +81,7 @@ class SceneReader {
   void read_skinned_mesh(const PlacedNode& placed) {
     if (count_gltf_instances(document_, placed)) {
       report_.warn({"a skinned mesh has instances", "", "nodes[" + std::to_string(placed.node) + "]", "",
-                    "it is drawn once, where its joints are"});
+                    "it is drawn once, at its joints"});
     }
     const GltfPose& pose = skins_->find(document_.nodes[static_cast<size_t>(placed.node)].skin);
     PlacedNode posed = placed;
@@ -102,7 +102,8 @@ class SceneReader {
                           primitive_count <= (kMaxObjects - scene_.objects.size()) / instance_count;
     if (has_room) return true;
     report_.refuse("its " + std::to_string(instance_count) + " instances of " + std::to_string(triangle_count) +
-                       " triangles in " + std::to_string(primitive_count) + " primitives are more than a scene holds",
+                       " triangles in " + std::to_string(primitive_count) +
+                       " primitives are more than a scene can hold",
                    "nodes[" + std::to_string(placed.node) + "]", "use fewer instances, or a simpler mesh");
     return false;
   }
@@ -138,7 +139,7 @@ class SceneReader {
     triangle_count_ += primitive_count(scene_.geometries[geometry]);
     if (triangle_count_ > kMaxTriangles) {
       report_.refuse("the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
-                     "nodes[" + std::to_string(placed.node) + "]", "show the mesh by fewer nodes, or simplify it");
+                     "nodes[" + std::to_string(placed.node) + "]", "use the mesh in fewer nodes, or simplify it");
     }
     place_gltf_mesh(placed, geometry,
                     "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]", scene_,
@@ -173,7 +174,7 @@ class SceneReader {
       if (mesh != nullptr && !mesh->colors.empty() &&
           find_extension(document_.json["materials"][index], "KHR_materials_unlit") != nullptr) {
         report_.warn("material " + title_of(document_.json, "materials", index) +
-                     " is unlit, the vertex colours under it are ignored");
+                     " is unlit; the vertex colours of its meshes are ignored");
       }
       return static_cast<uint32_t>(material);
     }

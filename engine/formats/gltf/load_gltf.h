@@ -7,7 +7,7 @@
 
 namespace promin {
 
-/// Reads glTF 2.0, as text or GLB whichever the file holds. See load_scene for what is promised.
+/// Reads a glTF 2.0 file, text or GLB. The contract is that of load_scene.
 Scene load_gltf(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

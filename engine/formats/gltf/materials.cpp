@@ -34,7 +34,7 @@ Phong phong_of(const json& extension, const dvec3& base) {
 float ior_of(const json& extension, const std::string& title, LoadReport& report) {
   const float ior = extension.value("ior", 1.5F);
   if (ior == 0.0F || ior >= 1.0F) return ior;
-  report.warn("material " + title + ": an index of refraction lies between 0 and 1, 1 is taken");
+  report.warn("material " + title + ": an index of refraction lies between 0 and 1; 1 is used");
   return 1.0F;
 }
 
@@ -70,7 +70,8 @@ void read_iridescence(const json& extension, GltfTextures& textures, MetallicRou
   material.iridescence_thickness_minimum = extension.value("iridescenceThicknessMinimum", 100.0F);
   material.iridescence_thickness_maximum = extension.value("iridescenceThicknessMaximum", 400.0F);
   material.iridescence_texture = textures.read_slot(extension, "iridescenceTexture", ImageUse::kData);
-  material.iridescence_thickness_texture = textures.read_slot(extension, "iridescenceThicknessTexture", ImageUse::kData);
+  material.iridescence_thickness_texture =
+      textures.read_slot(extension, "iridescenceThicknessTexture", ImageUse::kData);
 }
 
 void read_anisotropy(const json& extension, GltfTextures& textures, MetallicRoughness& material) {
@@ -174,10 +175,10 @@ void warn_about_what_is_ignored(const json& source, const std::string& title, Lo
   const auto pbr = source.find("pbrMetallicRoughness");
   const bool is_classic = find_extension(source, "PROMIN_materials_phong") != nullptr;
   if (is_classic && (has_texture(source) || (pbr != source.end() && has_texture(*pbr)))) {
-    report.warn("material " + title + ": its textures are ignored, its factors are used");
+    report.warn("material " + title + ": its textures are ignored and its factors are used");
   }
   if (is_classic && source.value("alphaMode", "OPAQUE") != "OPAQUE") {
-    report.warn("material " + title + ": its alphaMode is ignored, it is drawn opaque");
+    report.warn("material " + title + ": its alphaMode is ignored and it is drawn opaque");
   }
 }
 

@@ -10,13 +10,13 @@
 
 namespace promin {
 
-/// The materials of a document in file order, each with its textures and its alpha: PROMIN_materials_phong,
-/// KHR_materials_unlit or metallic-roughness as it is written, KHR_materials_pbrSpecularGlossiness as the
-/// metallic-roughness that is the same. What a Phong material leaves out, textures and alphaMode, is warned about by
-/// the material's name, extensions that are not known elsewhere (extensions.h).
+/// Returns the materials of a document in file order, with their textures and alpha: PROMIN_materials_phong,
+/// KHR_materials_unlit or metallic-roughness; KHR_materials_pbrSpecularGlossiness is converted to the equivalent
+/// metallic-roughness. Warns with the material's name if a Phong material has textures or an alphaMode, which are
+/// ignored. extensions.h warns of unknown extensions.
 std::vector<Material> read_gltf_materials(const GltfDocument& document, GltfTextures& textures, LoadReport& report);
 
-/// What a primitive without a material has: the specification's default material.
+/// Returns the specification's default material, for primitives without a material.
 Material default_gltf_material();
 
 }  // namespace promin

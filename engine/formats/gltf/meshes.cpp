@@ -47,7 +47,7 @@ bool has_length(const dvec3& normal) {
 }
 
 void warn_of_normals(const std::string& place, LoadReport& report) {
-  report.warn({"a mesh primitive has normals of no length", "", place, "", "it is drawn with sharp edges"});
+  report.warn({"a mesh primitive has normals of no length", "", place, "", "it is shaded flat"});
 }
 
 /// A component of a vertex colour as it can be drawn: not negative, and 1, which colours nothing, where it is no
@@ -225,8 +225,9 @@ class PrimitiveReader {
       const vec4 given(c[0], c[1], c[2], components == 4 ? c[3] : 1.0F);
       const vec4 color(drawable(given.r), drawable(given.g), drawable(given.b), std::min(drawable(given.a), 1.0F));
       if (const int wrong = find_wrong_component(given, color); wrong >= 0) {
-        report_.repair({"a vertex colour is negative or no number", std::to_string(given[wrong]),
-                        element_place("COLOR_0", vertex), "export the mesh again", "0 is taken, or 1 for no number"});
+        report_.repair({"a vertex colour is negative or not a number", std::to_string(given[wrong]),
+                        element_place("COLOR_0", vertex), "export the mesh again",
+                        "0 is used for a negative value, 1 for one that is not a number"});
       }
       mesh.colors.push_back(color);
     }
@@ -255,7 +256,7 @@ class PrimitiveReader {
           report_.repair({"a texture coordinate is not finite or beyond 1e15",
                           std::to_string(is_coordinate(uv[0]) ? uv[1] : uv[0]),
                           element_place(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", used_vertices_[i]),
-                          "export the mesh again", "0 is taken"});
+                          "export the mesh again", "0 is used"});
           continue;
         }
         mesh.uvs[i][2 * set] = uv[0];
@@ -273,7 +274,7 @@ class PrimitiveReader {
       const vec4 tangent(t[0], t[1], t[2], t[3] < 0.0F ? -1.0F : 1.0F);
       if (!has_length(dvec3(vec3(tangent)))) {
         report_.warn({"a mesh primitive has tangents of no length", "", place_, "",
-                      "they are taken from its texture coordinates"});
+                      "they are computed from its texture coordinates"});
         return;
       }
       tangents.push_back(tangent);
@@ -299,7 +300,7 @@ class PrimitiveReader {
       add_influences(set, influences);
     if (influences.per_vertex == 0) {
       report_.repair({"a primitive of a skinned mesh has no joints and weights", "", place_, "export the mesh again",
-                      "it stands as it is without its skin"});
+                      "it is drawn without its skin"});
       return std::nullopt;
     }
     for (size_t i = 0; i < used_vertices_.size(); ++i) {
@@ -339,9 +340,9 @@ class PrimitiveReader {
     for (const float weight : weights) sum += static_cast<double>(weight);
     // Written so that NaN fails.
     if (std::abs(sum) >= 1e-6 && std::abs(sum) <= kMaxCoordinate) return;
-    report_.repair({"a vertex of a skinned mesh has no weights, or ones that are no numbers", "",
+    report_.repair({"a vertex of a skinned mesh has no weights, or weights that are not numbers", "",
                     element_place("WEIGHTS_0", used_vertices_[vertex]), "export the mesh again",
-                    "it goes with the first of its joints"});
+                    "it follows the first of its joints"});
     std::ranges::fill(weights, 0.0F);
     weights[0] = 1.0F;
   }

@@ -10,21 +10,21 @@
 
 namespace promin {
 
-/// A mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space, with the vertices
-/// they use alone, moved by the morph targets that have weights other than 0. Points, lines and primitives without a
-/// triangle come back empty, with a warning; bad indices and coordinates go to the report.
+/// Returns a mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space, with only the
+/// vertices that they use, moved by the morph targets of non-zero weight. Points, lines and primitives without a
+/// triangle give an empty mesh and a warning. Bad indices and coordinates go to the report.
 ///
-/// Where there is a `pose`, the joints of the vertices place them in the world. A vertex without weights goes with the
-/// first joint that it names, and a primitive without joints stands as it is; both are repaired.
+/// With a `pose`, joints move the vertices to the world. A vertex without weights follows the first joint that it
+/// names, and a primitive without joints is not moved; both are repairs.
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
                     const GltfPose* pose, LoadReport& report);
 
-/// Number of these triangles, as far as the file tells before anything is read.
+/// Returns the number of these triangles, as far as it is known before data is read.
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive);
 
-/// The object that shows a mesh at a node: its geometry is the mesh at `geometry`, or where the node's transform is
-/// singular a new one that is flattened already, without normals if these vanish. A vertex beyond 1e15 in the world
-/// goes to the report. `place` names the primitive.
+/// Adds the object that shows a mesh at a node. Its geometry is the mesh at `geometry` or, if the node's transform is
+/// singular, a new mesh that is already flattened, without normals if they vanish. Reports a vertex beyond 1e15 in the
+/// world. `place` names the primitive.
 void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
                      Object& object, LoadReport& report);
 

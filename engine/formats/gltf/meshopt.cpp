@@ -120,10 +120,9 @@ class Decoder {
     Bytes bytes(stream.decoded_bytes());
     if (!decode(stream, compressed, bytes)) {
       return refuse(is_later_version
-                        ? "the compressed bytes are broken, or of a version that this libmeshoptimizer does "
-                          "not know: " +
+                        ? "the compressed bytes are damaged, or their version is unknown to this libmeshoptimizer: " +
                               std::to_string(static_cast<unsigned>(compressed[0]) - kAttributesHeader)
-                        : "the compressed bytes are broken",
+                        : "the compressed bytes are damaged",
                     index);
     }
     GltfBufferView& view = document_.views[index];
@@ -143,8 +142,9 @@ class Decoder {
       return false;
     }
     if (wanted > room_) {
-      refuse("all compressed views together hold more than " + std::to_string(kMaxRatio) + " times the file's bytes",
-             index);
+      refuse(
+          "all compressed views together expand to more than " + std::to_string(kMaxRatio) + " times the file's bytes",
+          index);
       return false;
     }
     room_ -= wanted;

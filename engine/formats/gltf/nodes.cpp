@@ -105,7 +105,7 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
     }
     placed.push_back(next);
     if (placed.size() > document.nodes.size() + kMostFurtherPlaces) {
-      report.refuse("the nodes with several parents stand in too many places", "nodes", "give each node one parent");
+      report.refuse("the nodes with several parents appear in too many places", "nodes", "give each node one parent");
       return {};
     }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {

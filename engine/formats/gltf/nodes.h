@@ -10,29 +10,29 @@
 
 namespace promin {
 
-/// A node as the traversal meets it.
+/// A node with its transform to the world.
 struct PlacedNode {
   int node = 0;
   /// Composed in double.
   dmat4 world_from_object{1.0};
-  /// The rotations of the node and everything above it alone, for what has a direction and no size. None where a matrix
-  /// among them has no rotation.
+  /// The product of only the rotations of the node and its ancestors, for objects that have a direction but no size.
+  /// Empty if one of the matrices has no rotation.
   std::optional<dmat3> rotation{dmat3(1.0)};
-  /// KHR_node_visibility of the node and everything above it.
+  /// KHR_node_visibility of the node and its ancestors.
   bool is_visible = true;
 };
 
-/// Whether a transform leaves no area of anything: its scale is 0 along two axes or more.
+/// Returns whether a transform reduces every area to 0: its scale is 0 along at least two axes.
 bool has_no_area(const dmat4& world_from_object);
 
-/// The nodes of the default scene, depth first, parents before children: the order that numbers objects and cameras. A
-/// node with several parents is placed below each. Nodes whose transform overflows go to the report, and so do more
-/// places than the file's nodes and 2^18 more.
+/// Returns the nodes of the default scene, depth first and parents before children, which is the order of objects and
+/// cameras. A node with several parents appears below each. Reports transforms that overflow, and more than 2^18 nodes
+/// in addition to those of the file.
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report);
 
-/// Where each node of the file is in the world, at its index. A node of the scene is at its first place among `placed`;
-/// another stands below its parents, which may be in no scene, around the `center` of the scene. The transform may
-/// overflow.
+/// Returns the transform to the world of each node of the file, by its index. A node of the scene has its first
+/// transform in `placed`; others get those of their parents, which may be in no scene, relative to the `center` of the
+/// scene. Transforms may overflow.
 std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed,
                                         const dvec3& center);
 

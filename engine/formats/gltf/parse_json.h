@@ -13,8 +13,8 @@ namespace promin {
 /// Deeper JSON is refused before a recursive parser sees it.
 inline constexpr int kMaxJsonDepth = 200;
 
-/// The JSON of a file, with the largest double in place of a number beyond it. Refuses, with the cure, and throws
-/// InputError where it cannot be read.
+/// Parses the JSON of a file; numbers beyond the range of double become the largest double. Throws InputError with the
+/// cure if the text cannot be parsed.
 nlohmann::json parse_json(std::string_view text, LoadReport& report, const std::string& cure);
 
 }  // namespace promin

@@ -429,7 +429,7 @@ bool is_of_gltf_1(const json& document) {
 
 void check_gltf_version(json& document, LoadReport& report) {
   if (!document.is_object()) {
-    report.refuse("the file is no JSON object", "the top level", "export the file again");
+    report.refuse("the file is not a JSON object", "the top level", "export the file again");
     return;
   }
   json& asset = document["asset"];
@@ -441,16 +441,16 @@ void check_gltf_version(json& document, LoadReport& report) {
   if (version.starts_with("1") || (version.empty() && is_of_gltf_1(document))) {
     report.refuse("the file is glTF 1.0, which is not read", "asset.version", "export it as glTF 2.0");
   } else if (version.empty()) {
-    report.repair({"the version is missing", "", "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
+    report.repair({"the version is missing", "", "asset.version", "write \"2.0\"", "it is read as glTF 2.0"});
   } else if (version != "2" && !version.starts_with("2.")) {
     report.refuse("glTF version " + quote(version) + " is not 2.x", "asset.version", "export the file as glTF 2.0");
   } else if (!given->is_string() || version == "2") {
-    report.repair(
-        {"the version is not written as glTF has it", version, "asset.version", "write \"2.0\"", "glTF 2.0 is taken"});
+    report.repair({"the version is not written as glTF requires", version, "asset.version", "write \"2.0\"",
+                   "it is read as glTF 2.0"});
   }
   const auto least = asset.find("minVersion");
   if (least != asset.end() && *least != "2.0") {
-    report.refuse("the file needs glTF " + quote(least->is_string() ? least->get<std::string>() : least->dump()),
+    report.refuse("the file requires glTF " + quote(least->is_string() ? least->get<std::string>() : least->dump()),
                   "asset.minVersion", "export it for glTF 2.0");
   }
 }

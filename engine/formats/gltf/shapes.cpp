@@ -36,12 +36,12 @@ class ShapeReader {
 
  private:
   std::optional<Geometry> fall_back(const std::string& reason) {
-    report_.warn("shape " + title_ + " " + reason + ": the mesh in its place is drawn");
+    report_.warn("shape " + title_ + " " + reason + ": the mesh that replaces it is drawn");
     return std::nullopt;
   }
 
   std::optional<Geometry> fall_back_from_transform() {
-    return fall_back("does not keep its form under the transform of nodes[" + std::to_string(node_) + "]");
+    return fall_back("is distorted by the transform of nodes[" + std::to_string(node_) + "]");
   }
 
   double parameter(const char* name, double otherwise) const {
@@ -63,7 +63,7 @@ class ShapeReader {
       if (is_valid(size)) continue;
       report_.refuse(
           "the " + std::string(size.name) + " of shape " + title_ + " is " + json(size.size).dump() + " in the world",
-          node, "use a scale that leaves it between 1e-22 and 1e15");
+          node, "use a scale that keeps it between 1e-22 and 1e15");
     }
     return shape;
   }
@@ -95,11 +95,11 @@ class ShapeReader {
 
   std::optional<Geometry> read_plane() {
     if (shape_.contains("plane") && (shape_["plane"].contains("sizeX") || shape_["plane"].contains("sizeZ"))) {
-      return fall_back("is a plane with sizes");
+      return fall_back("is a plane that has sizes");
     }
     const Plane plane;
     if (!place(plane, at_)) {
-      report_.refuse("the scale leaves nothing of plane " + title_, "nodes[" + std::to_string(node_) + "]",
+      report_.refuse("the scale flattens plane " + title_, "nodes[" + std::to_string(node_) + "]",
                      "use a scale other than 0");
       return plane;
     }

@@ -10,9 +10,9 @@
 
 namespace promin {
 
-/// The analytic shape of KHR_implicit_shapes that a mesh primitive stands for
-/// (PROMIN_mesh_primitive_implicit_shape), in its own space. nullopt where there is none that can be drawn exactly
-/// (with a warning): then the primitive's triangles are drawn. Bad sizes go to the report.
+/// Returns the analytic shape of KHR_implicit_shapes that a mesh primitive represents
+/// (PROMIN_mesh_primitive_implicit_shape), in its own space. Returns nullopt if there is none, or if it cannot be drawn
+/// exactly (with a warning); then the primitive's triangles are drawn. Bad sizes go to the report.
 std::optional<Geometry> read_gltf_shape(const GltfDocument& document, size_t mesh, size_t primitive,
                                         const PlacedNode& placed, LoadReport& report);
 

@@ -24,7 +24,7 @@ void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
     // Written so that NaN fails.
     if (!(std::abs(number - wanted) <= kMostRounding)) {
       report.repair({"an inverse bind matrix is not affine", std::to_string(number), place, "make its last row 0 0 0 1",
-                     "its last row is taken as 0 0 0 1"});
+                     "its last row is read as 0 0 0 1"});
     }
     number = wanted;
   }
@@ -41,7 +41,7 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
   if (numbers.size() < 16 * joint_count) {
     report.refuse("a skin has " + std::to_string(numbers.size() / 16) + " inverse bind matrices for " +
                       std::to_string(joint_count) + " joints",
-                  place, "give each joint one");
+                  place, "give one for each joint");
     return matrices;
   }
   for (size_t joint = 0; joint < joint_count; ++joint) {
@@ -62,7 +62,7 @@ GltfSkins::GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>
   for (size_t skin = 0; skin < count; ++skin) {
     if (has_joints(static_cast<int>(skin))) continue;
     report.repair({"a skin has no joints", "", "skins[" + std::to_string(skin) + "]", "export the file again",
-                   "its meshes stand as their nodes have them"});
+                   "its meshes are placed by their nodes"});
   }
 }
 

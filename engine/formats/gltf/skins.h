@@ -11,26 +11,26 @@
 
 namespace promin {
 
-/// A skin as the nodes of the file stand.
+/// A skin in the pose of the file's nodes.
 struct GltfPose {
   /// For each joint, its transform in the world times its inverse bind matrix, times the inverse of `world_from_mesh`.
   std::vector<dmat4> joint_matrices;
-  /// What the objects have that show posed meshes: the identity, or where all joints mirror a reflection in x, which
-  /// turns the winding of triangles as the mirroring node of an unskinned mesh does.
+  /// The transform of objects that show posed meshes: the identity or, if all joints mirror, a reflection in x, which
+  /// reverses the winding of triangles as a mirroring node of an unskinned mesh does.
   dmat4 world_from_mesh{1.0};
-  /// Whether no joint leaves any area of anything: such a scale of 0 hides the mesh.
+  /// Whether every joint reduces areas to 0; such a scale of 0 hides the mesh.
   bool is_hidden = false;
 };
 
 /// The skins of a document, each posed once.
 class GltfSkins {
  public:
-  /// `placed` are the nodes of the scene that is shown; other joints stand by their own parents. The arguments outlive
-  /// this.
+  /// `placed` are the nodes of the shown scene; other joints use their own parents. The arguments must outlive this
+  /// object.
   GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>& placed, LoadReport& report);
 
   bool has_joints(int skin) const;
-  /// The pose of a skin that has joints. Too few inverse bind matrices go to the report.
+  /// Returns the pose of a skin that has joints. Reports too few inverse bind matrices.
   const GltfPose& find(int skin);
 
  private:

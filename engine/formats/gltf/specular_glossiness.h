@@ -7,9 +7,9 @@
 
 namespace promin {
 
-/// Makes of the texels of a specularGlossinessTexture (KHR_materials_pbrSpecularGlossiness: specular colour of sRGB,
-/// glossiness in alpha) those of a metallicRoughnessTexture, whose green is 1 - glossiness_factor * glossiness: a
-/// roughness that takes no further factor.
+/// Converts the texels of a specularGlossinessTexture (KHR_materials_pbrSpecularGlossiness: specular colour in sRGB,
+/// glossiness in alpha) to those of a metallicRoughnessTexture whose green is 1 - glossiness_factor * glossiness, a
+/// roughness that needs no further factor.
 void take_glossiness(std::span<uint32_t> texels, double glossiness_factor);
 
 }  // namespace promin

@@ -88,7 +88,7 @@ TextureSlot GltfTextures::read_slot_for(const json& object, const char* name, co
   }
   if (slot.uv_set > 1) {
     report_.warn(std::string(name) + " of texture coordinates " + std::to_string(slot.uv_set) +
-                 " is ignored, there are sets 0 and 1");
+                 " is ignored because only sets 0 and 1 are supported");
     return slot;
   }
   slot.texture = find_texture(info["index"].get<size_t>(), purpose);
@@ -148,7 +148,7 @@ void GltfTextures::finish(Scene& scene) {
   for (Material& material : scene.materials) restore_roughness(material);
   if (const size_t count = textures_without_image_.size(); count > 0) {
     report_.warn(std::to_string(count) + (count == 1 ? " texture has" : " textures have") +
-                 " no image that is known; materials are drawn without");
+                 " no image of a known format; materials are drawn without");
   }
 }
 

@@ -15,26 +15,26 @@
 
 namespace promin {
 
-/// Reads the textures that materials name, each image once for each use (glTF 2.0, section 3.8).
+/// Reads the textures that materials refer to, each image once for each use (glTF 2.0, section 3.8).
 class GltfTextures {
  public:
   /// See LoadOptions::decodes_images.
   GltfTextures(const GltfDocument& document, bool decodes_images, LoadReport& report)
       : document_(document), decodes_images_(decodes_images), report_(report) {}
 
-  /// The slot that `info`, the textureInfo `name` of an object, describes; an empty one where there is none.
+  /// Returns the slot for the textureInfo `name` of an object; an empty one if there is none.
   TextureSlot read_slot(const nlohmann::json& object, const char* name, ImageUse use);
 
-  /// The same of specularGlossinessTexture, as a slot of roughness: its image becomes one whose green is
-  /// 1 - glossiness_factor * glossiness.
+  /// Does the same for specularGlossinessTexture, as a slot of roughness: its image becomes one whose green is 1 -
+  /// glossiness_factor * glossiness.
   TextureSlot read_glossiness_slot(const nlohmann::json& object, const char* name, float glossiness_factor);
 
-  /// Decodes all images, or reads their sizes, on all cores and hands everything over. An image that cannot be decoded
-  /// is warned about and counts as absent.
+  /// Decodes all images, or reads their sizes, on all cores and stores everything in the scene. An image that cannot be
+  /// decoded causes a warning and counts as absent.
   void finish(Scene& scene);
 
  private:
-  /// What images are made for: the use, and the factor of a specularGlossinessTexture.
+  /// The purpose of an image: its use, and the factor of a specularGlossinessTexture.
   using Purpose = std::pair<ImageUse, std::optional<float>>;
 
   TextureSlot read_slot_for(const nlohmann::json& object, const char* name, const Purpose& purpose);

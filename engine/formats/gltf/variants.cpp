@@ -18,7 +18,7 @@ size_t find_variant(const json& document, const std::string& name, const std::fi
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<size_t>(found - names.begin());
   const std::string what = "the scene has no variant " + quote(name);
-  if (names.empty()) throw UsageError({what + ", nor any other", file.string(), "ask for none"});
+  if (names.empty()) throw UsageError({what + "or any other", file.string(), "leave the variant out"});
   std::string known;
   for (const std::string& other : names) known += (known.empty() ? "" : ", ") + quote(other);
   throw UsageError({what, file.string(), "choose one of: " + known});

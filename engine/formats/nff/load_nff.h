@@ -9,8 +9,8 @@ namespace promin {
 
 /// Reads the report's file as NFF, Eric Haines' Neutral File Format of the Standard Procedural Databases: views, point
 /// sources without falloff, Phong materials, spheres, open cylinders and cones, polygons. The scene is classic. Each f
-/// that shapes follow is an object of the file (Scene::object_numbers): its polygons are one mesh, in file order, and
-/// each of its other shapes is an object here. Throws InputError.
+/// statement with shapes is an object of the file (Scene::object_numbers): its polygons form one mesh, in file order,
+/// and each other shape becomes an object here. Throws InputError.
 Scene load_nff(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

@@ -62,7 +62,8 @@ class NffParser {
     if (found == nullptr && is_further_number)
       return repair("has more numbers than it takes", keyword, "they are ignored");
     if (found == nullptr) {
-      return refuse(quote(keyword) + " is no statement of NFF", "use v b l f c s p or pp, each with all its numbers");
+      return refuse(quote(keyword) + " is not a statement of NFF",
+                    "use v b l f c s p or pp, each with all its numbers");
     }
     statement_ = found;
     is_placed_ = true;
@@ -87,8 +88,8 @@ class NffParser {
     if (statement_->is_shape) report_.lose_geometry();
   }
 
-  /// Takes the next word as a number, which may be infinite or NaN; NaN where it is no number. Where another statement
-  /// begins instead, or another part of a view, it is not taken.
+  /// Takes the next word as a number, which may be infinite or NaN; NaN where it is not a number. Where another
+  /// statement begins instead, or another part of a view, it is not taken.
   double take_any_number() {
     if (is_broken_) return 0.0;
     if (words_.next().empty()) {
@@ -98,7 +99,7 @@ class NffParser {
     const bool is_other = find_statement(words_.next()) != nullptr || is_view_part(words_.next());
     word_ = is_other && !statement_->is_shape ? std::string_view() : words_.take();
     const std::optional<double> number = parse_any_number(word_);
-    if (!number && statement_->is_shape) refuse(quote(word_) + " is no number");
+    if (!number && statement_->is_shape) refuse(quote(word_) + " is not a number");
     return number.value_or(std::numeric_limits<double>::quiet_NaN());
   }
 
@@ -107,10 +108,10 @@ class NffParser {
     const double number = take_any_number();
     if (is_broken_ || (number >= least && number <= most)) return number;
     if (word_.empty()) {
-      repair("has too few numbers", {}, "those that lack are taken for the least");
+      repair("has too few numbers", {}, "the missing ones are set to the smallest value allowed");
     } else {
       repair(std::string("has a number that is not ") + range, word_,
-             "the nearest that is, or else the least, is taken");
+             "the nearest allowed value is used, or else the smallest");
     }
     return number > most ? most : least;
   }
@@ -120,7 +121,7 @@ class NffParser {
     // Written so that NaN fails.
     if (std::abs(number) <= kMaxCoordinate) return number;
     if (is_placed_ && !is_broken_) {
-      repair("has a coordinate that is no number up to 1e15", word_, "it is left out");
+      repair("has a coordinate that is not a number up to 1e15", word_, "it is left out");
       if (statement_->is_shape) report_.lose_geometry();
     }
     is_placed_ = false;
@@ -200,7 +201,7 @@ class NffParser {
     const dvec3 axis = apex - base;
     const double half_height = 0.5 * glm::length(axis);
     if (!(half_height >= kMinSize && half_height <= kMaxCoordinate)) {
-      return leave_out("has base and apex in one point, or too far from each other");
+      return leave_out("has its base and apex at the same point, or too far apart");
     }
     if (base_radius == apex_radius) {
       add(Cylinder{center, axis, half_height, std::abs(base_radius), true});
@@ -218,7 +219,7 @@ class NffParser {
     const std::optional<int64_t> count = parse_integer(word);
     constexpr auto kMostCorners = static_cast<int64_t>(kMaxPolygonCorners);
     if (!count || *count < 0 || *count > kMostCorners) {
-      return refuse(quote(word) + " is no number of corners", "give 3 to " + std::to_string(kMostCorners));
+      return refuse(quote(word) + " is not a number of corners", "give 3 to " + std::to_string(kMostCorners));
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {
@@ -255,7 +256,7 @@ class NffParser {
       if (part == "resolution") camera.resolution = take_resolution();
     }
     if (!is_good()) return;
-    if (!from || !at || !up || !angle) return leave_out("is without from, at, up or angle");
+    if (!from || !at || !up || !angle) return leave_out("lacks from, at, up or angle");
     // Written so that NaN fails.
     if (!(*angle >= 1e-3 && *angle <= 179.9)) return leave_out("has an angle that is not from 0.001 to 179.9 degrees");
     camera.yfov = static_cast<float>(glm::radians(*angle));
@@ -266,7 +267,7 @@ class NffParser {
     const dvec3 side = glm::cross(look, glm::normalize(*up));
     // Written so that NaN, which points in one place give, is refused too.
     if (!(glm::length(side) >= kLeastSine)) {
-      return leave_out("has from and at in one place, or an up that is 0 or along it");
+      return leave_out("has from and at in the same place, or an up that is 0 or parallel to the view");
     }
     camera.eye = vec3(*from);
     camera.look = vec3(look);
@@ -280,7 +281,7 @@ class NffParser {
     for (int i = 0; i < 2; ++i) size[i] = take_any_number();
     const auto is_side = [](double side) { return side >= 1.0 && side <= kMaxSide && side == std::floor(side); };
     if (is_broken_ || (is_side(size.x) && is_side(size.y))) return uvec2(size);
-    repair("has a resolution that is not of whole numbers from 1 to 32768", {}, "it is without one");
+    repair("has a resolution that is not two whole numbers from 1 to 32768", {}, "its resolution is ignored");
     return uvec2(0);
   }
 

@@ -13,30 +13,30 @@
 
 namespace promin {
 
-/// What an f says, as it stands there; no number is negative.
+/// The numbers of an f statement as written; none is negative.
 struct NffMaterial {
   vec3 color{0.0F};
   /// The weight of diffuse light, Kd.
   float diffuse = 0.0F;
-  /// The weight of highlights and of what mirror rays bring, Ks.
+  /// The weight of highlights and mirror rays, Ks.
   float specular = 0.0F;
   /// Phong's exponent, Shine.
   float shininess = 0.0F;
-  /// The weight of what refracted rays bring, T.
+  /// The weight of refracted rays, T.
   float transmittance = 0.0F;
-  /// 0 where there is none to speak of.
+  /// Index of refraction; 0 if none is given.
   float ior = 0.0F;
 };
 
 struct NffLight {
   vec3 position{0.0F};
-  /// None: as bright as the number of sources makes it.
+  /// Empty: the brightness depends on the number of lights.
   std::optional<vec3> color = {};
 };
 
-/// A p or pp.
+/// A statement p or pp.
 struct NffPolygon {
-  /// Where its corners begin in NffText::corners and its normals, if it has any, in NffText::normals.
+  /// Index of its first corner in NffText::corners and, if it has normals, in NffText::normals.
   size_t first_corner = 0;
   size_t first_normal = 0;
   uint32_t corner_count = 0;
@@ -45,9 +45,9 @@ struct NffPolygon {
 
 using NffShape = std::variant<NffPolygon, Sphere, Cylinder, Cone>;
 
-/// Shapes of one material. Each group has some.
+/// Shapes of one material, at least one.
 struct NffGroup {
-  /// None where no f comes before them.
+  /// Empty if no f statement precedes them.
   std::optional<NffMaterial> material = {};
   std::vector<NffShape> shapes = {};
 };
@@ -61,9 +61,9 @@ struct NffText {
   std::vector<vec3> normals;
 };
 
-/// Parses an NFF file; all numbers are in the ranges that validate() asks for, but normals, which may be 0. Shapes,
-/// lights and views without a place are left out. A word that is no statement, or no number of a shape, ends it,
-/// because the next statement could begin anywhere. Problems go to the report with their line.
+/// Parses an NFF file. All numbers are in the ranges of validate(), except normals, which may be 0. Shapes, lights and
+/// views with invalid positions are left out. An unknown statement, or a word in place of a number, ends the parsing
+/// with an error, because the next statement could begin anywhere. Problems go to the report with their line.
 NffText parse_nff_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

@@ -43,7 +43,7 @@ class MeshBuilder {
       if (normal == kNoObjIndex) return false;
       const double length = glm::length(dvec3(text_.normals[normal]));
       if (length > 0.0) continue;
-      if (length == 0.0) report_.warn("there are normals of no length, faces that use them are drawn sharp");
+      if (length == 0.0) report_.warn("some normals have no length; faces that use them are shaded flat");
       return false;
     }
     return true;
@@ -106,7 +106,7 @@ class MeshBuilder {
   /// A mesh's v grows downwards, from the first row of a picture.
   vec4 uv_of(const ObjCorner& corner) {
     if (corner.uv == kNoObjIndex) {
-      report_.warn("there are corners without texture coordinates under a texture, theirs are taken for 0");
+      report_.warn("some corners of textured faces have no texture coordinates; 0 is used");
       return vec4(0.0F, 1.0F, 0.0F, 0.0F);
     }
     const dvec2 uv = text_.uvs[corner.uv];
@@ -151,7 +151,7 @@ std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadRepor
       continue;
     }
     scene.materials.emplace_back().name = name;
-    report.warn("material " + quote(name) + " is in no MTL file: it is drawn grey");
+    report.warn("material " + quote(name) + " is not defined in any MTL file: it is drawn grey");
   }
   textures.finish(scene);
   return indices;

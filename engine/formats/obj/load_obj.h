@@ -7,8 +7,8 @@
 
 namespace promin {
 
-/// Reads Wavefront OBJ and its MTL. See load_scene for what is promised. A file is refused without a face of at least 3
-/// corners: there is nothing to draw, as in point clouds.
+/// Reads a Wavefront OBJ file and its MTL files. The contract is that of load_scene. A file without a face of at least
+/// 3 corners, such as a point cloud, is refused, because there is nothing to draw.
 Scene load_obj(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

@@ -57,7 +57,7 @@ std::vector<std::string> find_library(const std::string& line, LoadReport& repor
   if (auto whole = find_by_last_part(line, "", report)) return {*whole};
   for (const std::string& name : missing) {
     report.warn("the material file " + quote(name) +
-                " is not read, its materials are grey: " + reason_against(name, report));
+                " is not read and its materials are grey: " + reason_against(name, report));
   }
   return files;
 }
@@ -124,8 +124,8 @@ void settle_transparency(std::vector<MtlMaterial>& materials, const std::string&
   });
   if (invisible == materials.end()) return;
   report.warn("material " + quote(invisible->name) +
-              " would be invisible by its Tr without a d: it is drawn opaque, and each Tr without a d of " + file +
-              " counts as d");
+              " would be invisible because of its Tr without a d: it is drawn opaque, and each Tr without a d of " +
+              file + " is read as d");
   for (MtlMaterial& source : materials) {
     if (!has_tr_alone(source)) continue;
     const double opacity = source.find("Tr", 1.0).x;
@@ -136,7 +136,7 @@ void settle_transparency(std::vector<MtlMaterial>& materials, const std::string&
 void take_alpha(const MtlMaterial& source, Material& material, LoadReport& report) {
   if (!blends(source)) return;
   material.alpha = opacity_of(source);
-  if (material.alpha == 0.0F) report.warn("material " + quote(source.name) + " is invisible, by its d of 0");
+  if (material.alpha == 0.0F) report.warn("material " + quote(source.name) + " is invisible because its d is 0");
   const bool has_map = source.find_map("map_d") != nullptr;
   if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
 }
@@ -204,18 +204,18 @@ void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
   if (opacity_of(source) == 1.0F && (illum_of(source) == 4.0 || illum_of(source) == 9.0)) {
     report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
-                ") with a d of 1, it is drawn opaque");
+                ") and has a d of 1; it is drawn opaque");
   }
   const bool is_bending = is_refracting(source) || illum_of(source) == 5.0;
   if (is_bending && source.numbers.contains("Ni") && !is_index(source.find("Ni", kGlass).x)) {
-    report.warn(title + ": its Ni is no index of refraction, 1.5 is taken");
+    report.warn(title + ": its Ni is not an index of refraction; 1.5 is used");
   }
-  if (illum_of(source) == 10.0) report.warn(title + " asks for illum 10 (shadows alone), it is drawn as illum 2");
+  if (illum_of(source) == 10.0) report.warn(title + " has illum 10 (only shadows); it is drawn as illum 2");
   // Most exporters name one file for both.
   const MtlMap* ambient = source.find_map("map_Ka");
   const MtlMap* diffuse = source.find_map("map_Kd");
   if (ambient != nullptr && (diffuse == nullptr || diffuse->file != ambient->file)) {
-    report.warn(title + ": its map_Ka is ignored, ambient light takes map_Kd");
+    report.warn(title + ": its map_Ka is ignored; ambient light uses map_Kd");
   }
 }
 

@@ -13,14 +13,15 @@
 
 namespace promin {
 
-/// Reads materials by name from the MTL files that an OBJ's mtllib lines name beside it. Missing files and what cannot
-/// be shown (glass and shadows alone by illum, a map_Ka of its own, maps that parse_mtl ignores) are warned about.
+/// Reads materials by name from the MTL files that the mtllib lines of an OBJ file name. Warns of missing files and of
+/// features that are not supported (glass and shadow-only materials by illum, a separate map_Ka, maps that parse_mtl
+/// ignores).
 std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>& libraries, LoadReport& report);
 
-/// Appends a material to the scene. Where it has Pr, Pm or their maps it is metallic-roughness, with the colour Kd.
-/// Else it is Phong: Ka, Kd, Ks, Ns and Ke as they stand, with Ka as Kd where there is none; illum 0 shows Kd alone, 1
-/// has no highlight, 2 has one, and from 3 on Ks also weighs the mirror ray. A map multiplies its colour, which is 1
-/// where the file has none. What is not opaque by d, Tr or map_d blends.
+/// Appends a material to the scene. With Pr, Pm or their maps it is metallic-roughness with the colour Kd. Else it is
+/// Phong with Ka, Kd, Ks, Ns and Ke as written; Ka defaults to Kd. illum 0 shows only Kd, 1 has no highlight, 2 has
+/// one, and from 3 on Ks also weights the mirror ray. A map multiplies its colour, which defaults to 1. A material that
+/// is not opaque by d, Tr or map_d blends.
 void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& scene, LoadReport& report);
 
 }  // namespace promin

@@ -38,7 +38,9 @@ std::optional<std::string> find_by_last_part(const std::string& name, const std:
   const std::string last = name.substr(name.find_last_of("/\\:") + 1);
   std::optional<std::string> found = find_named_file(last, folder, report);
   if (!found) found = find_named_file(last, "", report);
-  if (found) report.warn("files of other folders are read from beside the scene, where files of their names lie");
+  if (found)
+    report.warn(
+        "files that are named in other folders are read from the scene's folder, where files of the same names exist");
   return found;
 }
 

@@ -92,7 +92,7 @@ class ObjParser {
     std::array<double, 6> values{};
     /// All words count, and the first six are read.
     size_t word_count = 0;
-    /// How many words come before the first that is no number up to 1e15.
+    /// How many words come before the first that is not a number up to 1e15.
     size_t good_count = 0;
     /// That word.
     std::string_view bad_word = {};
@@ -130,27 +130,27 @@ class ObjParser {
     if (!numbers.are_good(3)) return add_bad_vertex(numbers);
     if (numbers.word_count >= 6) return read_color(numbers);
     if (numbers.word_count == 5 || !numbers.bad_word.empty()) {
-      repair("what follows x y z of a vertex is no weight and no colour", numbers.bad_word, kVertexCure,
-             "it is ignored");
+      repair("the numbers after x y z of a vertex are neither a weight nor a colour", numbers.bad_word, kVertexCure,
+             "they are ignored");
     }
   }
 
   void add_bad_vertex(const Numbers& numbers) {
     const std::string what = numbers.bad_word.empty()
                                  ? "a vertex has " + std::to_string(numbers.word_count) + " numbers"
-                                 : quote(numbers.bad_word) + " is no number up to 1e15";
+                                 : quote(numbers.bad_word) + " is not a number up to 1e15";
     bad_vertices_.push_back({static_cast<uint32_t>(out_.positions.size() - 1), lines_.number(), what});
   }
 
   void read_color(const Numbers& numbers) {
     const std::array<double, 6>& n = numbers.values;
     if (numbers.word_count > 6) {
-      repair("a vertex has more than 6 numbers", "", kVertexCure, "those behind its colour are ignored");
+      repair("a vertex has more than 6 numbers", "", kVertexCure, "those after its colour are ignored");
     }
     vec3 color(n[3], n[4], n[5]);
     if (!numbers.are_good(6) || n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) {
-      repair("a vertex colour is no three numbers from 0", numbers.bad_word, "use numbers from 0",
-             "the vertex counts as white");
+      repair("a vertex colour is not three numbers of 0 or more", numbers.bad_word, "use numbers from 0",
+             "white is used");
       color = vec3(1.0F);
     }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
@@ -168,7 +168,7 @@ class ObjParser {
       if (number && std::abs(*number) <= kMaxCoordinate) {
         uv[i] = *number;
       } else {
-        repair("a texture coordinate is no number up to 1e15", word, kNumberCure, "it counts as 0");
+        repair("a texture coordinate is not a number up to 1e15", word, kNumberCure, "0 is used");
       }
     }
     out_.uvs.push_back(uv);
@@ -178,13 +178,13 @@ class ObjParser {
     const Numbers numbers = read_numbers(rest);
     const std::array<double, 6>& n = numbers.values;
     if (!numbers.are_good(3)) {
-      repair("a normal is no three numbers up to 1e15", numbers.bad_word, kNumberCure,
-             "the faces that use it are drawn sharp");
+      repair("a normal is not three numbers up to 1e15", numbers.bad_word, kNumberCure,
+             "the faces that use it are shaded flat");
       out_.normals.emplace_back(std::numeric_limits<float>::quiet_NaN());
       return;
     }
     if (numbers.word_count > 3) {
-      repair("a normal has more than 3 numbers", "", "give it x y z", "those behind the third are ignored");
+      repair("a normal has more than 3 numbers", "", "give it x y z", "those after the third are ignored");
     }
     out_.normals.emplace_back(n[0], n[1], n[2]);
   }
@@ -230,7 +230,7 @@ class ObjParser {
     }
     corner.position = read_index(parts[0], out_.positions.size());
     if (!word.empty() || corner.position == kMissing) {
-      refuse(quote(whole) + " is no corner of a face", "use indices from 1, or from -1 back to the first vertex");
+      refuse(quote(whole) + " is not a corner of a face", "use indices from 1, or from -1 back to the first vertex");
       return false;
     }
     if (!parts[1].empty()) corner.uv = read_index(parts[1], out_.uvs.size());
@@ -258,12 +258,12 @@ class ObjParser {
       const std::span corners(&out_.corners[out_.faces[i].first_corner], out_.faces[i].corner_count);
       is_drawn[i] = check_positions(corners, face_lines_[i]);
       if (forget_past_the_end(corners, &ObjCorner::uv, out_.uvs.size())) {
-        report_.repair({"a face names texture coordinates that are not there", "", place_of(face_lines_[i]),
+        report_.repair({"a face refers to texture coordinates that do not exist", "", place_of(face_lines_[i]),
                         "use an index up to their number", "it is drawn without them"});
       }
       if (forget_past_the_end(corners, &ObjCorner::normal, out_.normals.size())) {
-        report_.repair({"a face names a normal that is not there", "", place_of(face_lines_[i]),
-                        "use an index up to their number", "it is drawn sharp"});
+        report_.repair({"a face refers to a normal that does not exist", "", place_of(face_lines_[i]),
+                        "use an index up to their number", "it is shaded flat"});
       }
     }
     for (const BadVertex& vertex : bad_vertices_) report_bad_vertex(vertex);
@@ -311,7 +311,7 @@ class ObjParser {
       } else if (BadVertex* bad = find_bad_vertex(corner.position); bad != nullptr) {
         bad->is_used = true;
         if (is_placed) {
-          report_.repair({"a face has a vertex that is no three numbers up to 1e15", bad->what, place_of(bad->line),
+          report_.repair({"a face has a vertex that is not three numbers up to 1e15", bad->what, place_of(bad->line),
                           kVertexCure, "the face is left out"});
         }
         is_placed = false;
@@ -338,7 +338,7 @@ class ObjParser {
 
   void report_bad_vertex(const BadVertex& vertex) {
     if (vertex.is_used) return;
-    report_.repair({"a vertex that no face uses is no three numbers up to 1e15", vertex.what, place_of(vertex.line),
+    report_.repair({"a vertex that no face uses is not three numbers up to 1e15", vertex.what, place_of(vertex.line),
                     kVertexCure, "it is left out"});
   }
 

@@ -18,7 +18,7 @@ inline constexpr uint32_t kNoObjIndex = std::numeric_limits<uint32_t>::max();
 /// Indices from 0 into the arrays of ObjText.
 struct ObjCorner {
   uint32_t position = 0;
-  /// kNoObjIndex where the file gives none.
+  /// kNoObjIndex if the file gives none.
   uint32_t uv = kNoObjIndex;
   uint32_t normal = kNoObjIndex;
 
@@ -32,26 +32,26 @@ struct ObjFace {
   uint32_t material = kNoObjIndex;
 };
 
-/// The faces between an `o` or `g` and the next, if there are any.
+/// The faces between an `o` or `g` and the next; at least one.
 struct ObjGroup {
   std::string name;
   uint32_t first_face = 0;
   uint32_t face_count = 0;
 };
 
-/// What an OBJ file says, checked: every index is in range, and what faces use is finite, but normals.
+/// The checked content of an OBJ file: every index is in range, and all data that faces use is finite, except normals.
 struct ObjText {
   std::vector<vec3> positions;
-  /// Empty, or one per position, and white where the file gives none.
+  /// Empty, or one per position; white if the file gives none.
   std::vector<vec3> colors;
-  /// Texture coordinates; v grows upwards.
+  /// Texture coordinates; v increases upwards.
   std::vector<dvec2> uvs;
-  /// The normals as written, which are not of unit length; NaN where the file gives no numbers.
+  /// The normals as written, not necessarily of unit length; NaN if the file gives no numbers.
   std::vector<vec3> normals;
   std::vector<ObjCorner> corners;
   /// Each has at least 3 corners.
   std::vector<ObjFace> faces;
-  /// How many faces are left out for fewer.
+  /// Number of faces that were left out because they had fewer.
   uint64_t small_face_count = 0;
   bool has_lines_or_points = false;
   std::vector<ObjGroup> groups;
@@ -61,10 +61,11 @@ struct ObjText {
   std::vector<std::string> libraries;
 };
 
-/// Parses the statements v, vt, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning where they would
-/// show. Problems go to the report with their line: a face refuses the file whose corner is no index of a vertex, or
-/// whose vertex is no position. The report repairs the rest: faces of fewer than 3 corners, vertices that no face uses,
-/// colours, normals and texture coordinates that are no numbers, and indices of the latter two that are out of range.
+/// Parses the statements v, vt, vn, f, o, g, usemtl and mtllib; others are ignored, with a warning if they would be
+/// visible. Problems go to the report with their line. A face with a corner that is not the index of a vertex, or a
+/// vertex that is not a position, refuses the file. The report repairs other faults: faces of fewer than 3 corners,
+/// vertices that no face uses, colours, normals and texture coordinates that are not numbers, and indices of the latter
+/// two that are out of range.
 ObjText parse_obj_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

@@ -95,7 +95,7 @@ TextureSlot ObjTextures::read_base_color(const MtlMap* color, const MtlMap* alph
   if (alpha == nullptr || (color != nullptr && color->file == alpha->file)) return read_slot(color, ImageUse::kColor);
   if (color != nullptr &&
       (color->scale != alpha->scale || color->offset != alpha->offset || color->is_clamped != alpha->is_clamped)) {
-    report_.warn("the options of map_d are ignored where those of map_Kd are others");
+    report_.warn("the options of map_d are ignored because they differ from those of map_Kd");
   }
   const ImagePointer alphas = find_picture(alpha, ImageUse::kData);
   // Nothing else is made of one picture twice.
@@ -111,7 +111,7 @@ TextureSlot ObjTextures::read_metallic_roughness(const MtlMap* roughness, const 
   if (roughness != nullptr && metallic != nullptr &&
       (roughness->scale != metallic->scale || roughness->offset != metallic->offset ||
        roughness->is_clamped != metallic->is_clamped)) {
-    report_.warn("the options of map_Pm are ignored where those of map_Pr are others");
+    report_.warn("the options of map_Pm are ignored because they differ from those of map_Pr");
   }
   const std::pair sources(find_picture(roughness, ImageUse::kData), find_picture(metallic, ImageUse::kData));
   const auto [known, is_new] = image_numbers_.try_emplace(sources, static_cast<uint32_t>(images_.size()));
@@ -125,7 +125,7 @@ TextureSlot ObjTextures::read_heights(const MtlMap* map) {
   HeightMap heights = {map->strength * glm::sign(map->scale), map->channel, map->is_clamped};
   const bool is_of_normals = holds_normals(*picture);
   if (is_of_normals) {
-    report_.warn("image " + quote(map->file) + " of a map of heights holds normals, it is taken for a map of normals");
+    report_.warn("image " + quote(map->file) + " of a height map holds normals; it is used as a normal map");
     heights.height = dvec2(0.0);
   }
   const std::tuple key(picture, heights.height.x, heights.height.y, heights.channel, heights.is_clamped);
@@ -173,7 +173,7 @@ ObjTextures::ImagePointer ObjTextures::merge(const ImagePointer& roughness, cons
   }
   if (roughness != nullptr && metallic != nullptr && roughness->size != metallic->size) {
     report_.warn("images " + quote(roughness->name) + " and " + quote(metallic->name) +
-                 " differ in size, the smaller one is enlarged");
+                 " differ in size; the smaller one is enlarged");
   }
   merged->texels.reserve(texel_count(merged->size));
   for (uint32_t y = 0; y < merged->size.y; ++y) {

@@ -15,29 +15,30 @@
 
 namespace promin {
 
-/// The pictures that materials of MTL files name, each once for each use.
+/// The pictures of MTL materials, each once for each use.
 class ObjTextures {
  public:
-  /// Decodes the pictures of all maps of the materials on all cores. Maps of what cannot be decoded are warned about
-  /// and marked as not usable.
+  /// Decodes the pictures of all maps of the materials on all cores. Maps whose pictures cannot be decoded cause a
+  /// warning and are marked as unusable.
   ObjTextures(const std::vector<MtlMaterial*>& materials, LoadReport& report);
 
-  /// The slot of a map that is usable; an empty one for nullptr.
+  /// Returns the slot of a usable map; an empty one for nullptr.
   TextureSlot read_slot(const MtlMap* map, ImageUse use);
 
-  /// The slot of a picture of colours with the alpha of another: its alpha where it has any, else its red. White where
-  /// there is none of colours; an empty slot where both are nullptr. One file for both has what it needs.
+  /// Returns the slot of a colour picture combined with the alpha of another picture: its alpha channel if it has one,
+  /// else its red. Without a colour picture the colour is white; if both are nullptr, the slot is empty. One file may
+  /// serve both.
   TextureSlot read_base_color(const MtlMap* color, const MtlMap* alpha);
 
-  /// The slot of a picture with roughness in green and metallic in blue, made of a map of each; full where one is
-  /// nullptr, and an empty slot where both are.
+  /// Returns the slot of a picture with roughness in green and metallic in blue, combined from a map of each. A missing
+  /// map gives 1; if both are nullptr, the slot is empty.
   TextureSlot read_metallic_roughness(const MtlMap* roughness, const MtlMap* metallic);
 
-  /// The slot of the normals that a map of heights gives (formats/obj/heights.h), or of those that its picture holds in
-  /// truth, with a warning. An empty one for nullptr, and where there are no slopes.
+  /// Returns the slot of the normals computed from a height map (formats/obj/heights.h). If its picture holds normals
+  /// instead, they are used with a warning. Returns an empty slot for nullptr, and if there are no slopes.
   TextureSlot read_heights(const MtlMap* map);
 
-  /// Hands over the images and textures of the slots.
+  /// Moves the images and textures of the slots to the scene.
   void finish(Scene& scene);
 
  private:
@@ -52,7 +53,7 @@ class ObjTextures {
   std::map<std::pair<std::string, ImageUse>, ImagePointer> pictures_;
   std::vector<ImagePointer> images_;
   std::vector<Texture> textures_;
-  /// Indices of images_, by the pictures that they are made of.
+  /// Indices of images_, by the pictures that they were made from.
   std::map<std::pair<ImagePointer, ImagePointer>, uint32_t> image_numbers_;
   /// Indices of images_ of normals, by the picture of heights and the fields of HeightMap; a height of 0 is that of a
   /// picture that holds normals itself.

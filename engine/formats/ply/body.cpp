@@ -112,7 +112,7 @@ class BodyReader {
     has_face_colors_ = faces.has_all(kRed) && !has_colors_;
     warn_about_partial_colors(faces, "faces");
     if (faces.has_all(kRed) && has_colors_) {
-      report_.warn("colours of faces are ignored, as the vertices have colours");
+      report_.warn("colours of faces are ignored because the vertices have colours");
     }
     has_corner_uvs_ = std::ranges::any_of(face->properties, &PlyProperty::lists_uvs) && !header_.texture_files.empty();
     if (has_corner_uvs_) has_uvs_ = false;
@@ -121,7 +121,7 @@ class BodyReader {
 
   void warn_about_partial_colors(const Layout& layout, const std::string& owners) {
     if (!layout.has_some(kRed) || layout.has_all(kRed)) return;
-    report_.warn("colours of " + owners + " are ignored, as red, green or blue is missing");
+    report_.warn("colours of " + owners + " are ignored because red, green or blue is missing");
   }
 
   void read_element(const PlyElement& element) {
@@ -176,7 +176,7 @@ class BodyReader {
     if (!rows_.problem().empty()) return;
     if (!(count >= 0.0 && count <= static_cast<double>(rows_.most_numbers(property.type))) ||
         count != std::floor(count)) {
-      problem_ = "a list has a count that the file has no room for";
+      problem_ = "a list is longer than the rest of the file";
       return;
     }
     const bool is_wanted = property.lists_vertices();
@@ -216,7 +216,7 @@ class BodyReader {
   double clamp(double share, const char* element) {
     if (share >= 0.0 && share <= 1.0) return share;
     if (std::isnan(share)) {
-      report_.repair({"a colour is no number", "", place_of(element), "export the mesh again", "1 is taken"});
+      report_.repair({"a colour is not a number", "", place_of(element), "export the mesh again", "1 is used"});
       return 1.0;
     }
     has_wild_colors_ = true;
@@ -227,7 +227,7 @@ class BodyReader {
     // Written so that NaN fails.
     if (std::abs(u) <= kMaxCoordinate && std::abs(v) <= kMaxCoordinate) return vec2(dvec2(u, v));
     report_.repair({"a texture coordinate is not finite or beyond 1e15", "", place_of(element), "export the mesh again",
-                    "0 is taken"});
+                    "0 is used"});
     return vec2(0.0F);
   }
 
@@ -247,7 +247,7 @@ class BodyReader {
     if (number >= 0.0 && number < static_cast<double>(vertex_count_) && number == std::floor(number)) {
       return static_cast<uint32_t>(number);
     }
-    problem_ = "a face names a vertex that is not there, there are " + std::to_string(vertex_count_);
+    problem_ = "a face refers to a vertex that does not exist, there are " + std::to_string(vertex_count_);
     return std::nullopt;
   }
 
@@ -284,7 +284,7 @@ class BodyReader {
   uint32_t texture_of(const Layout& layout, const Row& row) {
     if (has_corner_uvs_ && !has_own_uvs()) {
       if (!uv_list_.empty()) {
-        report_.repair({"a face has not two texture coordinates for each corner", "", place_of("face"),
+        report_.repair({"a face does not have two texture coordinates for each corner", "", place_of("face"),
                         "export the mesh again", "it is drawn without a texture"});
       }
       return PlyBody::kNoTexture;
@@ -295,7 +295,7 @@ class BodyReader {
       return static_cast<uint32_t>(number);
     }
     if (number != -1.0) {
-      report_.repair({"a face names a texture that is not there", "", place_of("face"), "export the mesh again",
+      report_.repair({"a face refers to a texture that does not exist", "", place_of("face"), "export the mesh again",
                       "it is drawn without a texture"});
     }
     return PlyBody::kNoTexture;

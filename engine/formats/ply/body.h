@@ -13,32 +13,32 @@
 
 namespace promin {
 
-/// What promin draws of a PLY file, as the file has it: numbers may be anything, indices are in range.
+/// The parts of a PLY file that promin draws, as stored: numbers may have any value, indices are in range.
 struct PlyBody {
   std::vector<vec3> positions = {};
   /// Empty, or one per position.
   std::vector<vec3> normals = {};
   /// Empty, or one per position: linear RGBA within 0...1.
   std::vector<vec4> colors = {};
-  /// Empty, or one per position: v grows upwards, from the lowest row of a picture.
+  /// Empty, or one per position; v increases upwards from the lowest row of a picture.
   std::vector<vec2> uvs = {};
   /// Indices of positions, polygon after polygon.
   std::vector<uint32_t> corners = {};
-  /// How many of them each polygon has, 3...kMaxPolygonCorners.
+  /// Number of corners of each polygon, 3...kMaxPolygonCorners.
   std::vector<uint32_t> corner_counts = {};
   /// Empty, or one per polygon, as `colors`. Empty where vertices have colours.
   std::vector<vec4> face_colors = {};
-  /// Empty, or one per corner, as `uvs`, which are empty then.
+  /// Empty, or one per corner, like `uvs`, which are then empty.
   std::vector<vec2> corner_uvs = {};
-  /// Indices into PlyHeader::texture_files, one per polygon; empty where that is 0 for all of them.
+  /// Indices into PlyHeader::texture_files, one per polygon; empty if all are 0.
   std::vector<uint32_t> face_textures = {};
 
   /// Marks a polygon without a texture.
   static constexpr uint32_t kNoTexture = std::numeric_limits<uint32_t>::max();
 };
 
-/// Reads the rows behind a header that has vertices and faces; texture coordinates where it has texture files to show.
-/// Strips become triangles. Problems go to the report.
+/// Reads the rows after a header that has vertices and faces, and texture coordinates if it has texture files. Strips
+/// become triangles. Problems go to the report.
 PlyBody read_ply_body(std::string_view file, const PlyHeader& header, LoadReport& report);
 
 }  // namespace promin

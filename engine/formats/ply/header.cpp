@@ -105,7 +105,7 @@ class HeaderParser {
   void finish() {
     out_.size_bytes = lines_.next();
     out_.line_count = lines_.number();
-    if (!has_format_) refuse("the header tells no format", kExportAgain);
+    if (!has_format_) refuse("the header states no format", kExportAgain);
     check_counts(file_.size() - out_.size_bytes);
   }
 
@@ -140,7 +140,7 @@ class HeaderParser {
     } else if (name == "binary_big_endian") {
       out_.encoding = PlyEncoding::kBigEndian;
     } else {
-      refuse(quote(name) + " is no format of PLY", "use ascii, binary_little_endian or binary_big_endian");
+      refuse(quote(name) + " is not a format of PLY", "use ascii, binary_little_endian or binary_big_endian");
     }
   }
 
@@ -148,7 +148,7 @@ class HeaderParser {
     const std::string_view name = take_word(line);
     const std::string_view word = take_word(line);
     const std::optional<int64_t> count = parse_integer(word);
-    if (!count || *count < 0) refuse(quote(word) + " is no count of rows", "write \"element NAME COUNT\"");
+    if (!count || *count < 0) refuse(quote(word) + " is not a number of rows", "write \"element NAME COUNT\"");
     if (find_named(out_.elements, name) != nullptr) refuse("there are two elements " + quote(name), kExportAgain);
     if (!has_room(out_.elements, "elements")) return;
     out_.elements.push_back(
@@ -184,7 +184,7 @@ class HeaderParser {
   PlyType read_type(std::string_view name) {
     const auto found = std::ranges::find(kTypes, name, &TypeName::name);
     if (found != kTypes.end()) return found->type;
-    refuse(quote(name) + " is no type of numbers", "use char, uchar, short, ushort, int, uint, float or double");
+    refuse(quote(name) + " is not a type of numbers", "use char, uchar, short, ushort, int, uint, float or double");
     return PlyType::kFloat32;
   }
 
@@ -201,8 +201,8 @@ class HeaderParser {
       }
       const uint64_t rows = row_bytes == 0 ? element.row_count : room / row_bytes;
       if (element.row_count > rows) {
-        report_.refuse("the header tells of " + std::to_string(element.row_count) + " rows of " + quote(element.name) +
-                           ", the file has room for " + std::to_string(rows),
+        report_.refuse("the header declares " + std::to_string(element.row_count) + " rows of " + quote(element.name) +
+                           ", but the file has room for " + std::to_string(rows),
                        "", "the file is cut short: copy or export it again");
         return;
       }

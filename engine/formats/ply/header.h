@@ -14,19 +14,19 @@ namespace promin {
 
 enum class PlyType : uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
-/// Bytes of a number in a binary file.
+/// Returns the bytes of a number in a binary file.
 size_t size_of(PlyType type);
 
 struct PlyProperty {
   std::string name = {};
   PlyType type = PlyType::kFloat32;
-  /// Whether a row has a count and that many numbers of `type`.
+  /// Whether each value is a count followed by that many numbers of `type`.
   bool is_list = false;
   PlyType count_type = PlyType::kUint8;
 
-  /// Whether it is what faces and strips have their corners in.
+  /// Returns whether it lists the corners of faces or strips.
   bool lists_vertices() const { return is_list && (name == "vertex_indices" || name == "vertex_index"); }
-  /// Whether it is where faces have texture coordinates of their own, two numbers for each corner.
+  /// Returns whether it lists texture coordinates of faces, two numbers for each corner.
   bool lists_uvs() const { return is_list && name == "texcoord"; }
 };
 
@@ -43,18 +43,18 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   /// In the order of the file.
   std::vector<PlyElement> elements = {};
-  /// What the lines "comment TextureFile NAME" name, as MeshLab writes them.
+  /// The names in lines "comment TextureFile NAME", as MeshLab writes them.
   std::vector<std::string> texture_files = {};
-  /// Where the rows begin.
+  /// Offset of the rows in bytes.
   size_t size_bytes = 0;
   uint64_t line_count = 0;
 
-  /// nullptr where there is none.
+  /// Returns the element of this name, or nullptr.
   const PlyElement* find(std::string_view name) const;
 };
 
-/// Parses the header of a PLY file (Turk 1994), with the types' names of either kind, and holds the counts of rows
-/// against the size of the file. Its lines end as the first does: in \n, \r\n, or \r alone. Problems go to the report.
+/// Parses the header of a PLY file (Turk 1994), with both sets of type names, and checks the numbers of rows against
+/// the size of the file. All lines must end as the first does: in \n, \r\n or \r. Problems go to the report.
 PlyHeader parse_ply_header(std::string_view file, LoadReport& report);
 
 }  // namespace promin

@@ -48,11 +48,11 @@ void warn_about_what_is_ignored(const PlyHeader& header, LoadReport& report) {
     }
   }
   if (are_uvs_there && header.texture_files.empty()) {
-    report.warn("texture coordinates are ignored, as no comment TextureFile names a picture");
+    report.warn("texture coordinates are ignored because no comment TextureFile names a picture");
   }
   if (!are_uvs_there && !header.texture_files.empty()) {
     report.warn("the picture " + quote(header.texture_files.front()) +
-                " is ignored, as there are no texture coordinates");
+                " is ignored because there are no texture coordinates");
   }
 }
 
@@ -68,13 +68,13 @@ bool has_rounded_coordinates(const PlyHeader& header) {
 void check_elements(const PlyHeader& header, LoadReport& report) {
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr) {
-    report.refuse("there is no element \"vertex\"", "", "name a PLY file of a mesh");
+    report.refuse("the file has no element \"vertex\"", "", "name a PLY file that holds a mesh");
     return;
   }
   if (!has_property(*vertices, "x") || !has_property(*vertices, "y") || !has_property(*vertices, "z")) {
     report.refuse("the vertices have no x, y and z", "", "export it with positions");
   }
-  if (vertices->row_count >= kUnused) report.refuse("there are too many vertices", "", "cut the mesh in several");
+  if (vertices->row_count >= kUnused) report.refuse("the file has too many vertices", "", "divide the mesh");
   if (vertices->row_count == 0 || lists_vertices(header.find("face")) || lists_vertices(header.find("tristrips")))
     return;
   report.refuse("the file has " + std::to_string(vertices->row_count) + " vertices but no faces", "",
@@ -187,7 +187,7 @@ class MeshMaker {
   bool is_drawable(std::span<const uint32_t> corners) {
     for (const uint32_t corner : corners) {
       if (is_in_range(dvec3(body_.positions[corner]))) continue;
-      report_.repair({"a face has a vertex coordinate that is no number up to 1e15", "",
+      report_.repair({"a face has a vertex coordinate that is not a number up to 1e15", "",
                       "vertex " + std::to_string(corner), "export the mesh again, in a larger unit of length",
                       "the face is left out"});
       return false;
@@ -231,8 +231,8 @@ class MeshMaker {
   /// A triangle without area is never hit, so any normal will do for it.
   void add_sharp_triangle(const uvec3& places) {
     const uint32_t* corners = &body_.corners[first_corner_];
-    report_.repair({"a face has a normal of no length, or one that is no number", "",
-                    "vertex " + std::to_string(corners[places.x]), "export the mesh again", "the face is drawn sharp"});
+    report_.repair({"a face has a normal that is 0 or not a number", "", "vertex " + std::to_string(corners[places.x]),
+                    "export the mesh again", "the face is shaded flat"});
     const dvec3 a(body_.positions[corners[places.x]]);
     const dvec3 b(body_.positions[corners[places.y]]);
     const dvec3 c(body_.positions[corners[places.z]]);

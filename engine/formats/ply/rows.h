@@ -15,7 +15,7 @@
 
 namespace promin {
 
-/// Takes numbers off the rows of a binary PLY file. Past the end, and after any problem, numbers are 0.
+/// Reads numbers from the rows of a binary PLY file. After the end, and after any problem, numbers are 0.
 template <std::endian kOrder>
 class PlyBinaryRows {
  public:
@@ -46,9 +46,9 @@ class PlyBinaryRows {
     }
   }
 
-  /// No more numbers than this can follow.
+  /// Returns the largest number of values that can follow.
   size_t most_numbers(PlyType type) const { return rest_.size() / size_of(type); }
-  /// What went wrong, if anything did.
+  /// Returns the problem, or an empty string.
   const std::string& problem() const { return problem_; }
   std::string place() const { return {}; }
 
@@ -75,7 +75,7 @@ class PlyBinaryRows {
   std::string problem_;
 };
 
-/// Takes numbers off the rows of a PLY file that is text: a row is a line. As PlyBinaryRows otherwise.
+/// Reads numbers from the rows of a text PLY file, where each row is a line. Otherwise like PlyBinaryRows.
 class PlyTextRows {
  public:
   PlyTextRows(std::string_view body, uint64_t header_lines) : lines_(without_zero_bytes_at_end(body), header_lines) {}
@@ -97,14 +97,14 @@ class PlyTextRows {
     rest_ = {};
   }
 
-  /// A number that may be infinite or none ("nan"), as programs write for what they do not know.
+  /// Reads a number that may be infinite or NaN ("nan"), which programs write for unknown values.
   double take(PlyType type) {
     const double number = take_any(type);
-    if (!is_number_ && problem_.empty()) problem_ = quote(word_) + " is no number";
+    if (!is_number_ && problem_.empty()) problem_ = quote(word_) + " is not a number";
     return number;
   }
 
-  /// The same of any word: NaN where it is no number.
+  /// Does the same for any word; NaN if it is not a number.
   double take_any(PlyType /*type*/) {
     word_ = take_field(rest_);
     if (word_.empty() && problem_.empty()) problem_ = "a row has fewer numbers than its element has properties";

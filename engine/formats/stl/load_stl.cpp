@@ -112,15 +112,16 @@ class FacetColors {
 StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) {
   report.note_rounded_coordinates();
   const FacetColors colors(file, count);
-  if (colors.are_unknown()) report.warn("the bytes behind the facets are no colours, and ignored");
+  if (colors.are_unknown()) report.warn("the bytes after each facet are not colours and are ignored");
   StlSolid solid;
   solid.corners.reserve(3 * count);
   if (colors.exist()) solid.colors.reserve(count);
   for (uint64_t i = 0; i < count; ++i) {
     const auto corners = read_number<std::array<vec3, 3>>(file, kFirstFacet + kFacetBytes * i + kNormalBytes);
     if (!std::ranges::all_of(corners, [](const vec3& p) { return is_in_range(dvec3(p)); })) {
-      report.repair({"a facet has a vertex coordinate that is no number up to 1e15", "", "facet " + std::to_string(i),
-                     "export the mesh again, in a larger unit of length", "the facet is left out"});
+      report.repair({"a facet has a vertex coordinate that is not a number up to 1e15", "",
+                     "facet " + std::to_string(i), "export the mesh again, in a larger unit of length",
+                     "the facet is left out"});
       continue;
     }
     for (const vec3& corner : corners) solid.corners.emplace_back(dvec3(corner) - report.center());
@@ -131,7 +132,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
 
 std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   if (file.size() < kFirstFacet) {
-    report.refuse("the file is no STL", "", "name an STL file, binary or text");
+    report.refuse("the file is not an STL file", "", "name an STL file, binary or text");
     return {};
   }
   uint64_t count = facet_count(file);
@@ -139,16 +140,16 @@ std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   // Who writes to a pipe cannot go back to write the count.
   const bool is_open = count == 0 || count == std::numeric_limits<uint32_t>::max();
   if (is_open && room > 0 && file.size() == kFirstFacet + kFacetBytes * room) {
-    report.repair({"the count of facets was never written", std::to_string(count), "", "export the file again",
-                   "as many are read as the file has room for"});
+    report.repair({"the number of facets was never written", std::to_string(count), "", "export the file again",
+                   "all facets that the file holds are read"});
     count = room;
   }
   if (count > room) {
-    report.refuse("the file tells of " + std::to_string(count) + " facets and has room for " + std::to_string(room), "",
-                  "the file is cut short, or no STL: copy or export it again");
+    report.refuse("the file declares " + std::to_string(count) + " facets, but has room for " + std::to_string(room),
+                  "", "the file is cut short or is not an STL file: copy or export it again");
     return {};
   }
-  if (file.size() > kFirstFacet + kFacetBytes * count) report.warn("bytes behind the last facet are ignored");
+  if (file.size() > kFirstFacet + kFacetBytes * count) report.warn("bytes after the last facet are ignored");
   return {read_facets(file, count, report)};
 }
 

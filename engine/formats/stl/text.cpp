@@ -92,16 +92,16 @@ class StlParser {
   }
 
   void read_vertex() {
-    if (!is_in_facet_) return refuse("a vertex lies in no facet", "export the file again");
+    if (!is_in_facet_) return refuse("a vertex lies outside of facets", "export the file again");
     vec3 corner;
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.take();
       const std::optional<double> number = parse_any_number(word);
-      if (!number) return refuse(quote(word) + " is no number", "give each vertex x y z");
+      if (!number) return refuse(quote(word) + " is not a number", "give each vertex x y z");
       // Written so that NaN fails.
       if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
         is_placed_ = false;
-        repair("a facet has a vertex coordinate that is no number up to 1e15", quote(word), "the facet is left out");
+        repair("a facet has a vertex coordinate that is not a number up to 1e15", quote(word), "the facet is left out");
       }
       corner[i] = static_cast<float>(*number - report_.center()[i]);
     }
@@ -109,7 +109,7 @@ class StlParser {
   }
 
   void end_facet() {
-    if (!is_in_facet_) return refuse("the end of a facet has no begin", "export the file again");
+    if (!is_in_facet_) return refuse("the end of a facet has no beginning", "export the file again");
     is_in_facet_ = false;
     std::vector<vec3>& all = solids_.back().corners;
     if (corners_.size() < 3) {
@@ -119,7 +119,7 @@ class StlParser {
     } else if (is_placed_ && corners_.size() == 3) {
       all.insert(all.end(), corners_.begin(), corners_.end());
     } else if (is_placed_) {
-      repair("a facet has more than 3 corners", std::to_string(corners_.size()), "it is cut in triangles");
+      repair("a facet has more than 3 corners", std::to_string(corners_.size()), "it is divided into triangles");
       for (const uvec3& triangle : triangulate_polygon(corners_)) {
         for (int i = 0; i < 3; ++i) all.push_back(corners_[triangle[i]]);
       }

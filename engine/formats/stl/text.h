@@ -11,7 +11,7 @@
 
 namespace promin {
 
-/// Facets under one name.
+/// The facets of one solid.
 struct StlSolid {
   std::string name = {};
   /// Three corners for each facet; each coordinate is at most 1e15.
@@ -20,12 +20,11 @@ struct StlSolid {
   std::vector<vec3> colors = {};
 };
 
-/// Whether a word is the keyword, which is in lower case; in the file it may have any.
+/// Returns whether a word is the keyword, which is given in lower case; the file may use any case.
 bool is_stl_keyword(std::string_view word, std::string_view keyword);
 
-/// Parses an STL file that is text, whose lines mean nothing but that the name of a solid ends with its line. Facets
-/// without a place are left out, and those of more than three corners cut in triangles. Problems go to the report with
-/// their line.
+/// Parses a text STL file. Line ends matter only after the name of a solid. Facets with invalid positions are left out,
+/// and those of more than three corners are divided into triangles. Problems go to the report with their line.
 std::vector<StlSolid> parse_stl_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

@@ -7,12 +7,12 @@
 #include <span>
 #include <stdexcept>
 
-/// Takes bits off bytes, of each byte the lowest first.
+/// Reads bits from bytes, the lowest bit of each byte first.
 class BitReader {
  public:
   explicit BitReader(std::span<const unsigned char> bytes) : bytes_(bytes) {}
 
-  /// Up to 32 bits as a number whose lowest bit comes first. Throws std::runtime_error past the end.
+  /// Returns up to 32 bits as a number whose lowest bit comes first. Throws std::runtime_error after the end.
   uint32_t take(uint32_t count) {
     if (place_ + count > 8 * bytes_.size()) throw std::runtime_error("its bits end too early");
     uint32_t bits = 0;

@@ -16,7 +16,7 @@ namespace {
 using Bytes = std::span<const unsigned char>;
 
 [[noreturn]] void refuse() {
-  throw std::runtime_error("its BasisLZ data are damaged");
+  throw std::runtime_error("its BasisLZ data is damaged");
 }
 
 constexpr uint32_t kMostBits = 16;

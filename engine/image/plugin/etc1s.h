@@ -5,16 +5,16 @@
 #include <cstdint>
 #include <span>
 
-/// A picture of ETC1S blocks that BasisLZ compresses (KTX 2.0, "BasisLZ Bitstream Specification").
+/// A picture of ETC1S blocks with BasisLZ compression (KTX 2.0, "BasisLZ Bitstream Specification").
 struct Etc1sPicture {
   uint32_t width;
   uint32_t height;
   /// The file's global data of supercompression, and its largest level.
   std::span<const unsigned char> globals;
   std::span<const unsigned char> level;
-  /// Whether the second slice, where there is one, holds green and not alpha.
+  /// Whether the second slice, if there is one, holds green and not alpha.
   bool is_second_green;
 };
 
-/// Fills the pixels, of 4 bytes each, with RGBA from the highest row. Throws std::runtime_error where bits are damaged.
+/// Fills the pixels, of 4 bytes each, with RGBA from the top row. Throws std::runtime_error if the data is damaged.
 void decode_etc1s(const Etc1sPicture& picture, std::span<unsigned char> pixels);

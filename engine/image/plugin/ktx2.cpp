@@ -96,7 +96,7 @@ Header read_header(Bytes file) {
   const auto field = [&](uint64_t index) { return number_at<uint32_t>(file, 12 + 4 * index); };
   const uint32_t vk_format = field(0);
   // Depth, layers and faces.
-  if (field(4) > 1 || field(5) > 1 || field(6) > 1) throw std::runtime_error("it is not a flat picture");
+  if (field(4) > 1 || field(5) > 1 || field(6) > 1) throw std::runtime_error("it is not a two-dimensional picture");
   Header header = {field(2), field(3), 0, {}, field(8)};
   constexpr uint64_t kColorModelAt = 12;
   if (vk_format == 0) header.basis_model = descriptor_byte(file, kColorModelAt);
@@ -140,12 +140,12 @@ Bytes stored_level(Bytes file) {
 std::vector<unsigned char> read_level(Bytes file, const Header& header, uint64_t byte_count) {
   const Bytes stored = stored_level(file);
   if (header.supercompression == 0) {
-    if (stored.size() != byte_count) throw std::runtime_error("its level has another length than its pixels");
+    if (stored.size() != byte_count) throw std::runtime_error("the size of its level does not match its pixels");
     return {stored.begin(), stored.end()};
   }
   std::vector<unsigned char> level(byte_count);
   if (ZSTD_decompress(level.data(), level.size(), stored.data(), stored.size()) != level.size()) {
-    throw std::runtime_error("its Zstandard data are damaged");
+    throw std::runtime_error("its Zstandard data is damaged");
   }
   return level;
 }

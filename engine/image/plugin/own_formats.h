@@ -14,23 +14,24 @@ struct OwnFormat {
   std::string_view name;
   /// Width and height of a file.
   std::pair<uint32_t, uint32_t> (*read_size)(std::span<const unsigned char> file);
-  /// Fills the pixels, of 4 bytes each, with RGBA from the highest row.
+  /// Fills the pixels, of 4 bytes each, with RGBA from the top row.
   void (*read)(std::span<const unsigned char> file, std::span<unsigned char> pixels);
 };
 
-/// "avif", "ktx2" or "webp"; null for any other name.
+/// Returns the format "avif", "ktx2" or "webp"; null for other names.
 const OwnFormat* find_own_format(std::string_view name);
 
-// OpenImageIO multiplies the colours of WebP by their alpha, whatever it is asked for, and so loses those under alpha 0
-// (OpenImageIO#3917): libwebp itself keeps them apart.
+// WebP is read by libwebp, because OpenImageIO always multiplies its colours by alpha and so loses those under alpha 0
+// (OpenImageIO#3917).
 std::pair<uint32_t, uint32_t> read_webp_size(std::span<const unsigned char> file);
 void read_webp(std::span<const unsigned char> file, std::span<unsigned char> pixels);
-/// libwebp's, of 100.
+/// Quality of libwebp, of 100.
 inline constexpr float kWebpQuality = 92.0F;
-/// The file of a picture of three or four bytes a pixel, with loss but for alpha. Throws as OwnFormat's functions.
+/// Returns the WebP file of a picture of three or four bytes per pixel; only alpha is lossless. Throws as OwnFormat's
+/// functions.
 std::vector<unsigned char> make_webp(const unsigned char* pixels, uint32_t width, uint32_t height, uint32_t channels);
 
-// OpenImageIO reads AVIF where it is built with a libheif that does: libavif itself does everywhere.
+// AVIF is read by libavif, because OpenImageIO reads it only if it was built with a suitable libheif.
 std::pair<uint32_t, uint32_t> read_avif_size(std::span<const unsigned char> file);
 void read_avif(std::span<const unsigned char> file, std::span<unsigned char> pixels);
 

@@ -59,7 +59,7 @@ int guard(ProminPicturesMessage* message, const Body& body) noexcept {
   } catch (const std::exception& error) {
     tell(*message, error.what());
   } catch (...) {
-    tell(*message, "unknown failure");
+    tell(*message, "the reason is unknown");
   }
   return PROMIN_PICTURES_FAILED;
 }
@@ -177,7 +177,7 @@ void read_rows(ProminPicturesReader& reader, uint32_t part, uint32_t first_row, 
     const bool is_done =
         OIIO::convert_image(1, spec.width, end - begin, 1, from, type, stride, OIIO::AutoStride, OIIO::AutoStride,
                             values + i, to, value_stride, OIIO::AutoStride, OIIO::AutoStride);
-    if (!is_done) throw std::runtime_error("its numbers are of a kind that is not known");
+    if (!is_done) throw std::runtime_error("its number format is unknown");
     from += type.size();
   }
 }
@@ -308,7 +308,7 @@ int promin_pictures_read_rgba(ProminPicturesReader* reader, unsigned char* pixel
 
 int promin_pictures_read_rgb(ProminPicturesReader* reader, float* pixels, ProminPicturesMessage* message) {
   return guard(message, [&] {
-    if (!reader->input) throw std::runtime_error(std::string(reader->own_format->name) + " has no numbers of light");
+    if (!reader->input) throw std::runtime_error(std::string(reader->own_format->name) + " holds no linear light");
     const OIIO::ImageSpec& spec = reader->input->spec();
     const int first = reader->first_channel;
     const int count = spec.channelnames[static_cast<size_t>(first)] == "Y" ? 1 : 3;

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-/// A Radiance picture whose first row is the highest and whose rows run to the right, whatever order its file has
-/// ("-Y 32 +X 64" is this one, and "+Y 32 +X 64" has the lowest row first), which OpenImageIO passes on as an
-/// attribute. Any other input comes back as it is.
+/// Returns a Radiance picture with its top row first and its rows from left to right, whatever the order in the file
+/// ("-Y 32 +X 64" is this order, and "+Y 32 +X 64" has the bottom row first). OpenImageIO reports the order only as an
+/// attribute. Other inputs are returned unchanged.
 std::unique_ptr<OIIO::ImageInput> make_upright(std::unique_ptr<OIIO::ImageInput> input);

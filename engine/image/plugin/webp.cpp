@@ -34,7 +34,7 @@ std::vector<unsigned char> make_webp(const unsigned char* pixels, uint32_t width
                              static_cast<int>(channels * width), kWebpQuality, &file);
   const std::unique_ptr<uint8_t, void (*)(void*)> owner(file, WebPFree);
   if (size == 0) {
-    throw std::runtime_error("a WebP has sides of at most " + std::to_string(WEBP_MAX_DIMENSION) + " pixels");
+    throw std::runtime_error("the sides of a WebP are limited to " + std::to_string(WEBP_MAX_DIMENSION) + " pixels");
   }
   return {file, file + size};
 }

@@ -6,24 +6,25 @@
 
 namespace promin {
 
-/// The convex hull of two spheres; where one holds the other, that sphere. A transform must keep spheres spheres. Sizes
-/// lie between 1e-22 and 1e15 in the world.
+/// The convex hull of two spheres. If one sphere contains the other, it is that sphere. A transform must map spheres to
+/// spheres. Sizes lie between 1e-22 and 1e15 in the world.
 struct Capsule {
   /// Halfway between the centers of the spheres.
   dvec3 center{0.0};
-  /// From the bottom to the top, of any length but 0.
+  /// Direction from the bottom to the top, of any length except 0.
   dvec3 axis{0.0, 1.0, 0.0};
   /// Distance of the spheres' centers from the middle; it may be 0.
   double half_height = 0.25;
-  /// Radius of the sphere at `center` - half_height along the axis; 0 makes a point, but not both radii are 0.
+  /// Radius of the sphere at `center` - half_height along the axis. It may be 0, which makes a point, but not both
+  /// radii may be 0.
   double radius_bottom = 0.25;
   /// Radius of the other sphere.
   double radius_top = 0.25;
 };
 
 namespace world {
-/// A capsule in the world, in the fp32 numbers that a device sees: bounds on errors are about these. The spheres are
-/// around center -+ axis * half_height.
+/// A capsule in the world in the fp32 numbers that the device uses; error bounds refer to these. The centers of the
+/// spheres are center -+ axis * half_height.
 struct Capsule {
   /// Halfway between the centers of the spheres.
   vec3 center{0.0F};

@@ -6,27 +6,27 @@
 
 namespace promin {
 
-/// A cone or frustum, closed by its disks unless it is open. The radius goes linearly from one end of the axis to the
-/// other; where it is 0 there is an apex. A transform must keep circles around the axis circles. Sizes lie between
+/// A cone or frustum, closed by disks unless it is open. The radius changes linearly from one end of the axis to the
+/// other; an end with radius 0 is an apex. A transform must map circles around the axis to circles. Sizes lie between
 /// 1e-22 and 1e15 in the world.
 struct Cone {
   /// Middle of the axis.
   dvec3 center{0.0};
-  /// From the bottom to the top, of any length but 0.
+  /// Direction from the bottom to the top, of any length except 0.
   dvec3 axis{0.0, 1.0, 0.0};
   /// Distance of the two ends from the middle.
   double half_height = 0.25;
-  /// Radius at `center` - half_height along the axis; 0 or more, but not both radii are 0.
+  /// Radius at `center` - half_height along the axis, 0 or more; not both radii may be 0.
   double radius_bottom = 0.25;
   /// Radius at the other end.
   double radius_top = 0.0;
-  /// Whether it is the side alone, without disks.
+  /// Whether it consists only of the side, without disks.
   bool is_open = false;
 };
 
 namespace world {
-/// A cone in the world, in the fp32 numbers that a device sees: bounds on errors are about these. The disks lie at
-/// center -+ axis * half_height.
+/// A cone in the world in the fp32 numbers that the device uses; error bounds refer to these. The disks lie at center
+/// -+ axis * half_height.
 struct Cone {
   /// Middle of the axis.
   vec3 center{0.0F};
@@ -38,10 +38,10 @@ struct Cone {
   float radius_bottom = 0.25F;
   /// Radius at the other end.
   float radius_top = 0.0F;
-  /// Whether it is the side alone, without disks.
+  /// Whether it consists only of the side, without disks.
   bool is_open = false;
 
-  /// Whether both have the same numbers.
+  /// Returns whether both are equal.
   bool operator==(const Cone&) const = default;
 };
 }  // namespace world

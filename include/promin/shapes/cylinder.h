@@ -6,23 +6,23 @@
 
 namespace promin {
 
-/// A cylinder, closed by two disks unless it is open. A transform must keep circles around the axis circles. Sizes lie
-/// between 1e-22 and 1e15 in the world.
+/// A cylinder, closed by two disks unless it is open. A transform must map circles around the axis to circles. Sizes
+/// lie between 1e-22 and 1e15 in the world.
 struct Cylinder {
   /// Middle of the axis.
   dvec3 center{0.0};
-  /// Along the cylinder, of any length but 0.
+  /// Direction of the axis, of any length except 0.
   dvec3 axis{0.0, 1.0, 0.0};
   /// Distance of the two disks from the middle.
   double half_height = 0.25;
   /// Radius of the disks.
   double radius = 0.25;
-  /// Whether it is the side alone, a tube without disks.
+  /// Whether it consists only of the side: a tube without disks.
   bool is_open = false;
 };
 
 namespace world {
-/// A cylinder in the world, in the fp32 numbers that a device sees: bounds on errors are about these. The disks lie at
+/// A cylinder in the world in the fp32 numbers that the device uses; error bounds refer to these. The disks lie at
 /// center -+ axis * half_height.
 struct Cylinder {
   /// Middle of the axis.
@@ -31,12 +31,12 @@ struct Cylinder {
   vec3 axis{0.0F, 1.0F, 0.0F};
   /// Distance of the two disks from the middle.
   float half_height = 0.25F;
-  /// Radius of both.
+  /// Radius of both disks.
   float radius = 0.25F;
-  /// Whether it is the side alone, a tube without disks.
+  /// Whether it consists only of the side: a tube without disks.
   bool is_open = false;
 
-  /// Whether both have the same numbers.
+  /// Returns whether both are equal.
   bool operator==(const Cylinder&) const = default;
 };
 }  // namespace world

@@ -6,8 +6,7 @@
 
 namespace promin {
 
-/// A solid ball. A transform must scale it alike in all directions. The radius lies between 1e-22 and 1e15 in the
-/// world.
+/// A solid sphere. A transform must scale all directions equally. The radius lies between 1e-22 and 1e15 in the world.
 struct Sphere {
   /// Its middle.
   dvec3 center{0.0};
@@ -16,7 +15,7 @@ struct Sphere {
 };
 
 namespace world {
-/// A sphere in the world, in the fp32 numbers that a device sees: bounds on errors are about these.
+/// A sphere in the world in the fp32 numbers that the device uses; error bounds refer to these.
 struct Sphere {
   /// Its middle.
   vec3 center{0.0F};

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What `open3d.t.geometry.RaycastingScene` does with rays, by promin.
+"""The ray functions of `open3d.t.geometry.RaycastingScene`, implemented by promin.
 
-Open3D itself is not imported: what has `numpy()`, as its Tensors do, is taken, and answers are arrays of NumPy's, or
-Tensors where the program has imported open3d. Of `count_intersections` and `list_intersections` a ray that meets an
-edge or a corner crosses the mesh once."""
+Open3D itself is not imported. Arguments with a method `numpy()`, such as its Tensors, are accepted. Results are NumPy
+arrays, or Tensors if the program has imported open3d. In `count_intersections` and `list_intersections` a ray that hits
+an edge or a corner crosses the mesh once."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from promin._scene import Scene
 
 
 class RaycastingScene:
-    """Meshes and what rays find of them. Rays are (..., 6): origin, direction; answers have the leading shape."""
+    """Meshes to cast rays at. Rays are (..., 6): origin, direction. Results have the leading shape."""
 
     INVALID_ID = 0xFFFFFFFF
-    """geometry_ids and primitive_ids of a miss."""
+    """The geometry_ids and primitive_ids of a miss."""
 
     def __init__(self, nthreads: int = 0, device: Any = None) -> None:
-        """nthreads is ignored, here and below. device: as `promin.Caster` takes it; one of Open3D's is ignored."""
+        """nthreads is ignored, here and below. device: as for `promin.Caster`; a device of Open3D is ignored."""
         self._scene = Scene(center=(0, 0, 0))
         self._device: DeviceLike = None if type(device).__module__.startswith("open3d") else device
         self._caster: Caster | None = None
@@ -45,7 +45,7 @@ class RaycastingScene:
         return number
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
-        """The first hits: t_hit (infinite on a miss), geometry_ids, primitive_ids, primitive_uvs (..., 2),
+        """Returns the first hits: t_hit (infinite on a miss), geometry_ids, primitive_ids, primitive_uvs (..., 2),
         primitive_normals (..., 3)."""
         hits = self._open().cast(_split(rays))
         return {
@@ -57,16 +57,16 @@ class RaycastingScene:
         }
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Any:
-        """Whether anything is hit between tnear and tfar: bool (...)."""
+        """Returns whether anything is hit between tnear and tfar, as bool (...)."""
         return _give(self._open().occluded((*_split(rays), tnear, tfar)))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
-        """How often rays cross the scene: int32 (...)."""
+        """Returns the number of surfaces that each ray crosses, as int32 (...)."""
         return _give(self._open().count(_split(rays)))
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
-        """All crossings: ray_splits (n + 1), where those of each of the n rays begin and the last one's end; ray_ids,
-        t_hit, geometry_ids, primitive_ids (h,), primitive_uvs (h, 2)."""
+        """Returns all crossings: ray_splits (n + 1), where those of each of the n rays begin and those of the last ray
+        end; ray_ids, t_hit, geometry_ids, primitive_ids (h,), primitive_uvs (h, 2)."""
         splits, hits = self._open().list(_split(rays))
         return {
             "ray_splits": _give(splits),
@@ -78,29 +78,29 @@ class RaycastingScene:
         }
 
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> NoReturn:
-        """Not promin's: it traces rays."""
+        """Not supported, because promin only traces rays."""
         raise NotImplementedError("promin traces rays and finds no closest points; use Open3D's own scene for these")
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> NoReturn:
-        """Not promin's: it traces rays."""
+        """Not supported, because promin only traces rays."""
         self.compute_closest_points(query_points)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> NoReturn:
-        """Not promin's: it traces rays."""
+        """Not supported, because promin only traces rays."""
         self.compute_closest_points(query_points)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
-        """1 where points (..., 3) are inside of closed meshes, else 0: float32 (...). One ray each suffices, so
-        nsamples is ignored."""
+        """Returns 1 for points (..., 3) inside of closed meshes, else 0, as float32 (...). One ray per point is enough,
+        so nsamples is ignored."""
         points = to_vectors(_to_numpy(query_points), "query_points")
         counts = self._open().count(points, PROBE)
         return _give((counts % 2).astype(np.float32))
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Any:
-        """Rays of a pinhole camera, (height_px, width_px, 6) float32, through the middles of pixels, with directions
-        that reach the plane at z = 1: either (intrinsic_matrix (3, 3), extrinsic_matrix (4, 4), width_px, height_px),
-        or (fov_deg, center, eye, up, width_px, height_px), where the field of view is horizontal."""
+        """Returns rays of a pinhole camera, (height_px, width_px, 6) float32, through the centres of pixels, with
+        directions that reach the plane z = 1: either (intrinsic_matrix (3, 3), extrinsic_matrix (4, 4), width_px,
+        height_px), or (fov_deg, center, eye, up, width_px, height_px), where the field of view is horizontal."""
         names: tuple[str, ...] = ("intrinsic_matrix", "extrinsic_matrix", "width_px", "height_px")
         if len(args) + len(kwargs) == 4:
             intrinsic, extrinsic, width, height = _arguments(names, args, kwargs)
@@ -121,7 +121,7 @@ class RaycastingScene:
 
     @staticmethod
     def create_rays_lookat(fov_deg: float, center: Any, eye: Any, up: Any, width_px: int, height_px: int) -> Any:
-        """create_rays_pinhole's second form."""
+        """The second form of create_rays_pinhole."""
         return RaycastingScene.create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px)
 
     def _open(self) -> Caster:
@@ -135,7 +135,7 @@ def _to_numpy(value: Any) -> Any:
 
 
 def _give(array: NDArray[Any]) -> Any:
-    """The array, as a Tensor where the program has open3d."""
+    """Returns the array, as a Tensor if the program has imported open3d."""
     array = np.ascontiguousarray(array)
     open3d = sys.modules.get("open3d")
     return array if open3d is None else open3d.core.Tensor.from_numpy(array)
@@ -161,7 +161,7 @@ def _arguments(names: tuple[str, ...], args: tuple[Any, ...], kwargs: dict[str, 
 
 
 def _look_at(center: NDArray[np.float64], eye: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The matrix that takes the world to a camera with x to the right, y down and z along the view."""
+    """Returns the matrix from the world to a camera with x to the right, y down and z in the direction of view."""
     z = center - eye
     z /= np.linalg.norm(z)
     x = np.cross(z, up)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What trimesh's `mesh.ray` does, by promin:
+"""The functions of trimesh's `mesh.ray`, implemented by promin:
 
     mesh.ray = promin.compat.trimesh.RayMeshIntersector(mesh)
 
-Trimesh itself is not imported. All hits come by the rule of `Caster.count`: a ray that meets an edge or a corner of a
+Trimesh itself is not imported. All hits follow the rule of `Caster.count`: a ray that hits an edge or a corner of a
 closed mesh crosses it once."""
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from promin._scene import Scene, meet_planes
 
 
 class RayMeshIntersector:
-    """Rays against one mesh, as `trimesh.ray.ray_pyembree.RayMeshIntersector` and `ray_triangle`'s have it. The mesh
-    has `vertices` (n, 3) and `faces` (m, 3); where it changes, so does the answer."""
+    """Casts rays at one mesh, with the interface of the RayMeshIntersector in `trimesh.ray.ray_pyembree` and
+    `ray_triangle`. The mesh has `vertices` (n, 3) and `faces` (m, 3). Results follow changes of the mesh."""
 
     def __init__(self, mesh: Any, scale_to_box: bool = True, device: DeviceLike = None) -> None:
-        """scale_to_box is ignored: promin needs no scale. device: as `promin.Caster` takes it."""
+        """scale_to_box is ignored: promin needs no scale. device: as for `promin.Caster`."""
         self.mesh = mesh
         self._device = device
         self._made: tuple[object, Caster, NDArray[np.float64]] | None = None
@@ -34,7 +34,7 @@ class RayMeshIntersector:
     def intersects_location(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-        """Where rays hit: locations (h, 3) float64, on the planes of the triangles; index_ray (h,) and index_tri
+        """Returns the hit points: locations (h, 3) float64 on the planes of the triangles, index_ray (h,) and index_tri
         (h,)."""
         triangles, rays, locations = self._intersect(ray_origins, ray_directions, multiple_hits)
         return locations, rays, triangles
@@ -47,24 +47,24 @@ class RayMeshIntersector:
         max_hits: int = 100,
         return_locations: bool = False,
     ) -> Any:
-        """Which triangles rays hit: index_tri (h,), index_ray (h,) and, with return_locations, locations (h, 3); ray by
-        ray, the nearest first, at most max_hits of each."""
+        """Returns the triangles that rays hit: index_tri (h,), index_ray (h,) and, with return_locations, locations (h,
+        3). They are sorted by ray and then by distance, at most max_hits for each ray."""
         triangles, rays, locations = self._intersect(ray_origins, ray_directions, multiple_hits, max_hits)
         return (triangles, rays, locations) if return_locations else (triangles, rays)
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int64]:
-        """The first triangle that each ray hits, -1 where it hits none: (n,)."""
+        """Returns the first triangle that each ray hits, -1 on a miss: (n,)."""
         origins, directions = _check(ray_origins, ray_directions)
         caster, _ = self._caster()
         return np.asarray(caster.cast((origins, directions))["primitive"], np.int64)
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
-        """Whether each ray hits the mesh: bool (n,). The same rays hit as in intersects_first."""
+        """Returns whether each ray hits the mesh, as bool (n,). The same rays hit as in intersects_first."""
         return self.intersects_first(ray_origins, ray_directions) >= 0
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Whether points (n, 3) are inside: bool (n,). Of a closed mesh the parity of the crossings of one ray, which
-        is exact but where the point is within the bound on hits of the surface (docs/accuracy.md)."""
+        """Returns whether points (n, 3) are inside a closed mesh, as bool (n,): the parity of the crossings of one ray.
+        It is exact unless the distance of the point from the surface is within the bound on hits (docs/accuracy.md)."""
         places = to_vectors(points, "points")
         if places.ndim != 2:
             raise UsageError(f"points have the shape {places.shape}; give (n, 3)")
@@ -91,10 +91,10 @@ class RayMeshIntersector:
         return triangles, rays, meet_planes(origins[rays], directions[rays], corners[triangles], along)
 
     def _caster(self) -> tuple[Caster, NDArray[np.float64]]:
-        """What casts on the mesh as it is now, and the corners of its triangles."""
+        """Returns a Caster for the current mesh, and the corners of its triangles."""
         vertices = np.asarray(self.mesh.vertices, np.float64)
         faces = np.asarray(self.mesh.faces).reshape(-1, 3)
-        # Meshes of trimesh's hash what they are, any others where they lie.
+        # Meshes of trimesh are hashed by their content, others by their address.
         hashes: Any = type(self.mesh).__hash__
         key = (vertices.tobytes(), faces.tobytes()) if hashes is object.__hash__ else hash(self.mesh)
         if self._made is None or self._made[0] != key:
@@ -105,7 +105,7 @@ class RayMeshIntersector:
 
 
 def _check(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Both as (n, 3) float64, the directions of length 1."""
+    """Returns both as (n, 3) float64, with directions of length 1."""
     origins = to_vectors(ray_origins, "ray_origins").astype(np.float64)
     directions = to_vectors(ray_directions, "ray_directions").astype(np.float64)
     if origins.shape != directions.shape or origins.ndim != 2:

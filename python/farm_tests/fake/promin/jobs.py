@@ -112,7 +112,7 @@ def create(kind: str, arguments: list[str], folder: str | os.PathLike[str]) -> J
 def open(folder: str | os.PathLike[str]) -> Job:  # noqa: A001 - as promin.jobs has it
     root = Path(folder).absolute()
     if not (root / "job.json").exists():
-        raise InputError(f"there is no job in the folder, {root}; name that of --job")
+        raise InputError(f"there is no job in the folder, {root}; name the folder that was given to --job")
     return Job(root)
 
 
@@ -125,7 +125,7 @@ class Job:
         text = (root / "job.json").read_text()
         self._manifest = json.loads(text)
         if self._manifest.get("fake_job") != 1:
-            raise InputError(f"is a job of another version, {root / 'job.json'}; take another folder")
+            raise InputError(f"the job was made by another version of promin, {root / 'job.json'}; take another folder")
         self._scene = self._manifest["scene"]
         self._root = root
         self.id = hashlib.sha256(text.encode()).hexdigest()
@@ -152,11 +152,11 @@ class Job:
         try:
             header = json.loads(head)
             if header["job"] != self.id:
-                return "bad", "is of another job", b""
+                return "bad", "the piece belongs to another job", b""
             if header["sha256"] != hashlib.sha256(content).hexdigest():
                 return "bad", "is damaged", b""
         except (ValueError, KeyError):
-            return "bad", "is no piece of a job, or cut", b""
+            return "bad", "the file is not a piece of a job, or it is cut short", b""
         return "done", "", content
 
     def state(self, number: int) -> str:
@@ -195,7 +195,7 @@ class Job:
             if not str(output).endswith(endings):
                 raise UsageError(f"an output is none of {', '.join(endings)}, {output}; name it so")
             if len(frames) > 1 and "#" not in Path(output).name:
-                raise UsageError(f"several frames would go to one file, {output}; put #### where their numbers go")
+                raise UsageError(f"several frames would be written to one file, {output}; write #### in its name for the number of a frame")
 
     def merge(self, outputs: list[str], *, allow_mixed: bool = False, frames: Optional[list[int]] = None) -> None:
         for frame in frames or ():
