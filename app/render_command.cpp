@@ -39,6 +39,8 @@ namespace {
 
 /// A picture that takes more than this share of its time limit is late.
 constexpr double kLateShare = 1.2;
+/// With less than this share of the time limit a picture could have used more of it.
+constexpr double kEarlyShare = 0.67;
 
 PictureHeader make_header(const RenderOptions& options, const Scene& scene, const std::optional<uint32_t>& frame,
                           const RunStats& stats) {
@@ -81,6 +83,15 @@ void tell_reached(const RunStats& stats, double limit_s, double taken_s, const C
     const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
     console.note(fmt::format("the picture took {:.1f} s, longer than the limit of {:g} s{}", taken_s, limit_s,
                              is_least ? ": even one sample a pixel takes longer" : ""));
+  }
+  const bool can_refine = !stats.errors.empty() && stats.errors.back().unmet_pixels > 0 &&
+                          stats.view->error_target->max_samples < kMaxRefinedSamples;
+  if (taken_s < kEarlyShare * limit_s && can_refine) {
+    const uint32_t most = stats.view->error_target->max_samples;
+    console.note(
+        fmt::format("the picture ended before the limit, because --max-spp allows {} samples a pixel; "
+                    "--max-spp {} uses more of the time",
+                    most, std::min(4 * most, kMaxRefinedSamples)));
   }
   console.note(describe_reached(stats));
 }

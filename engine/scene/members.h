@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,7 +25,10 @@ namespace promin {
 
 using Names = std::span<const std::string_view>;
 
-inline constexpr std::string_view kLightKindNames[] = {"point", "directional", "spot", "headlight"};
+inline constexpr std::string_view kLightKindNames[] = {
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) #PREFIX,
+#include "promin/kinds/lights.def"
+};
 inline constexpr std::string_view kAttenuationNames[] = {"none", "inverse_square"};
 inline constexpr std::string_view kAlphaModeNames[] = {"opaque", "mask", "blend"};
 inline constexpr std::string_view kProjectionNames[] = {"perspective", "orthographic"};
@@ -50,9 +54,19 @@ using MaterialModel = decltype(Material::model);
 using SkyModel = decltype(Environment::sky);
 
 // Names of alternatives, in their order: of MaterialModel, SkyModel and Geometry.
-inline constexpr std::string_view kModelNames[] = {"phong", "metallic_roughness", "unlit"};
+inline constexpr std::string_view kModelNames[] = {
+#define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) #PREFIX,
+#include "promin/kinds/materials.def"
+};
 inline constexpr std::string_view kSkyNames[] = {"none", "studio", "gradient", "panorama"};
-inline constexpr std::string_view kShapeNames[] = {"mesh", "sphere", "plane", "cylinder", "cone", "box", "capsule"};
+inline constexpr std::string_view kShapeNames[] = {
+    "mesh",
+#define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) #PREFIX,
+#include "promin/kinds/primitives.def"
+};
+static_assert(std::size(kModelNames) == std::variant_size_v<MaterialModel>);
+static_assert(std::size(kSkyNames) == std::variant_size_v<SkyModel>);
+static_assert(std::size(kShapeNames) == std::variant_size_v<Geometry>);
 
 /// Calls the visitor with members and their names, which are given in one text separated by ", ".
 template <typename Visitor, typename... Members>

@@ -24,7 +24,13 @@ namespace nb = nanobind;
 namespace promin::python {
 namespace {
 
-using Shape = std::variant<Sphere, Plane, Cylinder, Cone, Box, Capsule>;
+template <typename Geometries>
+struct WithoutMesh;
+template <typename... Shapes>
+struct WithoutMesh<std::variant<Mesh, Shapes...>> {
+  using Type = std::variant<Shapes...>;
+};
+using Shape = WithoutMesh<Geometry>::Type;
 
 template <int N, typename T>
 using Vec = glm::vec<N, T, glm::defaultp>;
@@ -265,7 +271,6 @@ RenderMode read_mode(const nb::dict& record) {
 
 Geometry read_shape(const std::string& kind, const nb::dict& record) {
   Shape shape;
-  // A mesh, the first kind of geometry, is none.
   read_kind(shape, Names(kShapeNames).subspan(1), kind, "shape", record);
   return std::visit([](const auto& one) -> Geometry { return one; }, shape);
 }
