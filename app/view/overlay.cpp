@@ -205,7 +205,20 @@ void show_files(const OverlayContent& content, OverlayAnswer& answer) {
                                       ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
+/// Calls `use` with what keys and pointer are called, and with what they do.
+template <typename Use>
+void for_each_help(const Use& use) {
+  for (const PointerBinding& binding : pointer_bindings()) use(binding.name, binding.effect);
+  for (const KeyBinding& binding : key_bindings()) {
+    if (*binding.name != '\0') use(binding.name, binding.effect);
+  }
+}
+
 }  // namespace
+
+float overlay_margin() {
+  return scaled(kMargin);
+}
 
 void FrameStatistics::add(const FinishedFrame& frame) {
   // A frame that traces nothing has no rate.
@@ -242,7 +255,7 @@ void scale_overlay(const OverlayScale& scale) {
 
 OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   OverlayAnswer answer;
-  ImGui::SetNextWindowPos(ImVec2(scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowPos(ImVec2(overlay_margin(), overlay_margin()), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize(ImVec2(scaled(kPanelWidth), 0.0F));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("promin  (H: help, Tab: hide)", nullptr,
@@ -260,26 +273,37 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   ImGui::PopItemWidth();
   ImGui::PopTextWrapPos();
   answer.height = ImGui::GetCursorPosY();
+  const auto share = [](const ImVec2& place) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    return dvec2(place.x / window.x, place.y / window.y);
+  };
+  answer.area.lo = share(ImGui::GetWindowPos());
+  answer.area.hi = answer.area.lo + share(ImGui::GetWindowSize());
   ImGui::End();
   return answer;
 }
 
 void show_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x - scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver,
-                          ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(size.x - overlay_margin(), overlay_margin()), ImGuiCond_Appearing, ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(), ImVec2(size.x, size.y - 2.0F * overlay_margin()));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-  const auto show_row = [](const char* name, const char* effect) {
+  for_each_help([](const char* name, const char* effect) {
     ImGui::TextUnformatted(name);
     ImGui::SameLine(scaled(kEffectColumn));
     ImGui::TextUnformatted(effect);
-  };
-  for (const PointerBinding& binding : pointer_bindings()) show_row(binding.name, binding.effect);
-  for (const KeyBinding& binding : key_bindings()) {
-    if (*binding.name != '\0') show_row(binding.name, binding.effect);
-  }
+  });
   ImGui::End();
+}
+
+bool has_room_beside_help() {
+  float text = 0.0F;
+  for_each_help(
+      [&](const char* /*name*/, const char* effect) { text = std::max(text, ImGui::CalcTextSize(effect).x); });
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float help = scaled(kEffectColumn) + text + style.WindowPadding.x + style.ScrollbarSize;
+  return scaled(kPanelWidth) + help + 3.0F * overlay_margin() <= ImGui::GetIO().DisplaySize.x;
 }
 
 }  // namespace promin::app

@@ -12,6 +12,7 @@
 #include "view/finished_frame.h"
 #include "view/overlay_scale.h"
 #include "view/scene_preparer.h"
+#include "view/screen_cover.h"
 
 namespace promin::app {
 
@@ -80,6 +81,9 @@ struct OverlayContent {
   PathEntry* entry = nullptr;
 };
 
+/// The distance that panels keep from the window's edges at first, in the interface's units.
+float overlay_margin();
+
 /// Makes ImGui's fonts and sizes anew; not within a frame.
 void scale_overlay(const OverlayScale& scale);
 
@@ -93,6 +97,8 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the path is typed.
   bool has_typed = false;
+  /// Where the panel is.
+  WindowArea area;
   /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.
   float height = 0.0F;
 };
@@ -100,6 +106,8 @@ struct OverlayAnswer {
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.
 OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches);
 
-/// Shows what keys and pointer do.
+/// Shows what keys and pointer do, at the right edge.
 void show_help();
+/// Whether that leaves the panel free at the left edge.
+bool has_room_beside_help();
 }  // namespace promin::app
