@@ -497,6 +497,27 @@ def opens_and_saves_by_dialog(bin_folder, scenes, folder):
         session.quit()
 
 
+def opens_what_is_dropped(bin_folder, scenes, folder):
+    box = folder / "a box.gltf"
+    shutil.copy(scenes / "box.gltf", box)
+    session = Session(bin_folder, scenes, folder, files=("sphere.gltf",))
+    with session as viewer:
+        viewer.press("Tab", "p")
+        expect("sphere.gltf" in session.print_command(), "another scene than the first")
+        viewer.drop(box)
+        wait_for(lambda: viewer.run_xdotool("search", "--name", "^a box.gltf - promin$").stdout, "title", 60)
+        wait_for(lambda: box.name in session.print_command(), "dropped scene", 60)
+        session.expect_shown(1, f"'{box}'")
+
+        # What is no scene is named, and the picture stays.
+        text = folder / "words.txt"
+        text.write_text("not a scene")
+        viewer.drop(text)
+        viewer.wait_for_line("warning: .*words.txt", 1, "sentence")
+        session.expect_shown(2, f"'{box}'")
+        session.quit()
+
+
 def turns_the_light(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, "--light-rotation", "10", files=("ply_faces.ply", "ply_checker.png"))
     with session as viewer:
