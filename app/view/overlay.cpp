@@ -9,8 +9,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "font.h"
+#include "view/imgui_renderer.h"
 #include "view/keys.h"
 
 namespace promin::app {
@@ -59,10 +61,10 @@ std::string describe_picture(const ProgressivePicture& picture) {
   if (!shown) return "the first picture comes";
   if (shown->size != picture.full_size()) return "coarse while it moves";
   if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
-  const std::string error = fmt::format("1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
-  if (!picture.is_settled()) return fmt::format("off by {} at most, sharpening", error);
-  if (shown->error->unmet_pixels == 0) return fmt::format("done: off by {} at most", error);
-  return fmt::format("done: off by {}, {} pixels by more", error, shown->error->unmet_pixels);
+  const std::string accuracy = fmt::format("accurate to 1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
+  if (!picture.is_settled()) return accuracy + ", sharpening";
+  if (shown->error->unmet_pixels == 0) return "done: " + accuracy;
+  return fmt::format("done: {} but for {} pixels", accuracy, shown->error->unmet_pixels);
 }
 
 void show_state(const OverlayContent& content) {
@@ -71,8 +73,13 @@ void show_state(const OverlayContent& content) {
   } else if (content.picture != nullptr) {
     show_text("{}", describe_picture(*content.picture));
   }
-  const double done = content.picture != nullptr ? content.picture->fraction_done() : 0.0;
+  // What is awaited has no share that is done.
+  const bool has_share = content.picture != nullptr && content.awaited.empty();
+  const double done = has_share ? content.picture->fraction_done() : 0.0;
   ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0F, scaled(kBarHeight)), "");
+}
+
+void show_message(const OverlayContent& content) {
   if (content.is_failure) ImGui::PushStyleColor(ImGuiCol_Text, kFailureColor);
   if (!content.message.empty()) show_text("{}", content.message);
   if (content.is_failure) ImGui::PopStyleColor();
@@ -201,8 +208,10 @@ void show_files(const OverlayContent& content, OverlayAnswer& answer) {
   ImGui::EndDisabled();
   if (content.entry == nullptr) return;
   const char* label = content.entry->use == FileUse::kOpen ? "open" : "save as";
-  answer.has_typed = ImGui::InputText(label, content.entry->text.data(), content.entry->text.size(),
-                                      ImGuiInputTextFlags_EnterReturnsTrue);
+  if (std::exchange(content.entry->is_new, false)) ImGui::SetKeyboardFocusHere();
+  answer.has_typed = ImGui::InputTextWithHint(label, "a path, then Enter", content.entry->text.data(),
+                                              content.entry->text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  answer.gives_up = !answer.has_typed && ImGui::IsItemDeactivated() && is_escape_pressed();
 }
 
 /// Calls `use` with what keys and pointer are called, and with what they do.
@@ -264,6 +273,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   ImGui::PushItemWidth(scaled(kFieldWidth));
   show_state(content);
   show_files(content, answer);
+  show_message(content);
   if (content.scene != nullptr) {
     ImGui::Separator();
     show_switches(content, switches);

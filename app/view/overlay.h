@@ -56,6 +56,8 @@ struct Switches {
 struct PathEntry {
   FileUse use = FileUse::kOpen;
   std::array<char, 4096> text{};
+  /// Whether it has not been shown yet. Then keys go to it.
+  bool is_new = true;
 };
 
 /// What else the overlay shows.
@@ -97,6 +99,8 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the path is typed.
   bool has_typed = false;
+  /// Whether the user types none after all.
+  bool gives_up = false;
   /// Where the panel is.
   WindowArea area;
   /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.

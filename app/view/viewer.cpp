@@ -492,6 +492,7 @@ void Viewer::build_overlay() {
     panel = answer.area;
     if (answer.asked) ask_for_file(*answer.asked);
     if (answer.has_typed) take_file(path_entry_->use, path_entry_->text.data());
+    if (answer.gives_up) path_entry_.reset();
     if (answer.camera) control_.place(*answer.camera);
     if (answer.speed) control_.set_speed(*answer.speed);
   }
