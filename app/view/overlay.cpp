@@ -59,7 +59,7 @@ void show_times(const OverlayContent& content) {
 std::string describe_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
   if (!shown) return "the first picture comes";
-  if (shown->size != picture.full_size()) return "coarse while it moves";
+  if (shown->size != picture.full_size()) return "coarse so far";
   if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
   const std::string accuracy = fmt::format("accurate to 1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
   if (!picture.is_settled()) return accuracy + ", sharpening";

@@ -461,6 +461,7 @@ void Viewer::draw() {
   next_draw_s_ = Window::now() + kDrawInterval;
   --frames_to_draw_;
   build_overlay();
+  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   swapchain_.begin_drawing(*commands, frames_.image());
   display_.record_drawing(*commands, swapchain_.size());
   imgui_->record(*commands);
