@@ -296,7 +296,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
 void show_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(size.x - overlay_margin(), overlay_margin()), ImGuiCond_Appearing, ImVec2(1.0F, 0.0F));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(), ImVec2(size.x, size.y - 2.0F * overlay_margin()));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(), ImVec2(size.x, std::max(0.0F, size.y - 2.0F * overlay_margin())));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
   for_each_help([](const char* name, const char* effect) {

@@ -17,7 +17,7 @@ namespace promin::app {
 namespace {
 
 /// The share of the window's width that the panel takes at most.
-constexpr float kPanelShare = 0.4F;
+constexpr double kPanelShare = 0.4;
 constexpr ImU32 kPixelColor = IM_COL32(255, 255, 255, 220);
 /// How far a ray that hits nothing is drawn, in the way of the camera's ray.
 constexpr float kMissShare = 0.5F;
@@ -171,6 +171,22 @@ ScreenCover find_costs(const ExplainedPixel& explained, const FreeCamera& camera
   return cover;
 }
 
+/// Shows the tree in the current panel. Returns the size of a panel that it fits into.
+dvec2 show_tree(const ExplainedPixel& explained, const DisplayTransform& display) {
+  ImGui::BeginGroup();
+  ExplanationTree(explained, display).show();
+  ImGui::EndGroup();
+  const dvec2 padding = to_glm(ImGui::GetStyle().WindowPadding);
+  return to_glm(ImGui::GetItemRectSize()) + 2.0 * padding + dvec2(0.0, ImGui::GetFrameHeight());
+}
+
+/// Moves the current panel up where a branch that was opened takes it over the lower edge.
+void stay_within(const ImVec2& window) {
+  const float margin = overlay_margin();
+  const float lowest = std::max(window.y - margin - ImGui::GetWindowHeight(), margin);
+  if (ImGui::GetWindowPos().y > lowest) ImGui::SetWindowPos(ImVec2(ImGui::GetWindowPos().x, lowest));
+}
+
 }  // namespace
 
 void ExplanationPanel::open(ExplainedPixel explained) {
@@ -185,31 +201,23 @@ void ExplanationPanel::show(const Camera& pose, const DisplayTransform& display,
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   draw_rays(*explained_, camera, window);
   if (std::exchange(window_, to_glm(window)) != to_glm(window)) frames_to_place_ = kFramesToPlace;
-  const float margin = overlay_margin();
   if (frames_to_place_ > 0) {
     --frames_to_place_;
     const ScreenCover costs = find_costs(*explained_, camera, window_.x / window_.y, other_panel);
-    ImGui::SetNextWindowPos(to_imgui(choose_corner(costs, size_ / window_, double{margin} / window_).lo * window_));
+    const dvec2 margin = double{overlay_margin()} / window_;
+    ImGui::SetNextWindowPos(to_imgui(choose_corner(costs, size_ / window_, margin).lo * window_));
   }
-  const float title_width = ImGui::CalcTextSize(explained_->title.c_str()).x + 4.0F * ImGui::GetFrameHeight();
-  const ImVec2 most(std::max(kPanelShare * window.x, title_width), window.y - 2.0F * margin);
-  ImGui::SetNextWindowSizeConstraints(ImVec2(title_width, 0.0F), most);
+  const double title_width = double{ImGui::CalcTextSize(explained_->title.c_str()).x + 4.0F * ImGui::GetFrameHeight()};
+  const dvec2 least(title_width, ImGui::GetFrameHeight());
+  const dvec2 most = glm::max(least, {kPanelShare * window_.x, window_.y - 2.0 * overlay_margin()});
+  ImGui::SetNextWindowSizeConstraints(to_imgui(least), to_imgui(most));
   ImGui::SetNextWindowBgAlpha(0.75F);
   bool is_open = true;
   ImGui::Begin(
       (explained_->title + "###explanation").c_str(), &is_open,
       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::BeginGroup();
-  ExplanationTree(*explained_, display).show();
-  ImGui::EndGroup();
-  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
-  const dvec2 text = to_glm(ImGui::GetItemRectSize()) + 2.0 * to_glm(padding) + dvec2(0.0, ImGui::GetFrameHeight());
-  size_ = glm::clamp(text, dvec2(title_width, 0.0), to_glm(most));
-  // A branch that is opened may take it over the lower edge.
-  const float highest = window.y - margin - ImGui::GetWindowHeight();
-  if (ImGui::GetWindowPos().y > std::max(highest, margin)) {
-    ImGui::SetWindowPos(ImVec2(ImGui::GetWindowPos().x, std::max(highest, margin)));
-  }
+  size_ = glm::clamp(show_tree(*explained_, display), least, most);
+  stay_within(window);
   ImGui::End();
   if (!is_open) explained_.reset();
 }

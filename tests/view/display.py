@@ -96,7 +96,8 @@ class FileManager(Client):
     def __init__(self, display):
         super().__init__(display)
         root = ctypes.c_ulong(self.x11.XDefaultRootWindow(self.server))
-        self.window = self.x11.XCreateSimpleWindow(self.server, root, 0, 0, 1, 1, 0, ctypes.c_ulong(0), ctypes.c_ulong(0))
+        black = ctypes.c_ulong(0)
+        self.window = self.x11.XCreateSimpleWindow(self.server, root, 0, 0, 1, 1, 0, black, black)
         self.selection = self.atom("XdndSelection")
         self.list_type = self.atom("text/uri-list")
 

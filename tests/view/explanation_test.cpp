@@ -149,6 +149,13 @@ TEST_F(ExplanationPanelTest, ScrollsWhereItDoesNotFit) {
   EXPECT_LE(area.hi.y, 720.0);
 }
 
+TEST_F(ExplanationPanelTest, StandsInTheSmallestWindow) {
+  ImGui::GetIO().DisplaySize = ImVec2(8.0F, 8.0F);
+  panel_.open(explain(0.0F, 60));
+  show();
+  EXPECT_TRUE(panel_.is_open());
+}
+
 TEST_F(ExplanationPanelTest, HelpNeedsRoomBesideThePanel) {
   ImGui::NewFrame();
   EXPECT_TRUE(has_room_beside_help());
