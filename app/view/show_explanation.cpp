@@ -19,6 +19,8 @@ namespace {
 /// The share of the window's width that the panel takes at most.
 constexpr double kPanelShare = 0.4;
 constexpr ImU32 kPixelColor = IM_COL32(255, 255, 255, 220);
+/// Rays that bring less than this share of what they see are closed at first.
+constexpr float kLeastOpenWeight = 0.05F;
 /// How far a ray that hits nothing is drawn, in the way of the camera's ray.
 constexpr float kMissShare = 0.5F;
 
@@ -61,17 +63,17 @@ class ExplanationTree {
     ImGui::TextUnformatted(text.c_str());
   }
 
+  static float weight_of(const ExplainedRay& ray) { return std::max({ray.weight.x, ray.weight.y, ray.weight.z}); }
+
   std::string describe(const ExplainedRay& ray) const {
     static constexpr std::array kNames = {"the camera sees", "mirrored:", "refracted:", "behind it:"};
     std::string text = kNames[static_cast<size_t>(ray.kind)];
-    if (ray.kind != RayKind::kCamera) {
-      const float weight = std::max({ray.weight.x, ray.weight.y, ray.weight.z});
-      text += fmt::format(" {:.3g} % of", 100.0F * weight);
-    }
+    if (ray.kind != RayKind::kCamera) text += fmt::format(" {:.3g} % of", 100.0F * weight_of(ray));
     if (ray.hit.object < 0) return text + " the background";
     const auto object = static_cast<uint32_t>(ray.hit.object);
-    return text + fmt::format(" {}, {}", name_or(scene_.objects[object].name, "object", object),
-                              name_or(scene_.materials[ray.material].name, "material", ray.material));
+    const std::string name = name_or(scene_.objects[object].name, "object", object);
+    const std::string material = name_or(scene_.materials[ray.material].name, "material", ray.material);
+    return text + " " + name + (material == name ? "" : ", " + material);
   }
 
   void show_source(const ExplainedSource& source) const {
@@ -86,7 +88,9 @@ class ExplanationTree {
   void show_ray(const ExplainedSample& sample, uint32_t index) const {
     const ExplainedRay& ray = sample.rays[index];
     ImGui::PushID(static_cast<int>(index));
-    const bool is_open = ImGui::TreeNodeEx("ray", ImGuiTreeNodeFlags_DefaultOpen, "%s", describe(ray).c_str());
+    const bool opens = weight_of(ray) >= kLeastOpenWeight;
+    const bool is_open = ImGui::TreeNodeEx("ray", opens ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None,
+                                           "%s", describe(ray).c_str());
     if (is_open) {
       show_row(ray.hit.object < 0 ? "its light" : "surroundings and own light", ray.own);
       for (const ExplainedSource& source : ray.sources) show_source(source);

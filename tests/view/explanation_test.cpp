@@ -93,7 +93,10 @@ class ExplanationPanelTest : public testing::Test {
     const auto scene = std::make_shared<const Scene>(make_scene(right));
     ExplainedSample sample;
     sample.rays.resize(ray_count);
-    for (ExplainedRay& ray : sample.rays) ray.hit.object = 0;
+    for (ExplainedRay& ray : sample.rays) {
+      ray.hit.object = 0;
+      ray.kind = &ray == &sample.rays.front() ? RayKind::kCamera : RayKind::kReflection;
+    }
     ExplainedPixel pixel{.title = "a pixel", .explanation = {}, .scene = scene, .cover = {}};
     pixel.explanation.samples.push_back(sample);
     pixel.cover = find_cover(*scene, camera(), kAspectRatio);
@@ -147,6 +150,16 @@ TEST_F(ExplanationPanelTest, ScrollsWhereItDoesNotFit) {
   EXPECT_GT(area.hi.y - area.lo.y, 600.0);
   EXPECT_GE(area.lo.y, 0.0);
   EXPECT_LE(area.hi.y, 720.0);
+}
+
+TEST_F(ExplanationPanelTest, ClosesRaysOfLittleWeight) {
+  ExplainedPixel pixel = explain(0.0F, 30);
+  for (ExplainedRay& ray : pixel.explanation.samples.front().rays) {
+    if (ray.kind != RayKind::kCamera) ray.weight = vec3(0.01F);
+  }
+  panel_.open(pixel);
+  const WindowArea area = show();
+  EXPECT_LT(area.hi.y - area.lo.y, 34.0F * ImGui::GetTextLineHeightWithSpacing());
 }
 
 TEST_F(ExplanationPanelTest, StandsInTheSmallestWindow) {
