@@ -41,6 +41,14 @@ void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 
 }  // namespace
 
+bool is_escape_pressed() {
+#if IMGUI_VERSION_NUM >= 18700
+  return ImGui::IsKeyPressed(ImGuiKey_Escape);
+#else
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+#endif
+}
+
 ImguiRenderer::ImguiRenderer(const gpu::Device& device, Window& window, const Swapchain& swapchain)
     : device_(&device),
       window_(&window),

@@ -7,6 +7,9 @@
 
 namespace promin::app {
 
+/// Whether Escape goes down in this frame of ImGui.
+bool is_escape_pressed();
+
 /// Dear ImGui for a window: its context and its backends of GLFW and Vulkan. The one place that knows its versions.
 class ImguiRenderer {
  public:

@@ -9,8 +9,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "font.h"
+#include "view/imgui_renderer.h"
 #include "view/keys.h"
 
 namespace promin::app {
@@ -57,12 +59,12 @@ void show_times(const OverlayContent& content) {
 std::string describe_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
   if (!shown) return "making the first picture";
-  if (shown->size != picture.full_size()) return "coarse while moving";
+  if (shown->size != picture.full_size()) return "coarse so far";
   if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
-  const std::string error = fmt::format("1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
-  if (!picture.is_settled()) return fmt::format("refining: off by at most {}", error);
-  if (shown->error->unmet_pixels == 0) return fmt::format("done: off by at most {}", error);
-  return fmt::format("done: off by {}, {} pixels by more", error, shown->error->unmet_pixels);
+  const std::string accuracy = fmt::format("accurate to 1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
+  if (!picture.is_settled()) return accuracy + ", sharpening";
+  if (shown->error->unmet_pixels == 0) return "done: " + accuracy;
+  return fmt::format("done: {} but for {} pixels", accuracy, shown->error->unmet_pixels);
 }
 
 void show_state(const OverlayContent& content) {
@@ -71,8 +73,13 @@ void show_state(const OverlayContent& content) {
   } else if (content.picture != nullptr) {
     show_text("{}", describe_picture(*content.picture));
   }
-  const double done = content.picture != nullptr ? content.picture->fraction_done() : 0.0;
+  // What is awaited has no share that is done.
+  const bool has_share = content.picture != nullptr && content.awaited.empty();
+  const double done = has_share ? content.picture->fraction_done() : 0.0;
   ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0F, scaled(kBarHeight)), "");
+}
+
+void show_message(const OverlayContent& content) {
   if (content.is_failure) ImGui::PushStyleColor(ImGuiCol_Text, kFailureColor);
   if (!content.message.empty()) show_text("{}", content.message);
   if (content.is_failure) ImGui::PopStyleColor();
@@ -201,11 +208,26 @@ void show_files(const OverlayContent& content, OverlayAnswer& answer) {
   ImGui::EndDisabled();
   if (content.entry == nullptr) return;
   const char* label = content.entry->use == FileUse::kOpen ? "open" : "save as";
-  answer.has_typed = ImGui::InputText(label, content.entry->text.data(), content.entry->text.size(),
-                                      ImGuiInputTextFlags_EnterReturnsTrue);
+  if (std::exchange(content.entry->is_new, false)) ImGui::SetKeyboardFocusHere();
+  answer.has_typed = ImGui::InputTextWithHint(label, "a path, then Enter", content.entry->text.data(),
+                                              content.entry->text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  answer.gives_up = !answer.has_typed && ImGui::IsItemDeactivated() && is_escape_pressed();
+}
+
+/// Calls `use` with what keys and pointer are called, and with what they do.
+template <typename Use>
+void for_each_help(const Use& use) {
+  for (const PointerBinding& binding : pointer_bindings()) use(binding.name, binding.effect);
+  for (const KeyBinding& binding : key_bindings()) {
+    if (*binding.name != '\0') use(binding.name, binding.effect);
+  }
 }
 
 }  // namespace
+
+float overlay_margin() {
+  return scaled(kMargin);
+}
 
 void FrameStatistics::add(const FinishedFrame& frame) {
   // A frame that traces nothing has no rate.
@@ -242,7 +264,7 @@ void scale_overlay(const OverlayScale& scale) {
 
 OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   OverlayAnswer answer;
-  ImGui::SetNextWindowPos(ImVec2(scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowPos(ImVec2(overlay_margin(), overlay_margin()), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize(ImVec2(scaled(kPanelWidth), 0.0F));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("promin  (H: help, Tab: hide)", nullptr,
@@ -251,6 +273,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   ImGui::PushItemWidth(scaled(kFieldWidth));
   show_state(content);
   show_files(content, answer);
+  show_message(content);
   if (content.scene != nullptr) {
     ImGui::Separator();
     show_switches(content, switches);
@@ -260,26 +283,37 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   ImGui::PopItemWidth();
   ImGui::PopTextWrapPos();
   answer.height = ImGui::GetCursorPosY();
+  const auto share = [](const ImVec2& place) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    return dvec2(place.x / window.x, place.y / window.y);
+  };
+  answer.area.lo = share(ImGui::GetWindowPos());
+  answer.area.hi = answer.area.lo + share(ImGui::GetWindowSize());
   ImGui::End();
   return answer;
 }
 
 void show_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x - scaled(kMargin), scaled(kMargin)), ImGuiCond_FirstUseEver,
-                          ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(size.x - overlay_margin(), overlay_margin()), ImGuiCond_Appearing, ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(), ImVec2(size.x, std::max(0.0F, size.y - 2.0F * overlay_margin())));
   ImGui::SetNextWindowBgAlpha(0.75F);
   ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-  const auto show_row = [](const char* name, const char* effect) {
+  for_each_help([](const char* name, const char* effect) {
     ImGui::TextUnformatted(name);
     ImGui::SameLine(scaled(kEffectColumn));
     ImGui::TextUnformatted(effect);
-  };
-  for (const PointerBinding& binding : pointer_bindings()) show_row(binding.name, binding.effect);
-  for (const KeyBinding& binding : key_bindings()) {
-    if (*binding.name != '\0') show_row(binding.name, binding.effect);
-  }
+  });
   ImGui::End();
+}
+
+bool has_room_beside_help() {
+  float text = 0.0F;
+  for_each_help(
+      [&](const char* /*name*/, const char* effect) { text = std::max(text, ImGui::CalcTextSize(effect).x); });
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float help = scaled(kEffectColumn) + text + style.WindowPadding.x + style.ScrollbarSize;
+  return scaled(kPanelWidth) + help + 3.0F * overlay_margin() <= ImGui::GetIO().DisplaySize.x;
 }
 
 }  // namespace promin::app

@@ -12,6 +12,7 @@
 #include "view/finished_frame.h"
 #include "view/overlay_scale.h"
 #include "view/scene_preparer.h"
+#include "view/screen_cover.h"
 
 namespace promin::app {
 
@@ -55,6 +56,8 @@ struct Switches {
 struct PathEntry {
   FileUse use = FileUse::kOpen;
   std::array<char, 4096> text{};
+  /// Whether it has not been shown yet. Then keys go to it.
+  bool is_new = true;
 };
 
 /// What else the overlay shows.
@@ -80,6 +83,9 @@ struct OverlayContent {
   PathEntry* entry = nullptr;
 };
 
+/// The distance that panels keep from the window's edges at first, in the interface's units.
+float overlay_margin();
+
 /// Makes ImGui's fonts and sizes anew; not within a frame.
 void scale_overlay(const OverlayScale& scale);
 
@@ -93,6 +99,10 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the path is typed.
   bool has_typed = false;
+  /// Whether the user types none after all.
+  bool gives_up = false;
+  /// Where the panel is.
+  WindowArea area;
   /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.
   float height = 0.0F;
 };
@@ -100,6 +110,8 @@ struct OverlayAnswer {
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.
 OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches);
 
-/// Shows what keys and pointer do.
+/// Shows what keys and pointer do, at the right edge.
 void show_help();
+/// Whether that leaves the panel free at the left edge.
+bool has_room_beside_help();
 }  // namespace promin::app

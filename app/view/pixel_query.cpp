@@ -33,7 +33,8 @@ void PixelQuery::ask_why(std::shared_ptr<const ShownScene> scene, const View& vi
   if (explained_.is_busy()) return;
   explained_.start([place = place_for(scene), scene, view, pixel] {
     return ExplainedPixel{fmt::format("pixel {}, {} at 1 spp", pixel.x, pixel.y), explain(*place, *scene, view, pixel),
-                          scene->scene};
+                          scene->scene,
+                          find_cover(*scene->scene, view.camera, double(view.size.x) / double(view.size.y))};
   });
 }
 

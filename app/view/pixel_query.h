@@ -10,6 +10,7 @@
 #include "promin/explain.h"
 #include "view/background.h"
 #include "view/scene_preparer.h"
+#include "view/screen_cover.h"
 
 namespace promin::app {
 
@@ -19,6 +20,8 @@ struct ExplainedPixel {
   Explanation explanation;
   /// The scene that it is of.
   std::shared_ptr<const Scene> scene;
+  /// What the view shows of it.
+  ScreenCover cover;
 };
 
 /// Traces single pixels of a shown scene beside its picture, each question on a thread of its own.

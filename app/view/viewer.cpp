@@ -15,7 +15,6 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "run_program.h"
-#include "view/show_explanation.h"
 #include "view_setup.h"
 
 namespace promin::app {
@@ -287,7 +286,7 @@ void Viewer::show_picture(ReadyPicture ready) {
   const bool is_first = !scene_;
   const bool is_new = scene_ && scene_->scene != ready.scene->scene;
   if (is_new && scene_->scene != opened_.scene) move_cameras(scene_->scene->center - ready.scene->scene->center);
-  if (scene_ != ready.scene) explained_.reset();
+  if (scene_ != ready.scene) explanation_.close();
   if (traced_) retired_.push_back(std::move(traced_));
   traced_ = std::move(ready.picture);
   scene_ = std::move(ready.scene);
@@ -318,9 +317,9 @@ void Viewer::move_cameras(const dvec3& offset) {
 void Viewer::update_answers() {
   try {
     if (std::optional<ExplainedPixel> answer = query_.take_explained()) {
-      explained_ = std::move(*answer);
-      console_.detail(fmt::format("explained: {}; {} keys pressed before", explained_->title, window_.key_count()));
-      console_.details(explain_text(explained_->explanation, *explained_->scene));
+      console_.detail(fmt::format("explained: {}; {} keys pressed before", answer->title, window_.key_count()));
+      console_.details(explain_text(answer->explanation, *answer->scene));
+      explanation_.open(std::move(*answer));
       draw_again();
     }
     if (const std::optional<std::optional<dvec3>> point = query_.take_point()) {
@@ -463,6 +462,7 @@ void Viewer::draw() {
   next_draw_s_ = Window::now() + kDrawInterval;
   --frames_to_draw_;
   build_overlay();
+  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   swapchain_.begin_drawing(*commands, frames_.image());
   display_.record_drawing(*commands, swapchain_.size());
   imgui_->record(*commands);
@@ -473,7 +473,8 @@ void Viewer::draw() {
 void Viewer::build_overlay() {
   imgui_->begin_frame();
   shown_awaited_ = describe_awaited();
-  if (has_overlay_) {
+  std::optional<WindowArea> panel;
+  if (has_overlay_ && (!has_help_ || has_room_beside_help())) {
     OverlayContent content;
     content.statistics = &statistics_;
     content.picture = traced_ ? &traced_->picture() : nullptr;
@@ -490,15 +491,18 @@ void Viewer::build_overlay() {
     const OverlayAnswer answer = show_overlay(content, switches_);
     // The panel has the height of its text a frame later.
     if (std::exchange(overlay_height_, answer.height) != answer.height) frames_to_draw_ = std::max(frames_to_draw_, 1);
+    panel = answer.area;
     if (answer.asked) ask_for_file(*answer.asked);
     if (answer.has_typed) take_file(path_entry_->use, path_entry_->text.data());
+    if (answer.gives_up) path_entry_.reset();
     if (answer.camera) control_.place(*answer.camera);
     if (answer.speed) control_.set_speed(*answer.speed);
   }
-  // Both have their place at the right edge.
-  if (has_help_) show_help();
-  if (!has_help_ && explained_ && !show_explanation(*explained_, control_.camera(), scene_->display))
-    explained_.reset();
+  if (has_help_) {
+    show_help();
+  } else if (explanation_.is_open()) {
+    explanation_.show(control_.camera(), scene_->display, panel);
+  }
   imgui_->end_frame();
 }
 

@@ -24,6 +24,7 @@
 #include "view/pixel_query.h"
 #include "view/scene_preparer.h"
 #include "view/screenshot.h"
+#include "view/show_explanation.h"
 #include "view/window.h"
 
 namespace promin::app {
@@ -222,8 +223,7 @@ class Viewer {
   std::string shown_awaited_;
   std::string message_;
   bool is_failure_ = false;
-  /// None where none is shown.
-  std::optional<ExplainedPixel> explained_;
+  ExplanationPanel explanation_;
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;

@@ -22,7 +22,6 @@ uvec2 Viewer::pixel_at(const dvec2& place) const {
 }
 
 void Viewer::handle_input() {
-  window_.set_overlay_wants(imgui_->wants_keys(), imgui_->wants_pointer());
   for (const Press press : window_.take_presses()) handle_press(press);
   for (const std::string& file : window_.take_dropped()) open(file);
   if (const std::optional<std::string> file = dialog_.take()) take_file(dialog_.use(), *file);

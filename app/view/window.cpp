@@ -248,6 +248,10 @@ bool Window::take_activity() {
 void Window::set_overlay_wants(bool keys, bool pointer) {
   wants_keys_ = keys;
   wants_pointer_ = pointer;
+  if (std::exchange(is_press_judged_, true) || !pointer) return;
+  // It was on the overlay, which did not know the pointer there yet.
+  drag_ = Drag::kNone;
+  click_.reset();
 }
 
 void Window::on_key(int key, int action) {
@@ -278,6 +282,7 @@ void Window::on_button(int button, int action, int modifiers) {
     return;
   }
   if (is_down) {
+    is_press_judged_ = false;
     const Drag left = (modifiers & GLFW_MOD_SHIFT) == 0 ? Drag::kOrbit : Drag::kLight;
     drag_ = button == GLFW_MOUSE_BUTTON_LEFT ? left : Drag::kPan;
     is_click_ = true;

@@ -89,7 +89,7 @@ class Window {
   using Buttons = std::array<bool, 3>;
   Buttons take_buttons();
 
-  /// Whether the overlay wants keys and pointer for itself just now.
+  /// Whether the overlay wants keys and pointer for itself; to be called after each of its frames.
   void set_overlay_wants(bool keys, bool pointer);
 
  private:
@@ -133,6 +133,8 @@ class Window {
   Drag drag_ = Drag::kNone;
   /// Whether the pointer has not wandered since the button went down.
   bool is_click_ = false;
+  /// Whether the overlay has had a frame since a button went down.
+  bool is_press_judged_ = true;
   bool is_captured_ = false;
   dvec2 pointer_{0.0};
   Buttons buttons_{};

@@ -67,7 +67,86 @@ class Display:
         self.runtime_folder.cleanup()
 
 
-class Typist:
+class Client:
+    """A connection to a server, by Xlib."""
+
+    def __init__(self, display):
+        self.x11 = ctypes.CDLL("libX11.so.6")
+        for name in ("XOpenDisplay", "XInternAtom", "XDefaultRootWindow", "XCreateSimpleWindow"):
+            getattr(self.x11, name).restype = ctypes.c_void_p
+        self.server = ctypes.c_void_p(self.x11.XOpenDisplay(display.environment["DISPLAY"].encode()))
+
+    def atom(self, name):
+        return self.x11.XInternAtom(self.server, name.encode(), 0)
+
+    def close(self):
+        self.x11.XCloseDisplay(self.server)
+
+
+class FileManager(Client):
+    """A window that files are dragged from, by version 5 of the protocol XDND."""
+
+    CLIENT_MESSAGE = 33
+    SELECTION_REQUEST = 30
+    SELECTION_NOTIFY = 31
+    VERSION = 5
+    # Xlib's events as words: the type, the serial number, whether it was sent, the connection, and what each adds.
+    Event = ctypes.c_long * 24
+
+    def __init__(self, display):
+        super().__init__(display)
+        root = ctypes.c_ulong(self.x11.XDefaultRootWindow(self.server))
+        black = ctypes.c_ulong(0)
+        self.window = self.x11.XCreateSimpleWindow(self.server, root, 0, 0, 1, 1, 0, black, black)
+        self.selection = self.atom("XdndSelection")
+        self.list_type = self.atom("text/uri-list")
+
+    def drop(self, files, target, place):
+        """Drops files at a place of the desktop, on a window there."""
+        self.x11.XSetSelectionOwner(
+            self.server, ctypes.c_ulong(self.selection), ctypes.c_ulong(self.window), ctypes.c_ulong(0)
+        )
+        self._tell(target, "XdndEnter", self.VERSION << 24, self.list_type)
+        self._tell(target, "XdndPosition", 0, place[0] << 16 | place[1], 0, self.atom("XdndActionCopy"))
+        status = self._wait_for(self.CLIENT_MESSAGE, "XdndStatus")
+        if not status[8] & 1:
+            raise Failure("the window takes no files")
+        self._tell(target, "XdndDrop")
+        request = self._wait_for(self.SELECTION_REQUEST)
+        self._hand_over("".join(file.as_uri() + "\r\n" for file in files).encode(), request)
+        self._wait_for(self.CLIENT_MESSAGE, "XdndFinished")
+
+    def _send(self, target, words):
+        event = self.Event(*words)
+        self.x11.XSendEvent(self.server, ctypes.c_ulong(target), 0, ctypes.c_long(0), event)
+        self.x11.XFlush(self.server)
+
+    def _tell(self, target, message, *words):
+        self._send(target, (self.CLIENT_MESSAGE, 0, 0, 0, target, self.atom(message), 32, self.window, *words))
+
+    def _hand_over(self, content, request):
+        requestor, selection, kind, name, time_stamp = request[5:10]
+        if (selection, kind) != (self.selection, self.list_type):
+            raise Failure("the window asks for something else than the files")
+        words = [ctypes.c_ulong(word) for word in (requestor, name, kind)]
+        self.x11.XChangeProperty(self.server, *words, 8, 0, content, len(content))
+        self._send(requestor, (self.SELECTION_NOTIFY, 0, 0, 0, requestor, selection, kind, name, time_stamp))
+
+    def _wait_for(self, kind, message=None):
+        """The next event of a kind, of a client message by its name; others are dropped."""
+        event = self.Event()
+
+        def take():
+            while self.x11.XPending(self.server):
+                self.x11.XNextEvent(self.server, event)
+                if event[0] & 0xFFFFFFFF == kind and (message is None or event[5] == self.atom(message)):
+                    return list(event)
+            return None
+
+        return wait_for(take, message or "request for the files", 60.0)
+
+
+class Typist(Client):
     """Presses keys that have no effect again and again, from the beginning of a block to its end."""
 
     INTERVAL = 0.02
@@ -76,10 +155,8 @@ class Typist:
     KEYS = "jk"
 
     def __init__(self, display):
-        self.x11 = ctypes.CDLL("libX11.so.6")
+        super().__init__(display)
         self.hands = ctypes.CDLL("libXtst.so.6")
-        self.x11.XOpenDisplay.restype = ctypes.c_void_p
-        self.server = ctypes.c_void_p(self.x11.XOpenDisplay(display.environment["DISPLAY"].encode()))
         self.codes = [self.x11.XKeysymToKeycode(self.server, ctypes.c_ulong(ord(key))) for key in self.KEYS]
         self.count = 0
         self.has_ended = threading.Event()
@@ -100,7 +177,7 @@ class Typist:
     def __exit__(self, *_):
         self.has_ended.set()
         self.thread.join()
-        self.x11.XCloseDisplay(self.server)
+        self.close()
 
 
 class Viewer:
@@ -142,15 +219,12 @@ class Viewer:
     def minimise(self, is_minimised):
         """As a window manager does it: by the property that tells the window, and its mapping."""
         states = {True: 3, False: 1}  # IconicState, NormalState of ICCCM 4.1.3.1
-        x11 = ctypes.CDLL("libX11.so.6")
-        for name in ("XOpenDisplay", "XInternAtom"):
-            getattr(x11, name).restype = ctypes.c_void_p
-        server = ctypes.c_void_p(x11.XOpenDisplay(self.display.environment["DISPLAY"].encode()))
-        state = ctypes.c_ulong(x11.XInternAtom(server, b"WM_STATE", 0))
+        client = Client(self.display)
+        state = ctypes.c_ulong(client.atom("WM_STATE"))
         window = ctypes.c_ulong(int(self.window))
         value = (ctypes.c_ulong * 2)(states[is_minimised], 0)
-        x11.XChangeProperty(server, window, state, state, 32, 0, value, 2)
-        x11.XCloseDisplay(server)
+        client.x11.XChangeProperty(client.server, window, state, state, 32, 0, value, 2)
+        client.close()
         self.xdotool("windowunmap" if is_minimised else "windowmap", "--sync", self.window)
 
     def processor_seconds(self):
@@ -192,6 +266,12 @@ class Viewer:
     def drag(self, start, end):
         self.xdotool("mousemove", "--window", self.window, *start, "mousedown", 1)
         self.xdotool("mousemove", "--window", self.window, *end, "mouseup", 1)
+
+    def drop(self, *files):
+        """Drops files on the window, as a file manager does."""
+        manager = FileManager(self.display)
+        manager.drop(files, int(self.window), (10, 10))
+        manager.close()
 
     def wait_for_line(self, pattern, stream, what):
         """The first line that has the pattern."""

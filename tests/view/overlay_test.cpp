@@ -51,8 +51,30 @@ class OverlayTest : public test::DeviceTest {
     content.picture = &*picture_;
     content.scene = &described_;
     content.device = "device";
-    show_overlay(content, switches_);
+    content.entry = entry_ ? &*entry_ : nullptr;
+    answer_ = show_overlay(content, switches_);
     ImGui::Render();
+  }
+
+  static void set_key(ImGuiKey key, bool is_down) {
+#if IMGUI_VERSION_NUM >= 18700
+    ImGui::GetIO().AddKeyEvent(key, is_down);
+#else
+    ImGui::GetIO().KeyMap[key] = key;
+    ImGui::GetIO().KeysDown[key] = is_down;
+#endif
+  }
+
+  /// Presses a key, and collects what it has done.
+  void press(ImGuiKey key) {
+    OverlayAnswer sum;
+    for (const bool is_down : {true, false, false}) {
+      set_key(key, is_down);
+      show({-1.0F, -1.0F}, false);
+      sum.has_typed = sum.has_typed || answer_.has_typed;
+      sum.gives_up = sum.gives_up || answer_.gives_up;
+    }
+    answer_ = sum;
   }
 
   void click(const ImVec2& place) {
@@ -87,6 +109,8 @@ class OverlayTest : public test::DeviceTest {
   FrameStatistics statistics_;
   std::optional<ProgressivePicture> picture_;
   Switches switches_;
+  std::optional<PathEntry> entry_;
+  OverlayAnswer answer_;
 };
 
 TEST_F(OverlayTest, AClickTurnsASwitch) {
@@ -104,6 +128,22 @@ TEST_F(OverlayTest, AScaleOfTheCommandLineHasAName) {
   switches_.scale = 0.3;
   show({-1.0F, -1.0F}, false);
   EXPECT_EQ(switches_.scale, 0.3);
+}
+
+TEST_F(OverlayTest, APathIsTypedAtOnceAndEscapeGivesItUp) {
+  for (const bool is_typed : {true, false}) {
+    entry_.emplace();
+    for (int i = 0; i < 3; ++i) show({-1.0F, -1.0F}, false);
+    EXPECT_TRUE(ImGui::GetIO().WantTextInput);
+    ImGui::GetIO().AddInputCharactersUTF8("a.png");
+    show({-1.0F, -1.0F}, false);
+    EXPECT_STREQ(entry_->text.data(), "a.png");
+    press(is_typed ? ImGuiKey_Enter : ImGuiKey_Escape);
+    EXPECT_EQ(answer_.has_typed, is_typed);
+    EXPECT_EQ(answer_.gives_up, !is_typed);
+    entry_.reset();
+    show({-1.0F, -1.0F}, false);
+  }
 }
 
 TEST_F(OverlayTest, GrowsWithTheDisplaysScale) {

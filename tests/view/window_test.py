@@ -474,10 +474,14 @@ def opens_and_saves_by_dialog(bin_folder, scenes, folder):
     zenity = programs / "zenity"
     zenity.write_text(f'#!/bin/sh\ncase "$*" in\n*--save*) echo "{folder}/a box.png" ;;\n*) echo "{folder}/another.gltf" ;;\nesac\n')
     zenity.chmod(0o755)
-    session = Session(bin_folder, scenes, folder, files=("sphere.gltf",), PATH=str(programs))
+    session = Session(bin_folder, scenes, folder, "-v", files=("sphere.gltf",), PATH=str(programs))
     with session as viewer:
         viewer.xdotool("windowsize", "--sync", viewer.window, 340, 300)
         wait_for(lambda: "sphere.gltf" in session.print_command() and "340 300" in session.print_command(), "picture")
+
+        # A pen is nowhere before it touches the panel.
+        move = ("mousemove", "--window", viewer.window)
+        viewer.xdotool(*move, 320, 280, "sleep", 0.5, *move, 150, 20, "click", 1, "sleep", 1)
 
         def click_until(x, has_effect, what):
             """The buttons are below some lines of text."""
@@ -494,6 +498,28 @@ def opens_and_saves_by_dialog(bin_folder, scenes, folder):
         line = viewer.wait_for_line("wrote .*a box.png", 1, "saved picture")
         again = session.render(line[line.index("promin render ") :], "again.png")
         expect(again.read_bytes() == (folder / "a box.png").read_bytes(), f"the command gives another picture: {line}")
+        expect("explained: " not in viewer.err, "a click on the panel went through it")
+        session.quit()
+
+
+def opens_what_is_dropped(bin_folder, scenes, folder):
+    box = folder / "a box.gltf"
+    shutil.copy(scenes / "box.gltf", box)
+    session = Session(bin_folder, scenes, folder, files=("sphere.gltf",))
+    with session as viewer:
+        viewer.press("Tab", "p")
+        expect("sphere.gltf" in session.print_command(), "another scene than the first")
+        viewer.drop(box)
+        wait_for(lambda: viewer.run_xdotool("search", "--name", "^a box.gltf - promin$").stdout, "title", 60)
+        wait_for(lambda: box.name in session.print_command(), "dropped scene", 60)
+        session.expect_shown(1, f"'{box}'")
+
+        # What is no scene is named, and the picture stays.
+        text = folder / "words.txt"
+        text.write_text("not a scene")
+        viewer.drop(text)
+        viewer.wait_for_line("warning: .*words.txt", 1, "sentence")
+        session.expect_shown(2, f"'{box}'")
         session.quit()
 
 
