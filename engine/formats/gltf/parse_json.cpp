@@ -49,7 +49,8 @@ std::string bound_numbers(std::string_view text) {
     if (c == '"') is_in_string = !is_in_string;
     const std::string part(text.substr(i, end - i));
     if (is_number && std::isinf(std::strtod(part.c_str(), nullptr))) {
-      bounded += (c == '-' ? "-" : "") + std::string(kLargest);
+      if (c == '-') bounded += c;
+      bounded += kLargest;
     } else {
       bounded += part;
     }
