@@ -324,7 +324,7 @@ def test_builders_and_bvh_files(box: promin.Scene, scenes: Path, tmp_path: Path)
     rays = make_rays(500)
     hits = {b: promin.Caster(box, builder=b).cast(rays).tobytes() for b in ("sah", "median", "spatial")}
     assert len(set(hits.values())) == 1
-    with pytest.raises(promin.UsageError, match="unknown BVH builder"):
+    with pytest.raises(promin.UsageError, match="there is no BVH builder"):
         promin.Caster(box, builder="best")
     (tmp_path / "bad.pbvh").write_bytes(b"nothing")
     with pytest.raises(promin.InputError):

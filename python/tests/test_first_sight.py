@@ -221,7 +221,7 @@ def test_files_stand_for_scenes(scenes: Path) -> None:
     assert bounds is not None
     hits = promin.Caster(scenes / "sphere.gltf").cast(bounds.mean(axis=0), [(0, 0, -1), (0, 1, 0)])
     assert (hits["object"] >= 0).all()
-    with pytest.raises(promin.UsageError, match="is no promin.Scene"):
+    with pytest.raises(promin.UsageError, match="is not a promin.Scene"):
         promin.Renderer(3)  # type: ignore[arg-type]
     with pytest.raises(promin.InputError, match="the file does not exist"):
         promin.render("none.glb")

@@ -185,13 +185,13 @@ TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 180})", "out of range"},
       {R"({"time_s": -1, "eye": [0, 0], "look": [0, 0, -1], "up": "y", "fov_deg": 40})", "1 of 3 problems"},
       {R"({"eye": [0, 0, 1e99], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 40})", "\"time_s\" is missing"},
-      {"7", "7 stands where an object belongs"},
+      {"7", "7 is given where an object is expected"},
   };
   for (const auto& [frames, part] : cases) EXPECT_THAT(refusal_of_frames(frames), HasSubstr(part)) << frames;
   EXPECT_THAT(refusal(R"({"format": "promin camera path", "version": 1, "fps": 0, "frames": []})"),
               HasSubstr("path.json: fps; use a number from 0.001 to 1000"));
   EXPECT_THAT(refusal("{"), HasSubstr("the JSON cannot be read"));
-  EXPECT_THAT(refusal("[]"), HasSubstr("a JSON array stands where an object belongs"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("a JSON array is given where an object is expected"));
   EXPECT_THAT(refusal(std::string(1000, '[')), HasSubstr("nests 1000 deep"));
   EXPECT_THAT(refusal(R"({"format": "other", "version": 2, "frames": []})"), HasSubstr("is not one of promin camera"));
   EXPECT_THROW(read_camera_path(folder_ / "none.json"), InputError);

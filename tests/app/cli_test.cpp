@@ -164,8 +164,8 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--time-limit and --shading contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--time-limit", "1", "--repeat", "2"},
        "--time-limit and --repeat contradict each other"},
-      {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs an error to aim at"},
-      {{"render", "square.gltf", "-o", "a.exr", "--error-in", "linear"}, "--error-in needs an error to aim at"},
+      {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs a target error"},
+      {{"render", "square.gltf", "-o", "a.exr", "--error-in", "linear"}, "--error-in needs a target error"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--error-in", "log"},
        "--error-in takes linear or display, not \"log\""},
       {{"render", "square.gltf", "-o", "a.png", "--target-error", "0.1", "--error-in", "display", "--exposure",
@@ -191,13 +191,13 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite an input"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "a.exr"}, "the same output file is named twice"},
-      {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "too few values for --spp"},
+      {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "too few values are given for --spp"},
       {{"render", "square.gltf", "-o", "a.exr", "--spp", "0"}, "--spp takes a whole number from 1 to "},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "65537"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "4294967297"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "-1"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "2x"}, "--spp takes a whole number"},
-      {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values for --size WxH|hd|fullhd|4k, on"},
+      {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values are given for --size WxH|hd|fullhd|4k, on"},
       {{"render", "square.gltf", "--size", "large", "-o", "a.exr"},
        "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"large\""},
       {{"render", "square.gltf", "--size", "640:480", "-o", "a.exr"},
@@ -206,7 +206,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "--size", "64x48x32"}, "not \"48x32\" in \"64x48x32\""},
       {{"square.gltf", "--gpu", "0"}, "unknown option --gpu, on the command line; did you mean --device?"},
       {{"square.gltf", "--threads", "0"}, "--threads takes a whole number from 1 to 1024, not \"0\""},
-      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values for --eye"},
+      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values are given for --eye"},
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-inf"}, "--near takes a number from 0"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "foo"},
        "--exposure takes a number from -64 to 64, auto or average, not \"foo\""},
@@ -279,7 +279,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/65537"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "3/2"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"},
-       "too few values for --background R G B|COLOR|environment"},
+       "too few values are given for --background R G B|COLOR|environment"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
   };
@@ -340,7 +340,7 @@ TEST_F(CliTest, BadPanoramasAreRefused) {
 
 TEST_F(CliTest, NegativeNumbersOfPanoramasAreWarnedOf) {
   write_image(folder() / "negative.exr", {{4, 2}, std::vector<vec3>(8, vec3(-1.0F))});
-  const std::string warning = "24 numbers of negative.exr are negative, the first -1 in pixel 0, 0; they count as 0";
+  const std::string warning = "24 numbers of negative.exr are negative, the first -1 in pixel 0, 0; they are read as 0";
   EXPECT_THAT(run({"info", "square.gltf", "--environment", "negative.exr"}).out, HasSubstr(warning));
   const ProcessResult render =
       run({"render", "square.gltf", "--environment", "negative.exr", "-o", "a.exr", "--size", "4", "4"});
@@ -411,7 +411,7 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   // It waits on disk until it is whole, and before it is traced there is no room for that.
   const OptionValues large = {"render",         "square.gltf", "--size", "30000",   "20000",
                               "--target-error", "0.5",         "-o",     "old.exr", "--quiet"};
-  expect_failure(run(large), 1, "cannot keep 7201 MB beside the output file until it can be written");
+  expect_failure(run(large), 1, "there is no room for 7201 MB beside the output file until it can be written");
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
 }
@@ -430,7 +430,8 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
       OptionValues words = {"render", "square.gltf", "-o", "old.exr", "--quiet", "--light", "none"};
       words.insert(words.end(), {"--background", "0", "0", "0", "--lights-off", "0"});
       words.insert(words.end(), how.begin(), how.end());
-      expect_failure(run(words), 1, how == whole ? "cannot keep 13 MB beside" : "cannot keep 2 MB beside");
+      expect_failure(run(words), 1,
+                     how == whole ? "there is no room for 13 MB beside" : "there is no room for 2 MB beside");
       EXPECT_EQ(read("old.exr"), "old");
       EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
     }
@@ -446,8 +447,7 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
 // Reading from a pipe that nobody writes to would wait without end.
 TEST_F(CliTest, ScenesAreRegularFiles) {
   ASSERT_EQ(::mkfifo((folder() / "pipe.obj").c_str(), 0600), 0);
-  expect_failure(run({"info", "pipe.obj"}), 3,
-                 "the scene is not a regular file, pipe.obj; name the scene's file");
+  expect_failure(run({"info", "pipe.obj"}), 3, "the scene is not a regular file, pipe.obj; name the scene's file");
   std::filesystem::create_directory(folder() / "folder.gltf");
   expect_failure(run({"info", "folder.gltf"}), 3, "is a folder");
 }

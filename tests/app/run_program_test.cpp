@@ -76,9 +76,10 @@ TEST(RunProgramTest, WhatTheSystemRefusesIsNoBug) {
   EXPECT_EQ(run_work([] {
               throw std::filesystem::filesystem_error("cannot", "there", std::make_error_code(std::errc::io_error));
             }).second,
-            "promin: error: the system refuses what is asked for (Input/output error), there; check its limits and "
+            "promin: error: the system refused a request (Input/output error), there; check its limits and "
             "permissions\n");
-  EXPECT_THAT(run_work([] { throw std::bad_alloc(); }).second, testing::HasSubstr("out of memory, in promin"));
+  EXPECT_THAT(run_work([] { throw std::bad_alloc(); }).second,
+              testing::HasSubstr("there is not enough memory, in promin"));
   EXPECT_THAT(run_work([] { throw std::logic_error("x"); }).second, testing::HasSubstr("report it as a bug"));
 }
 

@@ -416,7 +416,7 @@ TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
   };
   EXPECT_EQ(warning_of({}), "");
   EXPECT_THAT(warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
-              HasSubstr("nothing of the scene is in the picture; --look-at 1 2 3 in place of a direction shows its"));
+              HasSubstr("the picture shows nothing of the scene; --look-at 1 2 3 looks at its"));
 }
 
 }  // namespace

@@ -58,8 +58,8 @@ const BadGltf kBadGltf[] = {
      },
      "EXT_splats is not implemented", "meshes[0].primitives[0]"},
     // Types
-    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 stands where an array belongs", "nodes"},
-    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string stands where an object", "nodes[1]"},
+    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 is given where an array is expected", "nodes"},
+    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string is given where an object", "nodes[1]"},
     {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "where an integer belongs", "nodes[0].mesh"},
     {"NoAttributes", [](auto& g) { primitive(g).erase("attributes"); }, "\"attributes\" is missing",
      "meshes[0].primitives[0]"},
@@ -101,7 +101,7 @@ const BadGltf kBadGltf[] = {
      "accessors[0].componentType"},
     {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "\"VEC5\" is not one of",
      "accessors[0].type"},
-    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 stands where an integer",
+    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 is given where an integer",
      "accessors[0].count"},
     // Shapes
     {"ZeroRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 0; }, "0 is out of range",

@@ -82,7 +82,7 @@ TEST_F(GltfExtensionsTest, UnknownOnesOfTheFileAreAWarning) {
   gltf.json["extensionsRequired"] = {"EXT_fog"};
   gltf.json["scenes"] = {{{"nodes", {0}}, {"extensions", {{"EXT_fog", json::object()}}}}};
   EXPECT_THAT(load(gltf).warnings,
-              ElementsAre("the file requires EXT_fog, which is not known; it is shown without it"));
+              ElementsAre("the file requires EXT_fog, which is unknown; the scene is shown without it"));
 }
 
 TEST_F(GltfExtensionsTest, UnknownOnesOfGeometryAreRefused) {

@@ -205,7 +205,7 @@ TEST_F(ObjTest, VerticesThatNoFaceUsesMayHoldAnything) {
   const std::string text = "v nan 0 0\n" + kSquare + "v 1 2\nv 0,5 0 0\nv 1e30 0 0\nv\nf 2 3 4\n";
   const LoadedScene scene = load(text);
   EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
-  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("no face uses"), HasSubstr("\"nan\" is no number"),
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("no face uses"), HasSubstr("\"nan\" is not a number"),
                                                 HasSubstr("line 1 and 4 more"))));
   expect_strict_refusal(text, "no face uses", ": line 1");
 }
@@ -217,7 +217,7 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   ASSERT_THAT(scene.objects, SizeIs(2)) << "an object without a face is none";
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
-                                                HasSubstr("\"-inf\" is no number"), HasSubstr("line 13 and 2 more"),
+                                                HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13 and 2 more"),
                                                 HasSubstr("the face is left out"))));
   expect_strict_refusal(text, "a face has a vertex that is no three numbers", ": line 13");
   EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("face"));
@@ -274,7 +274,7 @@ TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
               ElementsAre("a face refers to texture coordinates that do not exist, line 6 and 1 more; it "
                           "is drawn without them"));
   expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that are not there", ": line 5");
-  expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is no number", ": line 5");
+  expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is not a number", ": line 5");
 }
 
 TEST_F(ObjTest, ZeroBytesAtTheEndAreCutOff) {
@@ -356,7 +356,7 @@ TEST_F(ObjTest, GlassIsRead) {
 TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   std::vector<std::string> warnings;
   material("illum 4\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) with a d of 1, it is drawn opaque"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) and has a d of 1; it is drawn opaque"));
   material("illum 7\nNi -1\n", &warnings);
   EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; 1.5 is used"));
   material("map_Ns wood.png\ndisp wood.png\n", &warnings);
@@ -377,7 +377,7 @@ TEST_F(ObjTest, NumbersOfMaterialsThatAreNoneAreIgnored) {
   for (const char* line : {"Kd x\n", "Ke 1e999 0 0\n", "illum -1\n", "Ns 1e16\n", "d full\n", "Tr x\n", "Ni nan\n"}) {
     EXPECT_EQ(material(std::string("Kd 1 0 0\nd 0.5\n") + line, &warnings).phong().diffuse, vec3(1, 0, 0)) << line;
     EXPECT_THAT(warnings, ElementsAre(HasSubstr("the statement is ignored"))) << line;
-    expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "is no number", ": mtllib m.mtl line 4");
+    expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "is not a number", ": mtllib m.mtl line 4");
   }
   EXPECT_EQ(material("Kd -0.5 0.25 -1e-9\n", &warnings).phong().diffuse, vec3(0, 0.25F, 0));
   EXPECT_THAT(warnings, ElementsAre("Kd of a material is negative, mtllib m.mtl line 2; 0 is used"));

@@ -271,7 +271,7 @@ TEST_F(PlyTest, ColorsOutOfRangeAreClamped) {
   const LoadedScene scene =
       load(triangle("property float red\nproperty float green\nproperty float blue\n", {"-1 2 nan", "0 0 0", "0 0 0"}));
   EXPECT_EQ(mesh_of(scene).colors.at(0), vec4(0, 1, 1, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a colour is not a number, line 15; 1 is taken",
+  EXPECT_THAT(scene.warnings, ElementsAre("a colour is not a number, line 15; 1 is used",
                                           "vertex colours below 0 or above 1 are clamped"));
 }
 
@@ -452,7 +452,7 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
   EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("no known format")));
   EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));
   EXPECT_THAT(warnings("a.png", uvs, "nan 0"),
-              ElementsAre("a texture coordinate is not finite or beyond 1e15, line 15 and 2 more; 0 is taken"));
+              ElementsAre("a texture coordinate is not finite or beyond 1e15, line 15 and 2 more; 0 is used"));
 }
 
 TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {
@@ -499,7 +499,7 @@ const BadFile kBadPly[] = {
     {"SmallFacesAlone", square("2 0 1\n", 1), "holds nothing to draw (a face has fewer than 3 corners", ""},
     {"NoPosition",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0,5 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-     "\"0,5\" is no number", ": line 12"},
+     "\"0,5\" is not a number", ": line 12"},
     {"NoPly", "solid x\n", "first line is not \"ply\"", ""},
     {"NoEnd", "ply\nformat ascii 1.0\nelement vertex 3\n", "the header has no end", ": line 3"},
     {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "tells no format", ": line 6"},
@@ -524,10 +524,10 @@ const BadFile kBadPly[] = {
     {"CutBinary", cut_binary("1"), "a count that the file has no room for", ": face 0"},
     {"CutText", square("3 0 1 2\n", 2), "ends within its rows", ""},
     {"CutRow", square("3 0 1\n3 0 1 2\n", 2), "fewer numbers", ": line 16"},
-    {"NoNumber", square("3 0 1 x\n", 1), "\"x\" is no number", ": line 16"},
-    {"IndexPastTheEnd", square("3 0 1 4\n", 1), "names a vertex that is not there, there are 4", ": line 16"},
-    {"NegativeIndex", square("3 0 1 -1\n", 1), "names a vertex that is not there", ": line 16"},
-    {"BrokenIndex", square("3 0 1 1.5\n", 1), "names a vertex that is not there", ": line 16"},
+    {"NoNumber", square("3 0 1 x\n", 1), "\"x\" is not a number", ": line 16"},
+    {"IndexPastTheEnd", square("3 0 1 4\n", 1), "refers to a vertex that does not exist, there are 4", ": line 16"},
+    {"NegativeIndex", square("3 0 1 -1\n", 1), "refers to a vertex that does not exist", ": line 16"},
+    {"BrokenIndex", square("3 0 1 1.5\n", 1), "refers to a vertex that does not exist", ": line 16"},
     {"CountOfNone", square("-3 0 1 2\n", 1), "a count that the file has no room for", ": line 16"},
     {"CountOfALong", square("99999999 0 1 2\n", 1), "a count that the file has no room for", ": line 16"},
     {"Nan",

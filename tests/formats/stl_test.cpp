@@ -235,8 +235,8 @@ TEST_P(BadStlTest, IsRefusedWithPlaceAndCure) {
 
 const BadFile kBadStl[] = {
     {"Short", "stl", "the file is not an STL file", ""},
-    {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is no number", ": line 3"},
-    {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is no number", ": line 4"},
+    {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is not a number", ": line 3"},
+    {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is not a number", ": line 4"},
     {"TooLarge", "solid\nfacet\nvertex 0 0 1e16\nvertex 0 0 0\nvertex 1 1 1\nendfacet\n",
      "nothing to draw (a facet has a vertex coordinate that is not a number up to 1e15 (\"1e16\"), line 3", ""},
     {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",

@@ -103,7 +103,7 @@ def create(kind: str, arguments: list[str], folder: str | os.PathLike[str]) -> J
     text = json.dumps(manifest, indent=1)
     if (root / "job.json").exists():
         if (root / "job.json").read_text() != text:
-            raise UsageError(f"the folder has another job, {root}; take another folder")
+            raise UsageError(f"the folder belongs to another job, {root}; take another folder")
     else:
         _write(root / "job.json", text.encode())
     return Job(root)
