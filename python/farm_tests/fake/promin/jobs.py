@@ -195,7 +195,10 @@ class Job:
             if not str(output).endswith(endings):
                 raise UsageError(f"an output is none of {', '.join(endings)}, {output}; name it so")
             if len(frames) > 1 and "#" not in Path(output).name:
-                raise UsageError(f"several frames would be written to one file, {output}; write #### in its name for the number of a frame")
+                raise UsageError(
+                    f"several frames would be written to one file, {output}; write #### in its name for the number"
+                    " of a frame"
+                )
 
     def merge(self, outputs: list[str], *, allow_mixed: bool = False, frames: Optional[list[int]] = None) -> None:
         for frame in frames or ():
