@@ -548,7 +548,7 @@ void check_render_options(const RenderOptions& options) {
                                 {error.time_limit_s.has_value(), "--time-limit"}});
   }
 
-  // An error to aim at.
+  // Refuses options that contradict an error target.
   if (error.is_given()) {
     const std::string_view name = error.target ? "--target-error" : "--time-limit";
     refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},

@@ -58,8 +58,7 @@ double work_seconds() {
 }
 
 #ifdef GLFW_PLATFORM
-/// Whether the environment says where a Wayland compositor could be found. libwayland prints a line of its own where it
-/// does not.
+/// Returns whether environment variables name a Wayland compositor. If they do not, libwayland would print a message.
 bool could_have_wayland() {
   const auto is_path = [](const char* name) {
     const char* value = std::getenv(name);

@@ -47,7 +47,7 @@ uint32_t side_of(const Environment& environment) {
     uint32_t operator()(const Studio&) const { return kSmoothSide; }
     uint32_t operator()(const GradientSky&) const { return kSmoothSide; }
     uint32_t operator()(const Panorama& panorama) const {
-      // The horizon is as long as two sides.
+      // The horizon, which is the panorama's width, is as long as two sides.
       return std::clamp(std::bit_ceil((panorama.image->size.x + 1) / 2), kLeastPanoramaSide, kMostSide);
     }
   };

@@ -61,7 +61,7 @@ constexpr Magic kMagics[] = {
     {"# vtk DataFile"sv, "VTK", "open it in ParaView and export glTF or PLY"},
 };
 
-/// Scenes that other programs keep in archives.
+/// File name endings of other programs' scenes that are archives.
 constexpr Magic kEndings[] = {{".usdz", "USD", kBlender},
                               {".blend", "a compressed Blender file", kBlender},
                               {".3mf", "3MF", "export STL by the program that wrote it"}};

@@ -234,7 +234,8 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   }
 }
 
-/// Each time that a file is read again, fp32 resolves what lies around its center 2^24 times as finely.
+/// The largest number of times that a file is read again. Each time, fp32 coordinates near the new center are up to
+/// 2^24 times as fine.
 constexpr int kMostMoves = 3;
 
 /// Reads a file, and reads it again around a center if its coordinates are too coarse in fp32. Gives the warnings that

@@ -215,7 +215,7 @@ ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
 }
 
 RenderMode PictureTracer::mode_of_middle(RenderMode mode) const {
-  // Nothing is lit that way.
+  // These views compute no light.
   mode.debug_view = wanted_.steps ? DebugView::kSteps : DebugView::kNormals;
   return mode;
 }

@@ -99,7 +99,7 @@ struct Contains {
   }
 };
 
-/// That of the first triangle; a mesh is taken for one solid.
+/// Returns the material of an object, for a mesh that of its first triangle: a mesh counts as one solid.
 uint32_t material_of(const world::Object& object) {
   const auto* mesh = std::get_if<Mesh>(&object.shape);
   return mesh == nullptr || mesh->triangle_materials.empty() ? object.material : mesh->triangle_materials.front();

@@ -41,7 +41,8 @@ struct Silhouette {
   }
 };
 
-/// Parallel pictures of facets within a box from its six sides, of the depths of what is nearest and of its backs.
+/// Orthographic pictures of the facets within a box, seen from its six sides: the depth of the nearest facet, and
+/// whether its back is visible.
 class SixPictures {
  public:
   explicit SixPictures(const Bounds& bounds) : lo_(bounds.lo), size_(dvec3(bounds.hi) - dvec3(bounds.lo)) {

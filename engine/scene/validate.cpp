@@ -41,7 +41,7 @@ class Place {
   Place(const char* name) : name_(name) {}  // NOLINT(google-explicit-constructor): a name is a place.
   Place(const char* array, size_t index) : name_(array), index_(index) {}
 
-  /// A part of this part. The name must outlive the place.
+  /// Returns the place of a member of this one. The name must outlive the place.
   Place operator+(const char* member) const {
     Place part = *this;
     part.members_.at(part.member_count_++) = member;
@@ -430,7 +430,7 @@ class Validation {
           "use non-zero scales and axes that differ");
   }
 
-  /// Checks an object whose references are there.
+  /// Checks an object whose references all exist.
   void check_placed(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
     const Place place("objects", index);

@@ -146,7 +146,7 @@ std::optional<View> ProgressivePicture::next_view() const {
 
 uvec2 ProgressivePicture::first_size() const {
   if (fixed_scale_) return scale_size(full_size_, *fixed_scale_);
-  // Blocks at the right and lower edge are not full: a picture of fewer pixels may have as many.
+  // Counts blocks, not pixels: those at the right and lower edge are not full, so a smaller picture may have as many.
   const double affordable = std::max<double>(pacer_.units(), TileScheduler::kMinBlocks);
   double scale = 1.0;
   while (scale > kMinScale && count_blocks(scale_size(full_size_, scale)) > affordable) {

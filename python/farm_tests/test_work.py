@@ -63,7 +63,7 @@ def test_what_another_is_at_is_left_to_it(farm: Farm) -> None:
         said = farm.run("work", farm.job, "--array-task", "1/2")
     finally:
         first.send_signal(signal.SIGCONT)
-    assert "1 piece made; 1 of 2 are missing or with others" in said
+    assert "1 piece made; 1 of 2 are missing or made by others" in said
     assert first.wait(30) == 0 and sorted(farm.events("done")) == [0, 1] == sorted(farm.events("begun"))
 
 
@@ -184,7 +184,7 @@ def test_frames_of_two_kinds_of_devices_stay_apart(farm: Farm) -> None:
     Settings(outputs=[str(farm.out)], allow_mixed=True).write(farm.job)
     claim_group(farm.job, "frame000001", hashlib.sha256(b"two").hexdigest())
     said = farm.run("work", farm.job, FAKE_FINGERPRINT="one")
-    assert "6 pieces made; 2 of 8 are missing or with others" in said and sorted(farm.events("done")) == [
+    assert "6 pieces made; 2 of 8 are missing or made by others" in said and sorted(farm.events("done")) == [
         0,
         1,
         4,

@@ -19,11 +19,11 @@
 
 namespace promin::python {
 
-/// What options of `promin render` and their values come to, read as the command line reads them. Throws UsageError.
+/// Returns the options of `promin render` that these words give, read as on the command line. Throws UsageError.
 app::RenderOptions read_options(const std::vector<std::string>& words);
 
-/// What the header of an EXR tells of a picture that `promin render` has written. `named` has the objects and materials
-/// whose names Cryptomatte tells.
+/// Returns the metadata that `promin render` writes into the header of an EXR. `named` has the objects and materials
+/// whose names Cryptomatte stores.
 Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
                           const gpu::DeviceInfo& device, const std::string& scene_file, const Scene& named,
                           const AovSet& aovs);

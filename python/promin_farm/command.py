@@ -193,7 +193,7 @@ def _work(options: argparse.Namespace) -> int:
 
 def _words_of_left(left: int, job: jobs.Job) -> str:
     if left:
-        return f"{left} of {len(job.pieces)} are missing or with others"
+        return f"{left} of {len(job.pieces)} are missing or made by others"
     return f"all are there, promin-farm resume {job.folder} writes the files"
 
 

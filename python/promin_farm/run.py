@@ -117,8 +117,8 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
         watch.say(f"{len(missing)} of {of_pieces(len(job.pieces))} to make, by {words}")
         if len(job.pieces) < workers:
             watch.say(
-                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; a job in another "
-                "folder may be cut into more by --pieces"
+                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some get no work; a job in another "
+                "folder can be cut into more pieces by --pieces"
             )
         foreman = Foreman(
             job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon, leave=signals.end_now

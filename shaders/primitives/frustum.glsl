@@ -13,7 +13,7 @@ struct Frustum {
   float half_height;
   float radius;  // at the centre
   float slope;   // change of radius per height; 0 for a cylinder
-  bool is_open;  // whether the side alone is there; false where no shape of the scene is open
+  bool is_open;  // whether it has only the side, no ends; false if no shape of the scene is open
 };
 
 // The rounding error of z, as a multiple of the solid's size.

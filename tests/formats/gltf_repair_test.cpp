@@ -276,7 +276,7 @@ const Repair kRepairs[] = {
        g.json["nodes"][0]["children"] = {2};
        g.json["nodes"][1]["children"] = {2};
      },
-     "a node has two parents (nodes[2]), nodes[1].children[0]; it is shown below both"},
+     "a node has two parents (nodes[2]), nodes[1].children[0]; it appears below both"},
     {"ChildTwice",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2, 2};

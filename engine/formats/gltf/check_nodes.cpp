@@ -42,7 +42,7 @@ std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
       }
       if (parent_counts[child]++ > 0) {
         report.repair(
-            {"a node has two parents", node_place(child), place, "copy the node instead", "it is shown below both"});
+            {"a node has two parents", node_place(child), place, "copy the node instead", "it appears below both"});
       }
       parents[child] = i;
       return false;

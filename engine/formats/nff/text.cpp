@@ -289,7 +289,7 @@ class NffParser {
   LoadReport& report_;
   NffText out_;
   const Statement* statement_ = nullptr;
-  /// The last word that was taken for a number; empty where there was none.
+  /// The last word that was read as a number; empty if there was none.
   std::string_view word_;
   /// Whether the position of the statement is valid as far as it has been read.
   bool is_placed_ = true;

@@ -113,8 +113,8 @@ bool blends(const MtlMaterial& source) {
   return !is_filtering(source) || is_metallic_roughness(source);
 }
 
-/// Of Tr without d there are two conventions. By that of most programs it is 1 - d, and 1 would be invisible: a file
-/// that has such a material was written by the other, by which Tr is d.
+/// There are two conventions for Tr without d. In most programs Tr is 1 - d, so a material with Tr = 1 would be
+/// invisible. A file with such a material therefore follows the other convention, in which Tr is d.
 void settle_transparency(std::vector<MtlMaterial>& materials, const std::string& file, LoadReport& report) {
   const auto has_tr_alone = [](const MtlMaterial& source) {
     return source.numbers.contains("Tr") && !source.numbers.contains("d");

@@ -182,7 +182,7 @@ class MtlParser {
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
   }
 
-  /// By a curve, or in CIE's space of colours, which MTL allows.
+  /// Warns of a colour given as a spectral curve or as CIE XYZ, which MTL allows.
   void ignore_color(const std::string& keyword, std::string_view kind) {
     report_.warn("colours given as " + std::string(kind) + " are ignored, the first is " + keyword + " in " + place());
   }
