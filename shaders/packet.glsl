@@ -17,7 +17,8 @@ float shifts[PACKET_SIZE];
 // Inverse direction of one of the rays that take part; all have its signs. Set by the callers of descend.
 vec3 octant;
 
-// How the packet's rays see, set by the entry point. Shadow rays see backs, and textures at their finest level.
+// What the packet's rays hit and at which level of textures, set by the entry point. Shadow rays hit backs, and use the
+// finest level.
 bool passes_backs = false;  // with FEATURE_ONE_SIDED
 float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
 float sight_spread = 0.0;   // and how much it grows at a distance of 1

@@ -489,7 +489,7 @@ void Viewer::build_overlay() {
     content.bookmarks = bookmarks_;
     content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
-    // The panel has the height of its text a frame later.
+    // The panel gets the height of its text only in the next frame.
     if (std::exchange(overlay_height_, answer.height) != answer.height) frames_to_draw_ = std::max(frames_to_draw_, 1);
     if (answer.asked) ask_for_file(*answer.asked);
     if (answer.has_typed) take_file(path_entry_->use, path_entry_->text.data());

@@ -50,8 +50,8 @@ void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/)
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
 }
 
-/// The first number of the version in what Mesa's drivers tell of themselves; 0 in what others tell. Lavapipe's
-/// driverVersion is 1 whatever its version.
+/// Returns the first number of Mesa's version in a driver's description; 0 for other drivers. Lavapipe's driverVersion
+/// is 1 whatever its version.
 uint32_t mesa_version(std::string_view driver_info) {
   constexpr std::string_view kName = "Mesa ";
   uint32_t version = 0;

@@ -114,7 +114,7 @@ struct IsOpen {
   }
 };
 
-/// Largest first; unbounded ones have infinite ones.
+/// Returns the volume of a box, infinite if it is unbounded, by which solids are sorted.
 double volume_of(const Bounds& bounds) {
   const dvec3 size = dvec3(bounds.hi) - dvec3(bounds.lo);
   return size.x * size.y * size.z;

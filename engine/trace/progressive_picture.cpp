@@ -200,7 +200,7 @@ std::shared_ptr<const gpu::Device> ProgressivePicture::refining_device() {
 }
 
 double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& commands, double most_units) {
-  // Frames go on meanwhile.
+  // Frames are drawn meanwhile, so a list that is still being traced is not waited for.
   if (!refining_device() || is_list_under_way_ || !prepare_refined()) return 0.0;
   is_prepared_ = false;
   has_recorded_list_ = is_list_under_way_ = refined_->has_samples();

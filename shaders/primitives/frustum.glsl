@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cylinder and cone share the solid |radial| <= radius + slope * z, |z| <= half height, around an axis through its
 // centre. It is convex, so a ray is inside it in one interval: the intersection of the interval of the two cap planes
-// with that of the lateral surface. An end that both bound belongs to one of them, so rims do not leak. On an open
-// solid the ray hits those ends of the interval that the side bounds; a rim then belongs to the side.
+// with that of the lateral surface. An end of the interval that lies on both a cap and the side belongs to one of them,
+// so rays cannot pass through a rim. On an open solid the ray hits those ends of the interval that the side bounds; a
+// rim then belongs to the side.
 #ifndef FRUSTUM_GLSL
 #define FRUSTUM_GLSL
 

@@ -11,22 +11,22 @@
 #include "oracle/sky.h"
 #include "oracle/texture.h"
 
-/// How surfaces answer light: the models of docs/model.md ("Light"), with textures.
+/// Shading of surfaces: the models of docs/model.md ("Light"), with textures.
 namespace promin::oracle {
 
-/// Light, and how far a device may be off it.
+/// Light, and the largest permitted error of a device.
 struct Radiance {
   Vector color{0};
-  /// Because its highlights lie a little aside, or textures show another place of theirs.
+  /// The error because highlights may be slightly displaced, or textures sampled at another position.
   Real error = 0;
-  /// Because its sky comes from maps.
+  /// The error because the device's sky comes from maps.
   Real map_error = 0;
 
   void add(const Radiance& other) { add(Vector(1), other); }
   void add(const Vector& weight, const Radiance& other);
 };
 
-/// How far a device may have the point and the directions from it, because it rounds: lengths in scene units, and
+/// The errors of the point and of directions from it that rounding on a device may cause: lengths in scene units, and
 /// angles.
 struct PointError {
   Real position = 0;
@@ -68,12 +68,12 @@ struct SurfacePoint {
   Vector normal{0};
   /// 1 where the front is seen, -1 where the back is.
   Real side = 1;
-  /// Where shadow rays start from, but for the lift.
+  /// The origin of shadow rays before the lift.
   Vector shadow_position{0};
   /// How far along the geometric normal secondary rays start.
   Real lift = 0;
   Texel vertex_color{1};
-  /// Of glass, and of mirrors that hang on the angle.
+  /// For glass, and for mirrors whose reflectance depends on the angle.
   std::optional<Face> face;
   const Material* material = nullptr;
   /// As textures see it; without a mesh on analytic shapes.
@@ -82,21 +82,22 @@ struct SurfacePoint {
   Slots slots;
 };
 
-/// What each of them shows at a point: 1 where there is no texture.
+/// The value of each texture at a point; 1 without a texture.
 using SlotTexels = std::array<Texel, kSlotCount>;
 
-/// A source as it arrives at a point.
+/// The light of a source at a point.
 struct ArrivingLight {
   const Light* light = nullptr;
   Vector to_light{0};
-  /// Infinite for a source without a place.
+  /// Infinite for a source without a position.
   Real distance = kInfinity;
-  /// What shape, distance and shadows leave of its power, and how far a device may be off that.
+  /// The light that remains after the source's shape, distance and shadows, and the largest permitted error of a
+  /// device.
   Vector strength{1};
   Real strength_error = 0;
 };
 
-/// What a surface does with light.
+/// The response of a surface to light.
 struct Response {
   /// What it sends by itself and of sources.
   Radiance sent;
@@ -105,7 +106,7 @@ struct Response {
   Vector mirror_weight{0};
   Vector mirror_normal{0};
   Real mirror_roughness = 0;
-  /// What is seen in place of what a mirror ray would bring.
+  /// The light used in place of a mirror ray's.
   Radiance instead;
   /// The weight of what is seen beyond the surface, the direction of the ray there, and how much it is blurred; where
   /// it is neither bent nor blurred it sees what is behind.

@@ -7,20 +7,20 @@
 
 #include "oracle/oracle.h"
 
-/// The tangents that baking tools compute, by brute force: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited",
-/// 2008, with the rules of its author's implementation for what has no area, of the coordinates (u, 1 - v).
+/// Computes by brute force the tangents that baking tools use: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited",
+/// 2008, with the rules of its author's implementation for triangles without area, for the coordinates (u, 1 - v).
 namespace promin::oracle {
 
-/// What a corner's tangent is.
+/// The tangent of a corner.
 struct CornerTangent {
-  /// Unit and across the normal; 0 where there is none.
+  /// A unit vector perpendicular to the normal; 0 if there is none.
   Vector direction{0};
-  /// The sign of the bitangent, w, or 0 where there is none.
+  /// The sign of the bitangent, w; 0 if there is none.
   int hand = 0;
   /// How far off, as an angle, a computation in double from exact differences may be whose result is rounded to fp32;
   /// infinite where rounding decides whether there is a direction at all.
   Real error = 0;
-  /// The group that shares it; none (-1) of corners that no group came to.
+  /// The group that shares the tangent; -1 for corners in no group.
   int group = -1;
   /// Of these the groups that other corners of the vertex have, the first first: one of them is to be copied.
   std::vector<int> groups_at_vertex;

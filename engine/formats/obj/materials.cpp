@@ -180,7 +180,7 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& rep
   }
   phong.fresnel = illum == 5.0 || illum == 7.0;
   if (is_refracting(source) || phong.fresnel) {
-    // Glass where the file does not say.
+    // The default is the index of glass.
     const double ior = source.find("Ni", kGlass).x;
     phong.ior = static_cast<float>(is_index(ior) ? ior : kGlass);
   }

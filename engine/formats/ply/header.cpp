@@ -196,7 +196,7 @@ class HeaderParser {
     for (const PlyElement& element : out_.elements) {
       uint64_t row_bytes = 0;
       for (const PlyProperty& property : element.properties) {
-        // A number of a text takes a digit and a space.
+        // In a text file a number takes at least a digit and a space.
         row_bytes += is_text ? 2 : size_of(property.is_list ? property.count_type : property.type);
       }
       const uint64_t rows = row_bytes == 0 ? element.row_count : room / row_bytes;
