@@ -34,8 +34,8 @@ struct PointError {
   Real to_eye = 0;
 };
 
-/// A material's textures, each model's in this order: Phong has the base, specular in place of metallic and roughness,
-/// normals and emission, what is unlit has the base alone.
+/// A material's textures, in this order for every model. Phong has base, specular (in place of metallic and roughness),
+/// normals and emission; an unlit material has only the base.
 enum Slot : size_t {
   kBaseSlot,
   kMetallicRoughnessSlot,
@@ -64,9 +64,9 @@ Slots slots_of(const Material& material);
 struct SurfacePoint {
   Vector position{0};
   Vector geometric_normal{0};
-  /// Interpolated where the mesh has vertex normals.
+  /// Interpolated if the mesh has vertex normals.
   Vector normal{0};
-  /// 1 where the front is seen, -1 where the back is.
+  /// 1 if the front is visible, -1 if the back is.
   Real side = 1;
   /// The origin of shadow rays before the lift.
   Vector shadow_position{0};
@@ -76,9 +76,9 @@ struct SurfacePoint {
   /// For glass, and for mirrors whose reflectance depends on the angle.
   std::optional<Face> face;
   const Material* material = nullptr;
-  /// As textures see it; without a mesh on analytic shapes.
+  /// The point for textures; without a mesh on analytic shapes.
   TrianglePoint on_triangle;
-  /// The material's textures; none where nothing is shown.
+  /// The material's textures; empty if nothing is displayed.
   Slots slots;
 };
 
@@ -99,17 +99,17 @@ struct ArrivingLight {
 
 /// The response of a surface to light.
 struct Response {
-  /// What it sends by itself and of sources.
+  /// The light that the surface emits, and that it reflects from sources.
   Radiance sent;
-  /// Whether a mirror ray may be traced, the weight of what it brings, the normal about which it goes, and the
-  /// roughness at which it meets the sky.
+  /// For a mirror ray: whether it may be traced, the weight of its light, the normal about which it is reflected, and
+  /// the roughness with which it sees the sky.
   Vector mirror_weight{0};
   Vector mirror_normal{0};
   Real mirror_roughness = 0;
   /// The light used in place of a mirror ray's.
   Radiance instead;
-  /// The weight of what is seen beyond the surface, the direction of the ray there, and how much it is blurred; where
-  /// it is neither bent nor blurred it sees what is behind.
+  /// For a ray through the surface: the weight of its light, its direction, and its blur. A ray that is neither
+  /// refracted nor blurred sees what lies behind.
   Vector through{0};
   Refraction beyond;
   Vector refracting_normal{0};
@@ -117,10 +117,11 @@ struct Response {
   Real blur = 0;
 };
 
-/// The normal of a texture, seen along `direction`: it turns the point's in the plane of its tangent, where it has one.
+/// Returns the normal from a normal map, seen along `direction`. It rotates the point's normal in the frame of its
+/// tangent, if it has one.
 Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Real scale, const Vector& direction);
 
-/// Of a ray along the unit vector `direction`.
+/// Returns the response for a ray along the unit vector `direction`.
 Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
                  std::span<const ArrivingLight> lights, const Surroundings& surroundings);
 
