@@ -73,7 +73,7 @@ struct SheetOptions {
   std::optional<uint32_t> columns;
 };
 
-/// Where the pictures of a sheet lie.
+/// The positions of the pictures on a sheet.
 class SheetLayout {
  public:
   SheetLayout(const uvec2& picture, uint32_t count, std::optional<uint32_t> columns)

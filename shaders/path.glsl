@@ -25,7 +25,7 @@ struct Path {
   uint skipped;
   uint kind;    // LOG_*, of its next ray
   // With FEATURE_LIGHT_AOVS:
-  uint part;  // PART_*, that takes what its next ray brings; of the camera's PART_BACKGROUND
+  uint part;  // PART_* that gets the light of its next ray; PART_BACKGROUND for the camera's ray
 };
 
 // Assigns the path's next ray to a part of the picture, unless it already has one.

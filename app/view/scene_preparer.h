@@ -76,7 +76,7 @@ struct ShownScene {
   /// The tree and the lights that are on the device.
   SceneChoice choice;
   Surroundings surroundings = {};
-  /// How its light is shown.
+  /// How the scene's light is mapped to the display.
   DisplayTransform display;
   /// The first device that it was copied to.
   SceneOn first;

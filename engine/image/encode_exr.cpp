@@ -301,7 +301,7 @@ class ExrEncoder::Impl {
     });
   }
 
-  /// Encodes a part whose rows wait, some at a time.
+  /// Encodes a part whose rows were kept until the end, in groups of rows.
   void encode_waiting(const Part& part) {
     constexpr size_t kMostBytes = size_t{16} << 20;
     // A multiple of those by which EXRs are compressed.

@@ -281,7 +281,7 @@ class BandWalk {
     return true;
   }
 
-  /// Puts rays of two rows that lie next to each other; the one behind first comes up with the other.
+  /// Puts rays of two neighbouring rows; the row that is behind first catches up with the other.
   void put_pair(Head& a, Head& b, Sink& sink) const {
     if (a.taken == 0 || b.taken == 0 || !rows_.are_neighbours(a.place, b.place)) {
       sink.put(a.next, a.taken);

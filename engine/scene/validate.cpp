@@ -23,7 +23,7 @@ namespace {
 constexpr double kLeastVolume = 1e-12;
 /// The largest error of the length of a light's direction. A spot's cosines are computed with the direction as given.
 constexpr float kDirectionTolerance = 1e-5F;
-/// The most by which the lengths and the product of a camera's look and up may be off.
+/// The largest error of the lengths of a camera's look and up, and of their dot product.
 constexpr float kBasisTolerance = 1e-3F;
 /// Powers and colours beyond this are refused, because their products overflow in fp32.
 constexpr float kMaxPower = 1e15F;

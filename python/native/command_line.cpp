@@ -180,7 +180,7 @@ app::RenderOptions read_options(const std::vector<std::string>& words) {
   try {
     app::parse_arguments(command, static_cast<int>(all.size()), all.data());
   } catch (const UsageError& error) {
-    // Python has no command line, and its keywords no dashes.
+    // In Python the message must not mention the command line, and keywords have no dashes.
     Problem problem = error.problems().front();
     if (const size_t dashes = problem.what.find("--"); dashes != std::string::npos) problem.what.erase(dashes, 2);
     if (!problem.cure.starts_with("did you mean")) problem.cure.clear();
