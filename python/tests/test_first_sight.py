@@ -106,7 +106,7 @@ def test_rays_have_many_forms(box_caster: promin.Caster) -> None:
     for wrong in (origins, (0, 0, 1), np.float32(origins)):
         with pytest.raises(promin.UsageError, match=r"points without directions; .* cast\(origins, directions\)"):
             box_caster.cast(wrong)
-    with pytest.raises(promin.UsageError, match="tmin and tmax go with origins and directions"):
+    with pytest.raises(promin.UsageError, match="tmin and tmax need origins and directions"):
         box_caster.cast(whole, tmax=1)
 
 

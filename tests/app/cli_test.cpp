@@ -172,7 +172,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
         "average"},
        "--error-in display and --exposure average contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "error", "--shading", "uv"},
-       "--aov error and --shading contradict each other"},
+       "--shading and --aov error contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "12"},
        "--min-spp takes a power of two, not 12"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "16", "--max-spp", "8"},
@@ -216,10 +216,10 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--max-depth", "1001"}, "--max-depth takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}, "--crop is empty"},
-      {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop reaches beyond"},
+      {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop extends beyond"},
       {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "choose one of: 0 (main), 1 (side)"},
       {{"render", "square.gltf", "-o", "a.exr", "--camera", "2"}, "no camera \"2\", square.gltf"},
-      {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "no cameras to choose from"},
+      {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "the scene has no cameras"},
       {{"render", "square.gltf", "-o", "a.exr", "--fov", "180"}, "--fov takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-1"}, "--near takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "nan", "0"}, "--eye takes a number"},
@@ -236,7 +236,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--from", "left", "--camera", "0"},
        "--from and --camera contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--from", "lefty"}, "did you mean left?"},
-      {{"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}, "--fit has nothing to frame"},
+      {{"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}, "--fit has no effect on the scene's own camera"},
       {{"render", "square.gltf", "-o", "a.exr", "--fit", "1.5"}, "--fit takes a number from 0.05 to 1, not"},
       {{"render", "square.gltf", "-o", "a.exr", "--zoom", "0"}, "--zoom takes a number from 0.001 to 1000, not"},
       {{"render", "square.gltf", "-o", "a.exr", "--up", "north"}, "--up "},
@@ -274,7 +274,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--dither"},
        "--dither needs a PNG, on the command line; add -o square.png"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "direct", "--shading", "normals"},
-       "--aov of light and --shading"},
+       "--shading and an --aov of light contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/0"}, "not \"0\" in \"1/0\""},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/65537"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "3/2"}, "--target-error takes 1/65536 to 1"},
@@ -543,7 +543,7 @@ TEST_F(CliTest, StrictRefusesWhatIsRequiredAndNotKnown) {
         square_with("\"extensionsUsed\":", R"("extensionsRequired": ["KHR_materials_foo"], "extensionsUsed":)"));
   const ProcessResult info = run({"info", "foo.gltf"});
   EXPECT_EQ(info.exit_code, 0) << info.err;
-  EXPECT_THAT(info.out, HasSubstr("the file requires KHR_materials_foo, which is not known"));
+  EXPECT_THAT(info.out, HasSubstr("the file requires KHR_materials_foo, which is unknown"));
   EXPECT_THAT(info.out, ContainsRegex("extensions +used: KHR_lights_punctual\n"));
   EXPECT_THAT(info.out, ContainsRegex(" +ignored: KHR_materials_foo \\(required\\)\n"));
   const std::string refusal = "the required extension KHR_materials_foo is not implemented";
@@ -572,7 +572,7 @@ TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
   write("models/square.gltf", text);
   EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leaves the scene's folder"));
   EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a file does not exist"));
-  expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "is no folder, none");
+  expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "is not a folder, none");
   expect_failure(run({"info", "models/square.gltf", "--strict"}), 3, "--root DIR");
 }
 
@@ -659,7 +659,7 @@ TEST_F(InfoJsonTest, SaysWhatASceneHolds) {
   EXPECT_EQ(scene["cameras"].at(0)["name"], "main");
   EXPECT_EQ(scene["environment"]["sky"]["kind"], "studio");
   EXPECT_EQ(scene["display"]["tone_mapping"], "neutral");
-  EXPECT_THAT(scene["assumed"].dump(), HasSubstr("a studio's weaker light"));
+  EXPECT_THAT(scene["assumed"].dump(), HasSubstr("weak studio light"));
   EXPECT_EQ(scene["extensions"], json({{{"is_required", false}, {"is_used", true}, {"name", "KHR_lights_punctual"}}}));
   EXPECT_THAT(scene["warnings"], IsEmpty());
   // The shortest decimal of the fp32 number.
@@ -934,7 +934,7 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
             std::string(" exists already and promin did not make it from square.gltf; name the file to write by -o"));
     EXPECT_EQ(read(name), other);
     write(name, "my notes");
-    expect_failure(run({"render", "square.gltf"}), 2, "exists and promin did not make it");
+    expect_failure(run({"render", "square.gltf"}), 2, "exists already and promin did not make it");
     EXPECT_EQ(run({"render", "square.gltf", "-o", name, "--size", "8", "8"}).exit_code, 0) << "-o replaces";
   }
   EXPECT_EQ(read("square.png"), before);

@@ -196,7 +196,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
     expect_failure(render_path(arguments), 2, part);
     EXPECT_THAT(files(), testing::ElementsAre("path.json"));
   }
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames has no path");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames needs a camera path");
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps has no path");
   write("path.json", "{}");
   const ProcessResult bad = render_path({"-o", "f#.exr"});

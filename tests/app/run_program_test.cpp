@@ -32,16 +32,16 @@ std::string message_of_cut_loops() {
 
 TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
   EXPECT_THAT(message_of_cut_loops(),
-              EndsWith(", on this device; take another --device, or leave out surfaces that lie in one another"));
+              EndsWith(", on this device; use another --device, or remove surfaces that coincide"));
   const auto message = [](const char* where, const char* cure, Setting setting) {
     return message_of(RunError({"bad", where, cure, setting}));
   };
   EXPECT_EQ(message("requested as the device", "choose one", Setting::kDevice),
             "bad, requested by --device; choose one");
   EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "bad, x; try again, or another --device");
-  EXPECT_EQ(message("x", "take the builder sah", Setting::kBuilder), "bad, x; take --builder sah");
+  EXPECT_EQ(message("x", "use the builder sah", Setting::kBuilder), "bad, x; use --builder sah");
   EXPECT_EQ(message("x", "raise the memory for textures", Setting::kTextureMemory), "bad, x; raise --texture-memory");
-  EXPECT_EQ(message_of(Problem{"bad", "x", "take the builder sah", Setting::kBuilder}), "bad, x; take --builder sah");
+  EXPECT_EQ(message_of(Problem{"bad", "x", "use the builder sah", Setting::kBuilder}), "bad, x; use --builder sah");
   EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "bad, x; bounce less (--max-depth)") << "other words";
   EXPECT_EQ(message("another device.gltf", "use another device", Setting::kNone),
             "bad, another device.gltf; use another device");

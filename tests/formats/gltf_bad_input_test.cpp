@@ -277,8 +277,8 @@ const BadUri kBadUris[] = {
     {"Backslash", "..\\secret.bin", "leaves the scene's folder"},
     {"Absolute", "/etc/passwd", "absolute path"},
     {"EscapedAbsolute", "%2Fetc/passwd", "absolute path"},
-    {"FileScheme", "file:///etc/passwd", "no relative path"},
-    {"WebScheme", "http://localhost/a.bin", "no relative path"},
+    {"FileScheme", "file:///etc/passwd", "not a relative path"},
+    {"WebScheme", "http://localhost/a.bin", "not a relative path"},
     {"Link", "link.bin", "through a link"},
     {"LinkedFolder", "up/secret.bin", "through a link"},
     {"ZeroByte", "a%00b", "zero byte"},
@@ -311,7 +311,7 @@ TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
 TEST_F(BadFileTest, BrokenJsonNamesTheLine) {
   EXPECT_THAT(refusal("a.gltf", "{\n\"asset\": ]}"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasSubstr("cannot be read"));
-  EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("not a JSON object"));
 }
 
 TEST_F(BadFileTest, DeepNestingIsRefusedBeforeItIsParsed) {

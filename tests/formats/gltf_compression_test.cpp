@@ -286,7 +286,7 @@ TEST_F(GltfCompressionTest, MeshoptOfALaterVersionIsSaidToBe) {
   GltfBuilder gltf = packed_grid(4, "INDICES");
   const size_t offset = gltf.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteOffset"];
   gltf.bytes[offset] = static_cast<char>(0xAF);
-  EXPECT_THAT(refusal("scene.gltf", packed_text(gltf)), HasSubstr("of a version that this libmeshoptimizer does not"));
+  EXPECT_THAT(refusal("scene.gltf", packed_text(gltf)), HasSubstr("their version is unknown to this libmeshoptimizer"));
 }
 
 TEST_F(GltfCompressionTest, BrokenMeshoptLoadsOrIsRefused) {

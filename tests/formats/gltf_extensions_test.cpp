@@ -324,7 +324,7 @@ TEST_F(GltfExtensionsTest, OtherFormatsHaveNoVariants) {
     const std::filesystem::path file = write("a" + ending, text);
     EXPECT_EQ(load_scene(file).objects.size(), 1U) << ending;
     EXPECT_THAT([&] { load_scene(file, {.material_variant = "dusk"}); },
-                ThrowsMessage<UsageError>(HasSubstr("files that end in " + ending + " have no variants")));
+                ThrowsMessage<UsageError>(HasSubstr("files that end in " + ending + " have no material variants")));
   }
 }
 

@@ -404,7 +404,7 @@ TEST_F(GltfRepairTest, NodesOfManyParentsEndInARefusal) {
     gltf.add_node({{"children", {below}}});
     gltf.add_node({{"children", {below, below + 1}}});
   }
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("stand in too many places"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("appear in too many places"));
 }
 
 TEST_F(GltfRepairTest, TheMatrixCountsAlone) {
@@ -667,8 +667,8 @@ TEST_F(GltfRepairTest, LengthsInTheHeaderOfAGlbAreRepaired) {
   const std::pair<std::string, const char*> kFiles[] = {
       {good.substr(0, good.size() - 2), "a GLB chunk extends beyond the end of the file (2 bytes)"},
       {with(8, 0xFFFFFFFF), "the GLB header declares another number of bytes than the chunks have"},
-      {with(8, 0), "the GLB header promises another number"},
-      {with(8, good.size() - 4), "the GLB header promises another number"},
+      {with(8, 0), "the GLB header declares another number"},
+      {with(8, good.size() - 4), "the GLB header declares another number"},
       {with(binary, 42), "a GLB chunk header is cut off"},
       {with(12 + 4, 0x4E4F534A) + GltfBuilder::u32(0) + "JSON", "bytes after the end of the GLB"},
   };

@@ -139,7 +139,7 @@ TEST_F(ObjTest, NamesAreShownInUtf8) {
   for (std::string word : {"", "x"}) {
     while (word.size() < 100) word += "ü";
     const std::string said = refusal("f " + word + "\n");
-    EXPECT_THAT(said, HasSubstr("is no corner"));
+    EXPECT_THAT(said, HasSubstr("is not a corner"));
     EXPECT_EQ(said, to_utf8(said));
   }
 }
@@ -219,7 +219,7 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
                                                 HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13 and 2 more"),
                                                 HasSubstr("the face is left out"))));
-  expect_strict_refusal(text, "a face has a vertex that is no three numbers", ": line 13");
+  expect_strict_refusal(text, "a face has a vertex that is not three numbers", ": line 13");
   EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("face"));
 }
 
@@ -229,12 +229,12 @@ TEST_F(ObjTest, NumbersBehindAVertexCostAWarning) {
   EXPECT_THAT(rgba.warnings, ElementsAre(HasSubstr("more than 6 numbers, line 1 and 1 more")));
   const LoadedScene colors = load("v 0 0 0 nan 0 0\nv 1 0 0 0 -1 0\nv 0 1 0 0.5 0 0\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(colors).colors, ElementsAre(vec4(1), vec4(1), vec4(0.5F, 0, 0, 1)));
-  EXPECT_THAT(colors.warnings, ElementsAre(AllOf(HasSubstr("colour is no three"), HasSubstr("line 1 and 1 more"))));
+  EXPECT_THAT(colors.warnings, ElementsAre(AllOf(HasSubstr("colour is not three"), HasSubstr("line 1 and 1 more"))));
   const LoadedScene others = load("v 0 0 0 1 2\nv 1 0 0 x\nv 0 1 0 0 0 0\nf 1 2 3\n");
   EXPECT_EQ(mesh_of(others).positions.at(1), vec3(1, 0, 0));
-  EXPECT_THAT(others.warnings, ElementsAre(AllOf(HasSubstr("no weight and no colour"), HasSubstr("and 1 more"))));
+  EXPECT_THAT(others.warnings, ElementsAre(AllOf(HasSubstr("neither a weight nor a colour"), HasSubstr("and 1 more"))));
   expect_strict_refusal("v 0 0 0 1 1 1 1\n" + kSquare + "f 1 2 3\n", "more than 6 numbers", ": line 1");
-  expect_strict_refusal("v 0 0 0 1 x 1\n" + kSquare + "f 1 2 3\n", "colour is no three numbers", ": line 1");
+  expect_strict_refusal("v 0 0 0 1 x 1\n" + kSquare + "f 1 2 3\n", "colour is not three numbers", ": line 1");
 }
 
 TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
@@ -248,7 +248,7 @@ TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
   EXPECT_THAT(scene.warnings, ElementsAre("a normal is not three numbers up to 1e15 (\"nan\"), line 5 and 2 more; "
                                           "the faces that use it are drawn flat",
                                           HasSubstr("a normal has more than 3 numbers, line 8")));
-  expect_strict_refusal(text, "a normal is no three numbers", ": line 5");
+  expect_strict_refusal(text, "a normal is not three numbers", ": line 5");
 }
 
 TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
@@ -264,7 +264,7 @@ TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   EXPECT_EQ(mesh.normals.at(mesh.triangles[3].x), vec3(1, 0, 0));
   EXPECT_THAT(some.warnings, ElementsAre(HasSubstr("line 6 and 3 more")));
   EXPECT_THAT(load(kSquare + "f 1//1 2//1 3//1\nvn 1 0 0\n").warnings, IsEmpty()) << "normals may follow";
-  expect_strict_refusal(kSquare + "f 1//1 2//1 3//1\n", "names a normal that is not there", ": line 5");
+  expect_strict_refusal(kSquare + "f 1//1 2//1 3//1\n", "refers to a normal that does not exist", ": line 5");
 }
 
 TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
@@ -273,7 +273,7 @@ TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
   EXPECT_THAT(scene.warnings,
               ElementsAre("a face refers to texture coordinates that do not exist, line 6 and 1 more; it "
                           "is drawn without them"));
-  expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that are not there", ": line 5");
+  expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that do not exist", ": line 5");
   expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is not a number", ": line 5");
 }
 
@@ -446,7 +446,7 @@ TEST_F(ObjTest, AnMtlOfAnotherFolderIsReadFromBesideTheScene) {
                            "file:///x/a.mtl", "\\\\server\\share\\a.mtl # x"}) {
     const LoadedScene scene = load(kSquare + "mtllib " + name + "\nusemtl red\nf 1 2 3\n");
     EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(1, 0, 0)) << name;
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr("are read from beside the scene"))) << name;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("are read from the scene's folder"))) << name;
   }
   write("b.mtl", "newmtl blue\nKd 0 0 1\n");
   const LoadedScene two = load(kSquare + "mtllib /x/a.mtl /x/b.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
@@ -463,7 +463,7 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
   };
   EXPECT_THAT(warnings_of("mtllib ../none.mtl"), ElementsAre(HasSubstr("leaves the scene's folder (\"../none.mtl\")")));
   EXPECT_THAT(warnings_of("mtllib /etc/none"), ElementsAre(HasSubstr("is an absolute path (\"/etc/none\")")));
-  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is no relative path")));
+  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is not a relative path")));
   EXPECT_THAT(warnings_of("mtllib"), IsEmpty());
   write("empty.mtl", "");
   EXPECT_THAT(warnings_of("mtllib empty.mtl"), ElementsAre(HasSubstr("\"empty.mtl\" is ignored: the file is empty")));
@@ -617,8 +617,8 @@ TEST_F(ObjMapTest, CoordinatesThatAreMissingAreSaid) {
   const LoadedScene scene = load("mtllib m.mtl\nusemtl m\nvt 0 x\n" + kSquare + "f 1/1 2/7 3\n");
   // They are 0; v goes down in meshes, where 1 is 0 as the texture repeats.
   EXPECT_THAT(mesh_of(scene).uvs, Each(vec4(0, 0, 0, 0)));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("no number up to 1e15"), HasSubstr("that are not there"),
-                                          HasSubstr("corners without texture")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("not a number up to 1e15"), HasSubstr("that do not exist"),
+                                          HasSubstr("have no texture coordinates")));
 }
 
 TEST_F(ObjMapTest, OptionsPlaceTheMap) {
@@ -683,8 +683,8 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   }
   const LoadedScene beside = load_with("map_Kd C:\\x\\a.png\nmap_Ks /y/a.png\n");
   EXPECT_TRUE(beside.materials.at(0).phong().specular_texture.exists());
-  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from beside the scene")));
-  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is no relative path")));
+  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from the scene's folder")));
+  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not a relative path")));
 }
 
 // Maps of heights
@@ -929,15 +929,15 @@ TEST_P(BadObjTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadObj[] = {
-    {"IndexZero", "f 0 1 2", "\"0\" is no corner", ": line 5"},
+    {"IndexZero", "f 0 1 2", "\"0\" is not a corner", ": line 5"},
     {"IndexPastTheEnd", "f 1 2 5", "index 5 is out of range, there are 4 vertices", ": line 5"},
-    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is no corner", ": line 5"},
-    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is no corner", ": line 5"},
-    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is no corner", ": line 5"},
-    {"IndexIsText", "f a b c", "\"a\" is no corner", ": line 5"},
-    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is no corner", ": line 5"},
-    {"NoPosition", "f /1 2 3", "is no corner", ": line 5"},
-    {"NoFaceOfThreeCorners", "f 1 2\nf 1 x 2", "\"x\" is no corner", ": line 6"},
+    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is not a corner", ": line 5"},
+    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is not a corner", ": line 5"},
+    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is not a corner", ": line 5"},
+    {"IndexIsText", "f a b c", "\"a\" is not a corner", ": line 5"},
+    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is not a corner", ": line 5"},
+    {"NoPosition", "f /1 2 3", "is not a corner", ": line 5"},
+    {"NoFaceOfThreeCorners", "f 1 2\nf 1 x 2", "\"x\" is not a corner", ": line 6"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj), name_of_bad_file);

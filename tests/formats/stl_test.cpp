@@ -176,7 +176,8 @@ TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the number of facets was never written")));
     EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
     // Where the size is no sign, the file is refused.
-    EXPECT_THAT(refusal(bytes + "x"), testing::AnyOf(HasSubstr("holds nothing to draw"), HasSubstr("has room for 3")));
+    EXPECT_THAT(refusal(bytes + "x"),
+                testing::AnyOf(HasSubstr("contains nothing to draw"), HasSubstr("has room for 3")));
   }
 }
 
@@ -241,7 +242,7 @@ const BadFile kBadStl[] = {
      "nothing to draw (a facet has a vertex coordinate that is not a number up to 1e15 (\"1e16\"), line 3", ""},
     {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",
      "nothing to draw (a facet has fewer than 3 corners (2), line 5", ""},
-    {"LostVertex", "solid\nvertex 0 0 0\n", "lies in no facet", ": line 2"},
+    {"LostVertex", "solid\nvertex 0 0 0\n", "lies outside of facets", ": line 2"},
     {"LostEnd", "solid\nendfacet\n", "has no begin", ": line 2"},
     {"Nested", "solid\nfacet\nfacet\n", "within another", ": line 3"},
     {"Cut", "solid\nfacet\nvertex 0 0 0\n", "ends within a facet", ": line 3"},

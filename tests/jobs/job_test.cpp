@@ -219,9 +219,9 @@ TEST_F(JobTest, AManifestThatWasChangedByHandIsDamaged) {
   std::string text = read(job_folder_ / "job.json");
   text.replace(text.find(" \"options\""), 1, "  ");
   write(job_folder_ / "job.json", text);
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("it is damaged"));
   write(job_folder_ / "job.json", "");
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("it is damaged"));
 }
 
 TEST_F(JobTest, LeftoversOfTheDeadAreCleared) {

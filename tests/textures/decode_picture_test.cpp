@@ -73,8 +73,8 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   Bytes lying = png;
   lying[18] = std::byte{0xFF};
   EXPECT_THROW(decode_picture(lying), PictureError);
-  EXPECT_THAT(decoding({}), ThrowsMessage<PictureError>(HasSubstr("of no known format")));
-  EXPECT_THAT(decoding(Bytes(100, std::byte{'x'})), ThrowsMessage<PictureError>(HasSubstr("of no known format")));
+  EXPECT_THAT(decoding({}), ThrowsMessage<PictureError>(HasSubstr("its format is unknown")));
+  EXPECT_THAT(decoding(Bytes(100, std::byte{'x'})), ThrowsMessage<PictureError>(HasSubstr("its format is unknown")));
   Bytes jpeg = make_jpeg({16, 16}, std::vector<uint8_t>(16 * 16 * 3, 100));
   for (const size_t length : {4, 40, 160}) {
     const Bytes part(jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(length));
