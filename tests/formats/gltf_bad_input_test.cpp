@@ -338,7 +338,7 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   const size_t json_length = static_cast<unsigned char>(good[12]) + 256 * static_cast<unsigned char>(good[13]);
   const size_t binary = 20 + json_length;
   EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasSubstr("GLB header is cut off"));
-  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasSubstr("chunk promises 44 bytes, 40 are left"));
+  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasSubstr("chunk declares 44 bytes, 40 remain"));
   EXPECT_THAT(spoiled(4, 1), HasSubstr("the file is glTF 1.0"));
   EXPECT_THAT(spoiled(4, 3), HasSubstr("version 3"));
   EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk promises"));
