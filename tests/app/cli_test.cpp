@@ -141,7 +141,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"diff", "a.png", "b.png"}, "unknown command diff, on the command line; did you mean compare?"},
       {{"render", "square.gltf", "--denoise"}, "unknown option --denoise, on the command line; see promin render"},
       {{"render", "square.gltf", "--seed", "1"}, "unknown option --seed, on the command line; see promin render"},
-      {{"square.gltf", "x.png"}, "unexpected argument x.png, on the command line; say -o x.png"},
+      {{"square.gltf", "x.png"}, "unexpected argument x.png, on the command line; write -o x.png"},
       {{"--spp", "3"}, "unknown option --spp"},
       {{"render"}, "SCENE is required, on the command line; see promin render --help"},
       {{"info"}, "SCENE is required, on the command line; see promin info --help"},

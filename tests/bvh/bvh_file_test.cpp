@@ -279,7 +279,7 @@ const HostileTree kHostileTrees[] = {
      "has two parents"},
     {"no_parent", [](Tree& t) { t.nodes.push_back(t.nodes.back()); }, "has no parent before it"},
     {"no_children", [](Tree& t) { set_child_count(t.nodes.back(), 0); }, "has no children"},
-    {"too_many_children", [](Tree& t) { set_child_count(t.nodes.back(), 5); }, "tells of 5 children"},
+    {"too_many_children", [](Tree& t) { set_child_count(t.nodes.back(), 5); }, "declares 5 children"},
     {"leaf_beyond_the_references",
      [](Tree& t) { t.nodes.back().children.x = leaf_of(static_cast<uint32_t>(t.references.size()) - 1, 16); },
      "has a leaf out of range"},

@@ -50,7 +50,7 @@ const BadGltf kBadGltf[] = {
     // The document
     {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "the file is glTF 1.0", "asset.version"},
     {"Version3", [](auto& g) { g.json["asset"]["version"] = "3.0"; }, "\"3.0\" is not 2.x", "asset.version"},
-    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "needs glTF \"2.1\"", "asset.minVersion"},
+    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "requires glTF \"2.1\"", "asset.minVersion"},
     {"RequiredExtension",
      [](auto& g) {
        g.json["extensionsRequired"] = {"EXT_splats"};
@@ -341,10 +341,10 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasSubstr("chunk declares 44 bytes, 40 remain"));
   EXPECT_THAT(spoiled(4, 1), HasSubstr("the file is glTF 1.0"));
   EXPECT_THAT(spoiled(4, 3), HasSubstr("version 3"));
-  EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk promises"));
+  EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk declares"));
   EXPECT_THAT(spoiled(12, json_length + 8), testing::Not(""));
   EXPECT_THAT(spoiled(16, 7), HasSubstr("must be JSON"));
-  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk promises 52 bytes, 44 are left"));
+  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk declares 52 bytes, 44 remain"));
   EXPECT_THAT(spoiled(binary + 4, 7), HasSubstr("has no bytes")) << "a chunk of unknown type is skipped";
 }
 

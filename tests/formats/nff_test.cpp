@@ -336,8 +336,8 @@ TEST_P(BadNffTest, IsRefusedWithPlaceAndCure) {
 
 const BadFile kBadNff[] = {
     {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is not a statement of NFF", ": line 2"},
-    {"UpperCase", "S 0 0 0 1", "\"S\" is no statement", ": line 1"},
-    {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is no statement", ": line 2"},
+    {"UpperCase", "S 0 0 0 1", "\"S\" is not a statement", ": line 1"},
+    {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is not a statement", ": line 2"},
     {"NoNumber", "s 0 0\nx 1\n", "\"x\" is not a number", ": line 2"},
     {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "\"s\" is not a number", ": line 2; write s x y z radius"},
     {"HugeCount", "p 99999999999999999999 0 0 0", "is not a number of corners", ": line 1"},

@@ -401,7 +401,8 @@ TEST_F(ObjTest, ColoursOfOtherSpacesAreIgnored) {
 TEST_F(ObjTest, WhatWouldBeInvisibleByTrIsOpaque) {
   std::vector<std::string> warnings;
   EXPECT_EQ(material("Kd 1 0 0\nTr 1.000000\nillum 1\n", &warnings).alpha_mode, AlphaMode::kOpaque);
-  EXPECT_THAT(warnings, ElementsAre(AllOf(HasSubstr("\"m\" would be invisible by its Tr"), HasSubstr("of m.mtl"))));
+  EXPECT_THAT(warnings,
+              ElementsAre(AllOf(HasSubstr("\"m\" would be invisible because of its Tr"), HasSubstr("of m.mtl"))));
   write("tr.mtl", "newmtl a\nTr 1\nnewmtl b\nTr 0.25\nnewmtl c\nd 0.5\nTr 0.5\nnewmtl d\nTr 0\n");
   const LoadedScene scene = load(kSquare +
                                  "mtllib tr.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"
@@ -802,7 +803,7 @@ TEST_F(ObjHeightsTest, APictureOfNormalsIsTakenForOne) {
   std::vector<std::string> warnings;
   const TextureImage normals = normals_of("map_Bump -bm 0.5 n.png\n", &warnings);
   EXPECT_EQ(normals.texels.at(1), 0xFFFA80A0U);
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a map of heights holds normals")));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map holds normals")));
   // Bright grey texels are vectors of length 1 too, and photographs are blue.
   write_picture("grey.png", {200, 200, 200, 201, 201, 201, 199, 199, 199, 202, 202, 202}, {4, 1});
   normals_of("bump grey.png\n", &warnings);

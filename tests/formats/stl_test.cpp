@@ -253,8 +253,8 @@ INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl), name_of_
 TEST_F(StlTest, BrokenBinaryFilesSayWhy) {
   StlBuilder stl;
   for (int i = 0; i < 3; ++i) stl.add({{kTriangle[0], kTriangle[1], kTriangle[2]}});
-  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("tells of 3 facets, but has room for 2"));
-  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("tells of 4294967295 facets, but has room for 0"));
+  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("declares 3 facets, but has room for 2"));
+  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("declares 4294967295 facets, but has room for 0"));
 }
 
 }  // namespace
