@@ -197,7 +197,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
     EXPECT_THAT(files(), testing::ElementsAre("path.json"));
   }
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames needs a camera path");
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps has no path");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps needs a camera path");
   write("path.json", "{}");
   const ProcessResult bad = render_path({"-o", "f#.exr"});
   EXPECT_EQ(bad.exit_code, 3);
