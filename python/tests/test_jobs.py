@@ -441,7 +441,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     with pytest.raises(promin.InputError, match="the file does not exist, .*box.gltf"):
         jobs.open(tmp_path / "job").runner()
     (tmp_path / "job/command.json").write_text("{}")
-    with pytest.raises(promin.InputError, match="does not say by what command .* or is damaged, .*command.json"):
+    with pytest.raises(promin.InputError, match="does not name the command .* or it is damaged, .*command.json"):
         jobs.open(tmp_path / "job").runner()
 
 

@@ -223,7 +223,7 @@ TEST_F(NffTest, PatchesHaveNormals) {
   EXPECT_THAT(flat.warnings, Contains(HasSubstr("a normal that is 0 or not a number")));
   const Scene unknown = load(kMaterial + "pp 3 0 0 0 nan inf 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
   EXPECT_THAT(shape_of<Mesh>(unknown, 0).normals, IsEmpty());
-  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is drawn flat")));
+  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is shaded flat")));
 }
 
 TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {

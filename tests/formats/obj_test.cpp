@@ -246,7 +246,7 @@ TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
   EXPECT_EQ(mesh.normals.at(mesh.triangles[0].z), vec3(1, 0, 0));
   for (const size_t sharp : {1, 2}) EXPECT_EQ(mesh.normals.at(mesh.triangles[sharp].x), vec3(0, 0, 1));
   EXPECT_THAT(scene.warnings, ElementsAre("a normal is not three numbers up to 1e15 (\"nan\"), line 5 and 2 more; "
-                                          "the faces that use it are drawn flat",
+                                          "the faces that use it are shaded flat",
                                           HasSubstr("a normal has more than 3 numbers, line 8")));
   expect_strict_refusal(text, "a normal is not three numbers", ": line 5");
 }
@@ -255,7 +255,7 @@ TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   const LoadedScene none = load(kSquare + "f 1//1 2//2 3//3\nf 1//1 3//3 4//4\n");
   EXPECT_THAT(mesh_of(none).normals, IsEmpty());
   EXPECT_THAT(none.warnings,
-              ElementsAre("a face refers to a normal that does not exist, line 5 and 1 more; it is drawn flat"));
+              ElementsAre("a face refers to a normal that does not exist, line 5 and 1 more; it is shaded flat"));
   const LoadedScene some = load(kSquare +
                                 "vn 1 0 0\nf 1//1 2//1 3//2\nf 1//1 3//-2 4//0\nf 1//1 3//x 4//1\n"
                                 "f 1//1 2//1 3//1\nf 1//1 2//1 3//99999999999999999999\n");
@@ -475,7 +475,8 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
 TEST_F(ObjTest, AMissingMtlIsGrey) {
   const LoadedScene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
   EXPECT_EQ(scene.materials.at(scene.objects[0].material).phong().diffuse, vec3(0.8F));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"none.mtl\" is not read"), HasSubstr("\"red\" is in no MTL")));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(HasSubstr("\"none.mtl\" is not read"), HasSubstr("\"red\" is not defined in any MTL")));
 }
 
 TEST_F(ObjTest, FacesKeepTheirMaterials) {

@@ -288,7 +288,7 @@ TEST_F(PlyTest, WordsThatAreNoNumbersCostWhatTheySay) {
   EXPECT_EQ(mesh_of(colored).colors.at(0), vec4(1, 0, 0, 1));
   const LoadedScene smooth = load(triangle(kNormal, {"-1.#IND 0 x", "0 0 1", "0 0 1"}));
   EXPECT_THAT(mesh_of(smooth).normals, testing::Each(vec3(0, 0, 1)));
-  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is drawn flat")));
+  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is shaded flat")));
   EXPECT_THAT(load(triangle("property float quality\n", {"x", "y", "z"})).warnings, IsEmpty());
 }
 
