@@ -406,7 +406,12 @@ def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
     files[2].write_bytes(whole[2][:-3] + bytes([whole[2][-3] ^ 1]) + whole[2][-2:])
     files[3].write_bytes(whole[1])
     assert [job.state(number) for number in range(4)] == ["bad"] * 4
-    assert [job.why(number) for number in range(4)] == ["is cut", "the file is empty", "is damaged", "the file holds another piece"]
+    assert [job.why(number) for number in range(4)] == [
+        "the piece is cut short",
+        "the file is empty",
+        "the piece is damaged",
+        "the file holds another piece",
+    ]
     with pytest.raises(promin.RunError, match="4 of 4 pieces are missing or bad"):
         job.merge([tmp_path / "none.png"])
     assert not (tmp_path / "none.png").exists()

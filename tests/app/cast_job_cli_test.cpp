@@ -114,7 +114,7 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
       run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
   EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
   EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
-  EXPECT_THAT(result.out, HasSubstr("3 of 4 pieces made now: cut.npy"));
+  EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now: cut.npy"));
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
 
   expect_failure(

@@ -154,7 +154,7 @@ class Job:
             if header["job"] != self.id:
                 return "bad", "the piece belongs to another job", b""
             if header["sha256"] != hashlib.sha256(content).hexdigest():
-                return "bad", "is damaged", b""
+                return "bad", "the piece is damaged", b""
         except (ValueError, KeyError):
             return "bad", "the file is not a piece of a job, or it is cut short", b""
         return "done", "", content
