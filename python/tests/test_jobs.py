@@ -525,7 +525,7 @@ def test_pieces_of_a_function(tmp_path: Path) -> None:
         create("8")
     with pytest.raises(promin.UsageError, match="made by a function"):
         jobs.open(tmp_path / "job").runner()
-    with pytest.raises(promin.InputError, match='job.s kind is "bytes"'):
+    with pytest.raises(promin.InputError, match="the job's kind is \"bytes\""):
         job.merge([tmp_path / "a.npy"])
     with pytest.raises(promin.UsageError, match="the job has no piece 3 of 3"):
         job.state(3)
