@@ -38,7 +38,7 @@ std::string path_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : app.get_parent()->get_name() + " " + app.get_name();
 }
 
-/// The name to speak of an option by: the last of "-s,--spp".
+/// Returns the name of an option in messages: the last of "-s,--spp".
 std::string display_name(const std::string& names) {
   return names.substr(names.rfind(',') + 1);
 }
@@ -61,7 +61,7 @@ std::string nearest_of(const std::string& name, const std::vector<std::string>& 
   return std::string(nearest_name(name, known));
 }
 
-/// The command's option whose meaning or else whose name is nearest to this one; empty where none is near.
+/// Returns the command's option with the same meaning, else with the most similar name; empty if none is similar.
 std::string nearest_option(const std::string& name, const CLI::App& command) {
   const std::string meant = find_by_meaning(command, name);
   if (!meant.empty()) return meant;
@@ -70,7 +70,7 @@ std::string nearest_option(const std::string& name, const CLI::App& command) {
     if (option->get_group().empty()) continue;
     for (const std::string& known : option->get_lnames()) names.push_back(known);
   }
-  // Dashes are no letters that two names have in common.
+  // Dashes do not count as common letters.
   const std::string near = nearest_of(name.substr(std::min(name.find_first_not_of('-'), name.size())), names);
   return near.empty() ? "" : "--" + near;
 }
@@ -84,7 +84,7 @@ std::string nearest_command(const std::string& name, const CLI::App& program) {
   return nearest_of(name, names);
 }
 
-/// CLI11 collects what it does not know: options, commands and words too many.
+/// CLI11 collects unknown options, unknown commands and surplus words.
 void refuse_leftovers(const CLI::App& program) {
   std::vector<std::string> leftovers = program.remaining(true);
   leftovers.erase(std::remove(leftovers.begin(), leftovers.end(), "--"), leftovers.end());
@@ -112,7 +112,7 @@ std::string name_of(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
 }
 
-/// Words each of which stands in place of the several that an option takes.
+/// Words that each replace all values of an option.
 struct Alternative {
   std::vector<std::string> words;
   size_t count = 0;
@@ -155,8 +155,8 @@ void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& 
   for (const CLI::App* command : commands_of(app)) find_alternatives(*command, found);
 }
 
-/// The words of a command line, with each alternative repeated until it is as many words as its option takes: CLI11
-/// gives an option the same number of words always.
+/// Returns the words of a command line, with each alternative repeated to the number of its option's values, because
+/// CLI11 always gives an option the same number of words.
 std::vector<const char*> fill_up_alternatives(const std::vector<std::string>& words,
                                               const std::map<std::string, Alternative>& alternatives) {
   std::vector<const char*> filled;
@@ -192,7 +192,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Where an option stands in place of a number, values are missing.
+/// If an option follows in place of a number, values are missing.
 void OptionValues::refuse_option(size_t i) const {
   const std::string& word = words_[i];
   const bool is_option = word.size() > 1 && word[0] == '-' &&
@@ -346,7 +346,7 @@ bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
     const std::string placeholders = option == nullptr ? "" : option->get_type_name();
     throw UsageError({tell_too_few(name, placeholders), kWhere, cure_for(path_of(command))});
   } catch (const CLI::ParseError& error) {
-    // A misspelt option explains more than the missing one.
+    // A misspelt option is the better message than a missing one.
     refuse_leftovers(program);
     const std::string message = error.what();
     throw UsageError({message.substr(0, message.find('\n')), kWhere, cure_for(path_of(deepest_command(program)))});

@@ -20,8 +20,8 @@ class App;
 
 namespace promin::app {
 
-/// The words that the user gave to one option. Every reading throws UsageError, which names the option, what it takes
-/// and what it got.
+/// The words that the user gave to one option. All functions throw UsageError, which names the option, its values and
+/// the given words.
 class OptionValues {
  public:
   /// `placeholders` are those of OptionTable::add.
@@ -35,18 +35,18 @@ class OptionValues {
   const std::string& text() const { return words_.front(); }
   /// Reads a decimal number in min...max.
   uint32_t whole(size_t i, uint32_t min, uint32_t max) const;
-  /// Reads a number in min...max, both included. `others` are words that the option takes as well, which the caller has
-  /// looked for.
+  /// Reads a number in min...max, both included. `others` are words that the option also takes, for the message; the
+  /// caller has tested for them.
   double real(size_t i, double min, double max, std::span<const std::string_view> others = {}) const;
-  /// Reads the only word as a quotient, as "1/64"; nullopt where it has no line. The caller checks the range.
+  /// Reads the only word as a quotient such as "1/64"; nullopt if it has no slash. The caller checks the range.
   std::optional<double> fraction() const;
   /// Reads three numbers in -max...max.
   dvec3 vector(double max) const;
   /// Reads one of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
 
-  /// Splits the only word into parts, each to be read as a word of the same option. What refuses a part tells the
-  /// whole.
+  /// Returns parts of the only word, each to be read as a word of the same option. Messages about a part also quote the
+  /// whole word.
   OptionValues with(std::vector<std::string> parts) const {
     OptionValues values(command_, option_, placeholders_, std::move(parts));
     values.whole_word_ = text();
@@ -58,35 +58,35 @@ class OptionValues {
 
  private:
   void refuse_option(size_t i) const;
-  /// As messages quote it.
+  /// Returns the word as messages quote it.
   std::string quote(size_t i) const;
 
   std::string command_;
   std::string option_;
   std::string placeholders_;
   std::vector<std::string> words_;
-  /// What the words are parts of, where they are.
+  /// The whole word, if the words are parts of it.
   std::string whole_word_;
 };
 
-/// The options of a command, one row each. The last of a repeated option holds.
+/// The options of a command, one row each. Of a repeated option the last one counts.
 class OptionTable {
  public:
   explicit OptionTable(CLI::App& command);
 
   using Setter = std::function<void(const OptionValues&)>;
-  /// `names` as "-s,--spp", or "SCENE" for what has no dash; `placeholders` has a word for each word that the option
-  /// takes: "N", "W H". "R G B|word|other" is three words, or one of the others alone, which the setter gets three
-  /// times; in capitals such a word stands for any that is no number.
+  /// Adds an option. `names` is like "-s,--spp", or "SCENE" for an argument without a dash; `placeholders` has a word
+  /// for each value of the option: "N", "W H". "R G B|word|other" stands for three words, or for one of the other
+  /// words, which the setter receives three times; a word in capitals stands for any word that is not a number.
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
-  /// Adds an argument that the command cannot do without.
+  /// Adds a required argument.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
-  /// An option of one word that may be given several times; the setter gets all.
+  /// Adds an option of one word that may be repeated; the setter receives all.
   void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);
-  /// The same, which the command cannot do without; for an argument without a dash too.
+  /// Adds a required one of this kind, also for an argument without a dash.
   void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
                              Setter set);
-  /// An option that help and suggestions do not name, as `set` refuses it. It takes one word.
+  /// Adds an option of one word that help and suggestions do not name, because `set` refuses it.
   void add_hidden(const std::string& name, Setter set);
   void add_flag(const std::string& names, const std::string& help, bool& value);
 
@@ -100,27 +100,27 @@ struct Command {
   std::function<void()> run;
 };
 
-/// Whether a word is a decimal number and nothing else.
+/// Returns whether the whole word is a decimal number.
 bool is_number(const std::string& word);
 
-/// The parts of a text between commas.
+/// Returns the parts of a text between commas.
 std::vector<std::string> split_list(const std::string& list);
 
-/// All commands that a program has.
+/// Returns all commands of a program.
 std::vector<const CLI::App*> commands_of(const CLI::App& program);
 
-/// The options and arguments that a parsed command was given, by the names that messages have, in the order of its
-/// table; with the words that give them again: of what is repeated those that hold, one where one stands for several,
-/// of a flag none.
+/// Returns the options and arguments of a parsed command, by their names in messages and in the order of its table,
+/// with the words that give them again: for a repeated option those that count, one word if one stands for several,
+/// none for a flag.
 std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command);
 
 /// Adds a command with --help and --version.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help);
 
-/// Adds the options that every command has, the program itself too.
+/// Adds the options that every command and the program itself have.
 void add_common_options(CLI::App& app);
 
-/// Reads the command line. False if it asked for help or the version, which are then printed. Throws UsageError.
+/// Reads the command line. Returns false if it requests help or the version, which are then printed. Throws UsageError.
 bool parse_arguments(CLI::App& program, int argc, const char* const* argv);
 
 }  // namespace promin::app

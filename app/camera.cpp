@@ -22,7 +22,8 @@ dmat3 matrix_from_rows(const dvec3& x, const dvec3& y, const dvec3& z) {
 }
 
 /// One Newton-Schulz step to the nearest orthonormal matrix (Higham, "Computing the Polar Decomposition", 1986; Bjoerck
-/// & Bowie 1971). It squares the error, so that one step per rotation leaves rounding alone, and favours no axis.
+/// & Bowie 1971). It squares the error, so that one step per rotation leaves only rounding errors, and it treats all
+/// axes equally.
 dmat3 orthonormalize(const dmat3& q) {
   return 0.5 * q * (3.0 * dmat3(1.0) - glm::transpose(q) * q);
 }

@@ -21,14 +21,14 @@ dmat3 make_rotation_z(double alpha);
 /// The thesis's free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
 ///   M(alpha, beta, gamma) = Mz(alpha) My(beta) Mx(gamma),  Q <- Q M
 ///   look = Q (0, 0, -1),  up = Q (0, 1, 0),  right = look x up
-/// The vectors are computed from the start vectors every time, never from vectors that have been turned already, and M
-/// stands on the right: angles are about the camera's own axes. Q stays orthonormal however long the camera is in use.
+/// The vectors are always computed from the start vectors and never from already rotated ones. M is on the right, so
+/// angles are about the camera's own axes. Q stays orthonormal however long the camera is used.
 class FreeCamera {
  public:
   /// At the origin, looking along -Z with +Y up; the projection is Camera's default.
   FreeCamera() : FreeCamera(Camera{}) {}
 
-  /// Takes over pose and projection. `look` and `up` are orthonormal to fp32 rounding, as Camera promises.
+  /// Uses this pose and projection. `look` and `up` are orthonormal up to fp32 rounding, as Camera requires.
   explicit FreeCamera(const Camera& camera);
 
   /// Makes a camera of directions of any length. They are used as given, to the bit, where they are orthonormal to
@@ -47,7 +47,7 @@ class FreeCamera {
   dvec3 up() const;
   dvec3 right() const;
 
-  /// Pose and projection for the renderer. What was neither moved nor rotated keeps its bits.
+  /// Returns pose and projection for the renderer. Values that were neither moved nor rotated keep their bits.
   const Camera& camera() const { return camera_; }
 
  private:

@@ -47,8 +47,8 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   return scene.cameras[index];
 }
 
-/// Up where nobody says: +Y or, where that is the direction of view, what puts the front of the scene at the lower edge
-/// of a picture from above.
+/// Returns the default up direction: +Y or, if that is the direction of view, the one that puts the front of the scene
+/// at the lower edge of a view from above.
 dvec3 default_up(const dvec3& direction) {
   constexpr double kLeastAcross = 1e-6;
   const double across = std::hypot(direction.x, direction.z);
@@ -56,7 +56,7 @@ dvec3 default_up(const dvec3& direction) {
   return dvec3(0.0, 0.0, direction.y < 0.0 ? -1.0 : 1.0);
 }
 
-/// Turns a camera; `direction` is empty where it keeps its own.
+/// Turns a camera; if `direction` is empty, it keeps its own.
 void face(Camera& camera, const std::optional<dvec3>& direction, const std::optional<dvec3>& up) {
   if (!direction && !up) return;
   const dvec3 look = direction.value_or(dvec3(camera.look));
@@ -73,7 +73,7 @@ dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Ca
   throw UsageError({"--look-at names the position of the eye", kWhere, "give another point, or --direction"});
 }
 
-/// The direction that the user gives; empty where none is given.
+/// Returns the user's direction; empty if none is given.
 std::optional<dvec3> find_direction(const PoseOptions& pose, const Camera& camera, const dvec3& center) {
   if (pose.look_at) return direction_to(*pose.look_at, pose.eye, camera, center);
   return pose.direction;
@@ -90,7 +90,7 @@ Camera zoom(Camera camera, double factor) {
   return camera;
 }
 
-/// Around what the camera looks at.
+/// Moves the camera around the point that it looks at.
 Camera turn(const Scene& scene, const Camera& camera, const PoseOptions& pose) {
   if (pose.orbit == Orbit()) return camera;
   const dvec3 target = pose.look_at ? *pose.look_at - scene.center : orbit_target(scene, camera);
@@ -146,7 +146,7 @@ const Camera* find_file_camera(const Scene& scene, const ViewOptions& options) {
 
 Framing choose_framing(const Scene& scene, const PoseOptions& pose) {
   if (pose.from) return *pose.from;
-  // Who says how much of the picture is covered, or along what to look, wants to see the whole.
+  // A user who gives the covered part or a direction wants to see the whole scene.
   return pose.fit || pose.direction ? Framing::kThreeQuarter : framing_of(scene);
 }
 

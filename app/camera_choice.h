@@ -11,23 +11,23 @@
 
 namespace promin::app {
 
-/// The camera of the scene's file that the options name, or else its first; null where the scene is framed or the
-/// user's own camera is taken. Throws UsageError for an unknown camera.
+/// Returns the camera of the scene's file that the options name, else its first; null if the scene is framed or the
+/// user's own camera is used. Throws UsageError for an unknown camera.
 const Camera* find_file_camera(const Scene& scene, const ViewOptions& options);
 
-/// From where the scene is framed, if it is.
+/// Returns the side from which the scene is framed, if it is.
 Framing choose_framing(const Scene& scene, const PoseOptions& pose);
 
-/// Whether the camera is one that frames the scene, and nobody has said from where.
+/// Returns whether the camera frames the scene from a side that the user has not chosen.
 bool is_camera_assumed(const Scene& scene, const ViewOptions& options);
 
-/// The camera of a scene of whose file none is taken: that of a path, one at the user's eye, or one that frames the
-/// scene in a picture of this aspect ratio. Throws UsageError for parallel directions.
+/// Returns the camera if none of the scene's file is used: that of a path, one at the user's eye, or one that frames
+/// the scene in a picture of this aspect ratio. Throws UsageError for parallel directions.
 Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_ratio);
 
-/// The camera of a file as the options change it in a picture of this size: what it showed its author stays in the
-/// picture. An orthographic camera with a field of view becomes a perspective one; a note says so. Throws UsageError
-/// for parallel directions, and where the options frame the scene.
+/// Returns a file's camera as changed by the options for a picture of this size, which shows at least what its author
+/// saw. An orthographic camera with a field of view becomes perspective, with a note. Throws UsageError for parallel
+/// directions, and if the options frame the scene.
 Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& pose, const uvec2& size,
                    const Console& console);
 

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMaxTime = 1e9;
-/// Nearer to 0 and 180 degrees radians in fp32 show nothing.
+/// Angles closer to 0 or 180 degrees show nothing with radians in fp32.
 constexpr double kMinFovDeg = 1e-5;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 const char* const kWriteAnew = "record the path again or correct the file";
@@ -54,7 +54,7 @@ dvec3 read_place(const json& v) {
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
-/// Refuses a frame that has not the one direction of view that its version may have.
+/// Refuses a frame without exactly one direction of view of its version.
 void check_look(const json& frame, int version, const std::string& place, LoadReport& report) {
   if (version == 1) {
     if (!frame.contains("look")) report.refuse("\"look\" is missing", place, kWriteAnew);
@@ -64,7 +64,7 @@ void check_look(const json& frame, int version, const std::string& place, LoadRe
   }
 }
 
-/// Reads a frame that keeps the rules.
+/// Reads a valid frame.
 TimedCamera read_frame(const json& frame, int version, const std::string& place, LoadReport& report) {
   TimedCamera timed;
   timed.time_s = frame["time_s"].get<double>();
@@ -91,12 +91,12 @@ TimedCamera read_frame(const json& frame, int version, const std::string& place,
   return timed;
 }
 
-/// Nine digits tell any two floats apart.
+/// Nine digits distinguish any two floats.
 std::string write_vector(const vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x, v.y, v.z);
 }
 
-/// A place far from the origin needs more digits: as many as give back the same place.
+/// A position far from the origin needs more digits: as many as reproduce it.
 std::string write_eye(const TimedCamera& frame) {
   if (frame.rest == dvec3(0.0)) return write_vector(frame.camera.eye);
   const dvec3 eye = frame.eye();
@@ -137,7 +137,7 @@ Camera interpolate(const Camera& from, const Camera& to, double share) {
   return camera;
 }
 
-/// The path with cameras as scenes of this center take them.
+/// Returns the path with cameras relative to this center.
 CameraPath move_path(CameraPath path, const dvec3& center) {
   if (center == dvec3(0.0)) return path;
   for (TimedCamera& frame : path.frames) {
@@ -199,7 +199,7 @@ Camera camera_at(const CameraPath& path, double time_s) {
 PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
     : path_(std::move(path)), fps_(fps.value_or(path_.fps.value_or(kStored))), count_(path_.frames.size()) {
   if (fps_ == kStored) return;
-  // The last frame's time may be a hair before its picture's: 0.3 s at 10 a second.
+  // The last frame's time may be slightly before its picture's: 0.3 s at 10 per second.
   constexpr double kRounding = 1e-6;
   const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
   if (count > static_cast<double>(kMaxCount)) {

@@ -14,7 +14,7 @@ namespace promin {
 struct TimedCamera {
   double time_s = 0.0;
   Camera camera;
-  /// What the camera's eye, which is fp32, lacks of its place in the world.
+  /// Difference of the camera's position in the world and its fp32 eye.
   dvec3 rest{0.0};
 
   dvec3 eye() const { return rest + dvec3(camera.eye); }
@@ -28,23 +28,23 @@ struct CameraPath {
   std::optional<double> fps;
 };
 
-/// Reads a file of docs/camera_path.md. Throws InputError with all that is wrong with it.
+/// Reads a file in the format of docs/camera_path.md. Throws InputError with all its problems.
 CameraPath read_camera_path(const std::filesystem::path& file);
 
-/// Writes such a file atomically; reading it gives the same bits of poses, projections and times. Names and aspect
-/// ratios of cameras are left out. Throws RunError.
+/// Writes such a file atomically. Reading it gives poses, projections and times with the same bits. Names and aspect
+/// ratios of cameras are not stored. Throws RunError.
 void write_camera_path(const std::filesystem::path& file, const CameraPath& path);
 
-/// The camera at a time. At a stored frame's time it is that frame's to the bit, and beyond the ends that of the first
-/// or last frame. In between, rotations follow the shortest great arc and all else straight lines; a change of
-/// projection waits for its frame.
+/// Returns the camera at a time. At a stored frame's time it has that frame's bits, and beyond the ends those of the
+/// first or last frame. In between, rotations follow the shortest great arc and everything else straight lines; the
+/// projection changes at its frame.
 Camera camera_at(const CameraPath& path, double time_s);
 
-/// The pictures that a path is played as, for whoever renders or shows it: both get the same cameras, to the bit.
+/// The pictures of a path, for rendering and for playing in a window; both get the same cameras, bit for bit.
 class PathPictures {
  public:
-  /// Takes `fps` pictures a second, picture i at the time i / fps, until the last frame's time; with kStored the frames
-  /// as they are stored; with nullopt what the path says. Throws UsageError for more pictures than kMaxCount.
+  /// Makes `fps` pictures per second, picture i at the time i / fps, until the last frame's time; with kStored one for
+  /// each stored frame; with nullopt as the path says. Throws UsageError for more pictures than kMaxCount.
   explicit PathPictures(CameraPath path, std::optional<double> fps = std::nullopt);
 
   /// The same pictures in a scene of this center (Scene::center).

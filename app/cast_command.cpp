@@ -43,11 +43,11 @@ bool misses_all(const Ray& ray) {
 struct RayChunks {
   RayReader& reader;
   dvec3 center;
-  /// How many that were read miss every scene, and the number of the first.
+  /// Number of rays so far that miss every scene, and the index of the first.
   uint64_t idle_count = 0;
   uint64_t first_idle = 0;
 
-  /// The next, at most kChunkRays; none at the file's end.
+  /// Returns the next rays, at most kChunkRays; none at the file's end.
   std::vector<Ray> next(uint64_t done) {
     std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
     reader.read(rays, center);
@@ -67,16 +67,16 @@ void warn_of_idle_rays(const RayChunks& chunks, const Console& console) {
                   chunks.idle_count, count_of(chunks.reader.count(), "ray"), chunks.first_idle));
 }
 
-/// What a query makes of rays, chunk by chunk, and the files that it writes.
+/// The results of a query, chunk by chunk, and its files.
 class Answers {
  public:
   virtual ~Answers() = default;
-  /// Returns the milliseconds of tracing. What is traced with `is_last` is kept, or written as it comes.
+  /// Returns the milliseconds of tracing. The results of a chunk with `is_last` are kept, or written immediately.
   virtual double trace(std::span<const Ray> rays, bool is_last, const ProgressCallback& progress) = 0;
-  /// Writes what was kept of the last chunk.
+  /// Writes the kept results of the last chunk.
   virtual void write() = 0;
   virtual void commit() = 0;
-  /// What is told of it beside the number of rays.
+  /// Returns a description for the summary, in addition to the number of rays.
   virtual std::string summary() const { return ""; }
   /// The milliseconds that writing took within trace().
   virtual double write_ms() const { return 0.0; }
@@ -122,7 +122,7 @@ class Counts : public Answers {
   std::vector<int32_t> counts_;
 };
 
-/// The hits are written while they are listed, as there may be any number of a chunk's.
+/// The hits are written while they are listed, because a chunk may have any number of them.
 class Lists : public Answers {
  public:
   Lists(const CastOptions& options, Caster& caster, const Scene& scene, uint64_t ray_count)
@@ -198,7 +198,7 @@ void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, cons
   stats.write_ms += answers.write_ms();
 }
 
-/// Goes on with a job, and where it has all pieces writes its files.
+/// Continues a job, and writes its files if all pieces are done.
 void cast_job(const CastOptions& options, const CLI::App& command, const Console& console) {
   RunStats stats;
   const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
@@ -234,7 +234,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
   take_setup(caster.setup_stats(), stats, console);
   (options.is_any ? stats.rays.shadow : stats.rays.primary) = reader.count();
 
-  // What is answered is written as it comes, to temporary files that a signal must not leave behind.
+  // Results are written immediately, to temporary files that must not remain after a signal.
   const DeferredSignals while_writing;
   const std::unique_ptr<Answers> answers = make_answers(options, caster, scene, reader.count());
   try {

@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// Adds `promin cast`: rays from a file, hits to a file.
+/// Adds `promin cast`, which casts rays from a file and writes their hits.
 Command add_cast_command(CLI::App& program);
 
 }  // namespace promin::app

@@ -42,13 +42,13 @@ struct RayRange {
   uint64_t count() const { return end - begin; }
 };
 
-/// Pieces of so many rays where nothing is asked for.
+/// Returns the default number of pieces for this number of rays.
 uint64_t choose_pieces(uint64_t count, bool is_all) {
   const uint64_t most_rays = is_all ? kPieceRaysOfAll : kPieceRays;
   return std::max({uint64_t{1}, std::min(kUsualPieces, count / kLeastPieceRays), divide_up(count, most_rays)});
 }
 
-/// All rays in nearly equal ranges, of which there is one at least.
+/// Divides all rays into nearly equal ranges, at least one.
 std::vector<RayRange> cut_rays(uint64_t count, const CastOptions& options) {
   const uint64_t pieces = options.job.pieces.value_or(choose_pieces(count, options.is_all));
   if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
@@ -58,7 +58,7 @@ std::vector<RayRange> cut_rays(uint64_t count, const CastOptions& options) {
                       options.rays.string(), "lower --pieces"});
   }
   std::vector<RayRange> ranges;
-  // The product would not fit where there are 10^13 rays and more.
+  // The product would overflow with 10^13 rays or more.
   const uint64_t least = count / pieces;
   const uint64_t longer = count % pieces;
   for (uint64_t i = 0, begin = 0; i < pieces; ++i) {
@@ -75,8 +75,8 @@ std::vector<std::string> name_pieces(const std::vector<RayRange>& ranges) {
   return names;
 }
 
-/// What is told of a piece. The bytes are its hits, or counts; with kAll its hits, then for each ray the number of hits
-/// up to its end.
+/// The description of a piece. Its bytes are hits or counts; with kAll its hits, followed for each ray by the number of
+/// hits up to its end.
 struct HitPiece {
   HitQuery query = HitQuery::kNearest;
   std::string driver;
@@ -91,7 +91,7 @@ std::string encode(const HitPiece& piece) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Reads what is told of a piece and holds its bytes against it. Throws InputError.
+/// Reads the description of a piece and checks its bytes against it. Throws InputError.
 HitPiece decode(const jobs::Content& content, const fs::path& file) {
   const InputError bad({"the piece does not hold hits", file.string(), "remove it and run the job again"});
   HitPiece piece;
@@ -186,7 +186,7 @@ class RayPieces : public PieceMaker {
   }
 
  private:
-  /// Appends the rays' answers.
+  /// Appends the results of the rays.
   void answer(std::span<const Ray> rays, std::vector<std::byte>& bytes, const ProgressCallback& progress) {
     const HitQuery query = job_.options_.query();
     if (query == HitQuery::kAll) {
@@ -222,7 +222,7 @@ class RayPieces : public PieceMaker {
   std::optional<Caster> caster_;
   std::vector<Hit> hits_;
   std::vector<int32_t> counts_;
-  /// With kAll, of the piece at hand.
+  /// The ends of the current piece's rays, with kAll.
   std::vector<uint64_t> ends_;
 };
 
@@ -231,7 +231,8 @@ std::unique_ptr<PieceMaker> RayJob::open(const gpu::Device& device, size_t /*pie
   return std::make_unique<RayPieces>(*this, device, progress);
 }
 
-/// A piece's bytes, or a part of them, as what they are. They begin where memory of any type does, or after hits.
+/// Returns a piece's bytes, or a part of them, as values of their type. They are aligned because they begin at an
+/// allocation or after hits.
 template <typename Value>
 std::span<const Value> values_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const Value*>(bytes.data()), bytes.size() / sizeof(Value)};
@@ -244,7 +245,7 @@ class HitLists {
       : hits_(values_of<Hit>(bytes.first(bytes.size() - rays * sizeof(uint64_t)))),
         ends_(values_of<uint64_t>(bytes.last(rays * sizeof(uint64_t)))) {}
 
-  /// Throws InputError where the ends are none.
+  /// Returns the hits of a ray. Throws InputError if its ends are invalid.
   std::span<const Hit> of(size_t ray, const fs::path& file) const {
     const uint64_t begin = ray == 0 ? 0 : ends_[ray - 1];
     if (begin <= ends_[ray] && ends_[ray] <= hits_.size()) return hits_.subspan(begin, ends_[ray] - begin);
@@ -287,7 +288,7 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
   return comparison.difference();
 }
 
-/// Of files that answers go to.
+/// Checks the number of output files.
 void check_count(size_t count, const std::vector<fs::path>& files) {
   if (files.size() == count) return;
   throw UsageError({fmt::format("the job's results are written to {}, not to {}",
@@ -354,7 +355,7 @@ std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App
 
 void check_merged_hits(const jobs::Job& job, const std::vector<fs::path>& files) {
   check_arrays(files);
-  // What other pieces than a command's hold, they say themselves.
+  // Pieces that no command has made describe their content themselves.
   const std::optional<std::vector<std::string>> arguments = read_arguments(job);
   if (arguments) check_count(std::ranges::find(*arguments, "--all") != arguments->end() ? 2 : 1, files);
 }

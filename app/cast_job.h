@@ -18,23 +18,22 @@
 
 namespace promin::app {
 
-/// The kind of a job whose pieces are answers to rays.
+/// The kind of a job whose pieces are results of rays.
 inline constexpr std::string_view kRayJob = "cast";
 
-/// Gives hits the numbers that the file has for its objects.
+/// Replaces object indices in hits by the numbers of the scene's file.
 void number_as_in_file(const Scene& scene, std::span<Hit> hits);
 
-/// The job of rays of checked options, whose command was parsed to them; `rays` are those of the file that it names
-/// where they are none. Throws InputError, and UsageError for more pieces than rays.
+/// Returns the job of rays for a command's checked options. If `rays` is null, they are read from the file that the
+/// options name. Throws InputError, and UsageError for more pieces than rays.
 std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App& command, const Console& console,
                                       std::shared_ptr<RaySource> rays = nullptr);
 
-/// Throws UsageError for files that are no arrays, and where a command has planned the job for another number of them.
+/// Throws UsageError for files that are not arrays, and if the job's command needs another number of files.
 void check_merged_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
-/// Writes what the pieces of a job of rays are together: hits, or counts, and of --all the offsets to a second file;
-/// check_merged_hits has seen these.
-/// Throws UsageError for another number of files, RunError, Cancelled, and InputError where pieces do not belong
-/// together; unless `is_mixed`, that is where they were made by different drivers.
+/// Puts the pieces of a job of rays together and writes hits or counts, with --all also the offsets to a second file.
+/// check_merged_hits must have checked the files. Throws UsageError for another number of files, RunError, Cancelled,
+/// and InputError if pieces do not belong together, which unless `is_mixed` includes pieces of different drivers.
 void merge_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files, const ProgressCallback& progress,
                 bool is_mixed);
 

@@ -17,10 +17,11 @@ class App;
 
 namespace promin::app {
 
-/// The most rays of a job's piece where nothing else is asked for; with --all, where there may be any number of hits.
+/// The default for the largest number of rays of a job's piece, without --all and with it, where there may be any
+/// number of hits.
 inline constexpr uint64_t kPieceRays = uint64_t{1} << 22;
 inline constexpr uint64_t kPieceRaysOfAll = uint64_t{1} << 20;
-/// Fewer rays are not cut for kUsualPieces.
+/// The smallest number of rays of a piece when dividing into kUsualPieces.
 inline constexpr uint64_t kLeastPieceRays = uint64_t{1} << 16;
 inline constexpr uint32_t kMostRayPieces = 1'000'000;
 /// Rays in memory at a time.
@@ -30,7 +31,7 @@ struct CastOptions {
   TracingOptions tracing;
   std::filesystem::path rays;
   JobOptions job;
-  /// Hits, or with --count counts.
+  /// The file for hits, or with --count for counts.
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> offsets;
   bool is_any = false;
@@ -42,14 +43,14 @@ struct CastOptions {
     if (is_count) return HitQuery::kCount;
     return is_any ? HitQuery::kAny : HitQuery::kNearest;
   }
-  /// The hits, then their offsets, as far as they are given.
+  /// Returns the files of hits and of their offsets, as far as given.
   std::vector<std::filesystem::path> outputs() const;
 };
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_cast_options(CLI::App& command, CastOptions& options);
 
-/// Throws UsageError where options contradict each other or one is missing, and for outputs that are no .npy.
+/// Throws UsageError if options contradict each other or one is missing, and for outputs that are not .npy files.
 void check_cast_options(const CastOptions& options);
 
 /// Throws UsageError for a file of another ending than .npy.

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parses what the command of this name takes.
+/// Parses arguments of the command of this name.
 void parse(CLI::App& program, const CLI::App& command, const std::vector<std::string>& arguments) {
   check_asks_for_work(arguments);
   const std::string name = command.get_name();
@@ -36,7 +36,7 @@ void parse(CLI::App& program, const CLI::App& command, const std::vector<std::st
   check_is_kept(given_options(command));
 }
 
-/// Another driver's pieces have other bits.
+/// Refuses another driver, because its pieces have other bits.
 void check_driver(const jobs::Job& job, const std::string& driver) {
   const std::string of_pieces = find_driver(job);
   if (of_pieces.empty() || of_pieces == driver) return;
@@ -44,12 +44,12 @@ void check_driver(const jobs::Job& job, const std::string& driver) {
                     job.folder().string(), "choose the first one by --device, or name another folder"});
 }
 
-/// Makes what is missing of a share. Returns how many pieces it has made, nothing where a signal has ended it before.
+/// Makes the missing pieces of a share. Returns their number, or nothing if a signal has ended it before.
 std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, const jobs::Share& share,
                                  const JobSteps& steps, const Console& console) {
   const std::vector<size_t> missing = jobs::find_missing(job, share);
   if (missing.empty()) return 0;
-  // A signal ends the work when the piece at hand is written, and the program at the end of this.
+  // A signal ends the work after the current piece is written, and the program at the end of this function.
   const DeferredSignals while_working;
   const gpu::DeviceHandle device = steps.open_device();
   const std::string driver = driver_of(gpu::info_of(*device));
@@ -102,13 +102,13 @@ std::string describe_made(size_t made, size_t all) {
 std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<std::string>& arguments,
                                      const fs::path& folder, const Console& console, std::shared_ptr<RaySource> rays) {
   CLI::App program("", "promin");
-  // Parses the words to options, by what adds these to a command.
+  // Parses words to options with the functions that add the options to a command.
   const auto parse_to = [&](auto& options, const auto& add_options) -> CLI::App& {
     CLI::App& command = add_command(program, kind, "");
     add_options(command, options);
     parse(program, command, arguments);
     options.job.folder = folder;
-    // A share, as it makes no file.
+    // A share needs no output files.
     options.job.share = jobs::Share{};
     return command;
   };
@@ -160,7 +160,7 @@ std::string find_driver(const jobs::Job& job) {
 
 void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console) {
   const jobs::Job job = [&] {
-    // No signal leaves the temporary files of what is written here.
+    // Signals are deferred so that no temporary files remain.
     const DeferredSignals while_writing;
     return create_job(planned, *options.folder);
   }();

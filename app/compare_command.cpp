@@ -36,7 +36,7 @@ struct CompareOptions {
   fs::path first;
   fs::path second;
   std::optional<fs::path> difference;
-  /// Without a limit pictures may differ as they like.
+  /// Without a limit any difference is allowed.
   std::optional<double> fail;
   std::optional<double> fail_percent;
   double pixels_per_degree = kPixelsPerDegree;
@@ -61,7 +61,7 @@ vec3 heat_color(float error) {
   return {srgb_to_linear(code.x), srgb_to_linear(code.y), srgb_to_linear(code.z)};
 }
 
-/// FLIP in colours, or where the file takes light as it is the absolute differences with FLIP as a channel.
+/// Writes FLIP in colours, or in a file of linear light the absolute differences with FLIP as a channel.
 void write_difference(const fs::path& file, const Image& first, const Image& second,
                       const PictureDifference& difference) {
   Image shown = first;
@@ -121,7 +121,7 @@ std::string describe_different(const Difference& difference, double fail) {
                      percent_different(difference), verb_of(difference.different_count, "differs", "differ"), fail);
 }
 
-/// Those that differ, a line each.
+/// Returns a line for each channel that differs.
 void print_channels(const std::vector<ChannelDifference>& others, double fail) {
   std::vector<std::string> lines;
   size_t equal = 0;
@@ -150,17 +150,17 @@ void print_rows(const PictureDifference& difference, double fail) {
   }
 }
 
-/// Warns of a limit that no codes of 0 to 1 exceed, by what the user may have meant.
+/// Warns of a limit that values of 0 to 1 cannot exceed, with a suggestion.
 void warn_of_idle_limit(const CompareOptions& options, PictureEncoding encoding) {
   constexpr double kMostCode = 255.0;
   if (encoding != PictureEncoding::kSrgb || !options.fail || *options.fail < 1.0) return;
   const std::string meant =
       *options.fail <= kMostCode ? fmt::format("; {0:g} of 255 is --fail {0:g}/255", *options.fail) : "";
   Console(Verbosity::kNormal)
-      .warn(fmt::format("--fail {:g} never fails: numbers of these files are 0 to 1{}", *options.fail, meant));
+      .warn(fmt::format("--fail {:g} never fails: the values of these files are 0 to 1{}", *options.fail, meant));
 }
 
-/// Throws DifferenceError where more pixels differ than may. `in` says of which channel.
+/// Throws DifferenceError if more pixels differ than allowed. `in` names the channel.
 template <typename Difference>
 void check_limit(const Difference& difference, const std::string& in, const CompareOptions& options) {
   if (percent_different(difference) <= options.fail_percent.value_or(0.0)) return;
@@ -182,7 +182,7 @@ void compare(const CompareOptions& options) {
     check_pictures({*options.difference});
     check_outputs({options.first, options.second}, {*options.difference}, std::nullopt);
   }
-  // What is no picture is told as that, not as one of another encoding.
+  // A file that is not a picture is reported as such, and not as a picture of another encoding.
   const Image first = read_image(options.first);
   const Image second = read_image(options.second);
   const PictureEncoding encoding = common_encoding(options);

@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// Adds `promin compare`, which tells how far two pictures are apart.
+/// Adds `promin compare`, which measures the difference of two pictures.
 Command add_compare_command(CLI::App& program);
 
 }  // namespace promin::app

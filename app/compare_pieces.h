@@ -13,59 +13,60 @@
 #include "promin/scene.h"
 #include "scene/world_scene.h"
 
-// How far apart the answers of two devices are to the same piece of a job. Devices of one fingerprint give the same
-// bits; of others the published bounds hold against the exact answer, so that two are apart by twice those at most.
-// Where a ray passes so near an edge that rounding decides which surface it meets, the answers are of different
-// surfaces, and no bound holds but that this is rare.
+// Compares the results of two devices for the same piece of a job. Devices with the same fingerprint give the same
+// bits. For others each result is within the published bounds of the exact result, so two differ by at most twice
+// those. If a ray passes so close to an edge that rounding decides which surface it hits, the results may be of
+// different surfaces, and the only guarantee is that this is rare.
 namespace promin::app {
 
-/// The most that a number of a pixel may differ, of numbers beyond 1 relative to them: what golden pictures are held to
-/// on all drivers.
+/// The largest allowed difference of a pixel's number, relative for numbers beyond 1: the limit of golden pictures on
+/// all drivers.
 inline constexpr double kMostPixelDifference = 0.004;
-/// The most that K of t (docs/glossary.md) may differ: each device has B1 = 8 of it.
+/// The largest allowed difference of t in units of K (docs/glossary.md): each device may have B1 = 8.
 inline constexpr double kMostK = 16.0;
-/// The most of the pixels, or rays, that an edge may decide: what golden pictures allow.
+/// The largest allowed part of pixels or rays that differ because of an edge, as for golden pictures.
 inline constexpr double kMostOthers = 0.005;
 
-/// How far apart two makings of one piece are.
+/// The difference between two results of the same piece.
 struct PieceDifference {
-  /// Pixels, or rays.
+  /// Number of pixels or rays.
   uint64_t count = 0;
-  /// Those whose numbers are farther apart than kMostPixelDifference or kMostK, or that tell of different surfaces.
+  /// Number of mismatches: pixels or rays whose numbers differ by more than kMostPixelDifference or kMostK, or that
+  /// show different surfaces.
   uint64_t others = 0;
-  /// Of the rest the largest difference of a number, or of K of t.
+  /// The largest difference among all others, of a number or of t in units of K.
   double largest = 0.0;
 
   bool is_within_bounds() const { return static_cast<double>(others) <= kMostOthers * static_cast<double>(count); }
 };
 
-/// Colours and channels. Throws InputError, which names the file, where the parts are not of one picture.
+/// Compares colours and channels. Throws InputError with the file's name if the parts are not of the same picture.
 PieceDifference compare_parts(const PicturePart& there, const PicturePart& anew, const std::filesystem::path& file);
 
-/// Answers to rays of a scene, with the numbers that its file has for objects.
+/// Compares results of rays at a scene, with the object numbers of its file.
 class HitComparison {
  public:
   explicit HitComparison(const Scene& scene);
 
-  /// As many hits of either as rays, nearest or any. Their t is compared where both are of one primitive; weights and
-  /// normals, for which no bound is published, are not.
+  /// Compares one hit per ray, nearest or any. t is compared if both hits are of the same primitive; weights and
+  /// normals, for which no bound is published, are not compared.
   void compare(std::span<const Ray> rays, std::span<const Hit> there, std::span<const Hit> anew);
-  /// All hits of one ray.
+  /// Compares all hits of one ray.
   void compare_lists(const Ray& ray, std::span<const Hit> there, std::span<const Hit> anew);
-  /// Counts of hits.
+  /// Compares numbers of crossings.
   void compare(std::span<const int32_t> there, std::span<const int32_t> anew);
 
   const PieceDifference& difference() const { return difference_; }
 
  private:
-  /// By how much K of t differs; infinite where the hits are of different primitives.
+  /// Returns the difference of t in units of K; infinite if the hits are of different primitives.
   double difference_of(const Ray& ray, const Hit& there, const Hit& anew) const;
-  /// S of a primitive that is hit, by the sphere around its box.
+  /// Returns S of the hit primitive, from the sphere around its box.
   double scale_of(const Ray& ray, const Hit& hit) const;
   void take(double difference);
 
   world::Scene scene_;
-  /// By the file's numbers; of several that have one number each counts.
+  /// Objects by the file's numbers; several may have the same number.
   std::map<int32_t, std::vector<size_t>> objects_;
   PieceDifference difference_;
 };

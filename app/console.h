@@ -8,22 +8,23 @@ namespace promin::app {
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
-/// Makes a console by the flags --quiet and --verbose. Throws UsageError where both are set.
+/// Returns the verbosity for the flags --quiet and --verbose. Throws UsageError if both are set.
 Verbosity verbosity_of(bool is_quiet, bool is_verbose);
 
-/// Prints what a command says beside its result: a line each on the standard error stream, and nothing when quiet.
+/// Prints a command's messages other than its result, one per line on the standard error stream; prints nothing when
+/// quiet.
 class Console {
  public:
   explicit Console(Verbosity verbosity, std::string program = "promin")
       : verbosity_(verbosity), program_(std::move(program)) {}
 
-  /// Says what was assumed where the scene or the user did not say.
+  /// Prints a note about an assumption that neither the scene nor the user has specified.
   void note(const std::string& text) const { print("note: " + text, Verbosity::kNormal); }
   void warn(const std::string& text) const { print("warning: " + text, Verbosity::kNormal); }
-  /// Says something only when verbose, after the seconds since the program started and those of all CPU cores.
+  /// Prints a line only when verbose, after the seconds since the program's start and the CPU seconds of all cores.
   void detail(const std::string& text) const;
 
-  /// Says the lines of a text only when verbose, each as a line of its own.
+  /// Prints the lines of a text only when verbose.
   void details(const std::string& lines) const;
 
   bool is_quiet() const { return verbosity_ == Verbosity::kQuiet; }

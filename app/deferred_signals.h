@@ -4,9 +4,9 @@
 
 namespace promin::app {
 
-/// While one exists, SIGINT, SIGTERM and SIGHUP wait, so that a file that is being written gets whole before they end
-/// the program. At any other time no temporary file exists, and they end the program at once. Only one may exist at a
-/// time.
+/// While an object exists, SIGINT, SIGTERM and SIGHUP are deferred, so that a file being written is completed before
+/// they end the program. At all other times no temporary file exists, and they end the program immediately. Only one
+/// object may exist at a time.
 class DeferredSignals {
  public:
   DeferredSignals();
@@ -14,7 +14,7 @@ class DeferredSignals {
   DeferredSignals(const DeferredSignals&) = delete;
   DeferredSignals& operator=(const DeferredSignals&) = delete;
 
-  /// Whether a signal waits: long work stops then, and leaves nothing behind.
+  /// Returns whether a signal is deferred; long work then stops and leaves nothing behind.
   bool is_pending() const;
 };
 

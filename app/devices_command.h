@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// `promin devices`: the Vulkan devices, what each lacks and which one is picked.
+/// Adds `promin devices`, which lists the Vulkan devices, the features that they lack, and the default.
 Command add_devices_command(CLI::App& program);
 
 }  // namespace promin::app

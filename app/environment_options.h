@@ -14,38 +14,38 @@ namespace promin::app {
 
 class OptionTable;
 
-/// What the user changes about a scene's surroundings.
+/// The user's changes of a scene's environment.
 struct EnvironmentOptions {
-  /// A panorama that takes the place of the scene's sky.
+  /// A panorama that replaces the scene's sky.
   std::optional<std::filesystem::path> panorama;
-  /// An angle by which the sky is turned about +Y, degrees.
+  /// Rotation of the sky about +Y, in degrees.
   double rotation_deg = 0.0;
-  /// A factor of the sky's radiance.
+  /// Factor of the sky's radiance.
   double intensity = 1.0;
-  /// An angle by which the sky and all lights without a place are turned about +Y, degrees.
+  /// Rotation of the sky and of all lights without a position about +Y, in degrees.
   double light_rotation_deg = 0.0;
 };
 
-/// Turns a sky, and lights that shine along one direction of the world, about +Y from +Z towards +X. An angle of 0
+/// Rotates a sky, and lights that shine in one direction of the world, about +Y from +Z towards +X. An angle of 0
 /// changes no bit.
 void turn_light(double degrees, Environment& environment, std::span<Light> lights);
 
 /// Adds the rows of the options. `options` must outlive the parsing.
 void add_environment_options(OptionTable& table, EnvironmentOptions& options);
 
-/// The options with the panorama read, once however many scenes take them.
+/// The options with the panorama already read, once for any number of scenes.
 class EnvironmentChoice {
  public:
   EnvironmentChoice() = default;
-  /// Throws InputError where the panorama is none.
+  /// Reads the panorama. Throws InputError if it is not one.
   explicit EnvironmentChoice(const EnvironmentOptions& options);
 
-  /// What was amiss with the panorama.
+  /// Returns warnings about the panorama.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// Puts the panorama around a scene. Comes before a scene without a sky gets one.
+  /// Replaces the scene's sky by the panorama. Call it before a default sky is added.
   void replace_sky(Scene& scene) const;
-  /// Turns the scene's sky, whichever it has got, and makes it brighter; then turns its light.
+  /// Rotates the scene's sky and applies the factor; then rotates its light.
   void adjust_sky(Scene& scene) const;
 
  private:

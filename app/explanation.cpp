@@ -22,7 +22,7 @@ Json json_of(const vec3& v) {
   return Json::array({json_of(v.x), json_of(v.y), json_of(v.z)});
 }
 
-/// A place in the scene as one in the world: nine digits of fp32, or all of what lies far from the origin.
+/// Returns a scene position in world coordinates: with nine digits of fp32, or all digits far from the origin.
 Json json_of_place(const vec3& place, const Scene& scene) {
   if (scene.center == dvec3(0.0)) return json_of(place);
   const dvec3 world = scene.center + dvec3(place);
@@ -96,7 +96,7 @@ Json json_of(const ExplainedRay& ray, const Scene& scene) {
   return json;
 }
 
-/// `name` in quotes after what it names, if there is one.
+/// Returns the kind of an item with its `name` in quotes, if there is one.
 std::string with_name(const std::string& text, const std::string& name) {
   return name.empty() ? text : text + " \"" + name + "\"";
 }

@@ -10,7 +10,7 @@
 
 namespace promin::app {
 
-// A pixel's ray tree for people and programs; the scene is the one that was rendered, with the lights that stand in.
+// Formats a pixel's ray tree for people and programs. The scene is the rendered one, including added lights.
 
 /// Writes the JSON that docs/explain.md describes; numbers read back to the same bits.
 std::string explain_json(const Explanation& explanation, const Scene& scene);

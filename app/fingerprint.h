@@ -8,13 +8,13 @@
 
 namespace promin::app {
 
-/// The device and its driver, as pieces of jobs tell by what they were made.
+/// Returns the device and its driver, as recorded in pieces of jobs.
 std::string driver_of(const gpu::DeviceInfo& device);
 
-/// SHA-256 over the device, its driver and its answers to fixed questions: hits of rays at every kind of primitive, and
-/// a picture of both models of materials, lit and in shadow. Devices whose fingerprints differ may give
-/// other bits, as one driver does on processors of two kinds; of devices with the same it is not to be expected.
-/// Throws RunError.
+/// Returns SHA-256 over the device, its driver and its results for a fixed test: hits of rays at every kind of
+/// primitive, and a picture of both material models, lit and in shadow. Devices with different fingerprints may give
+/// different bits, as the same driver does on two types of processors; devices with the same fingerprint are expected
+/// to give the same. Throws RunError.
 std::string fingerprint_of(const gpu::Device& device);
 
 }  // namespace promin::app

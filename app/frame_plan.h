@@ -15,22 +15,23 @@ namespace promin::app {
 
 /// One of the pictures that a command renders.
 struct PlannedFrame {
-  /// The camera of a camera path; nullopt where the scene's cameras or the user's pose are meant.
+  /// The index on a camera path; nullopt for the scene's cameras or the user's pose.
   std::optional<uint32_t> number;
   std::optional<Camera> camera;
   std::vector<std::filesystem::path> pictures;
-  /// The camera path that they are of, shared by all.
+  /// The camera path, shared by all frames.
   std::shared_ptr<const PathPictures> path = nullptr;
 };
 
-/// The frames that the options ask for: one, or those of the path. Throws InputError for a bad path, UsageError for
-/// frames that it does not have, and where several frames would go to one file.
+/// Returns the requested frames: one, or those of the path. Throws InputError for a bad path, and UsageError for frames
+/// that it does not have or if several frames would be written to one file.
 std::vector<PlannedFrame> plan_frames(const RenderOptions& options);
 
-/// Gives frames of a camera path their cameras in a scene of this center (Scene::center).
+/// Sets the cameras of a path's frames for a scene with this center (Scene::center).
 void move_frames(std::vector<PlannedFrame>& frames, const dvec3& center);
 
-/// A file's name with the last run of # replaced by the number, in as many digits or more; unchanged without a #.
+/// Returns a file's name with the last run of # replaced by the number, padded to the same number of digits; unchanged
+/// without a #.
 std::filesystem::path number_file(const std::filesystem::path& file, uint32_t number);
 
 }  // namespace promin::app

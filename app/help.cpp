@@ -12,7 +12,7 @@
 namespace promin::app {
 namespace {
 
-/// Prints options by groups, whatever order they were added in.
+/// Prints options by groups, regardless of the order in which they were added.
 class GroupFormatter : public CLI::Formatter {
  public:
   GroupFormatter(const CLI::Formatter& like, std::vector<OptionGroup> groups)

@@ -13,14 +13,14 @@ class App;
 
 namespace promin::app {
 
-/// Options that --help prints under one heading, by their long names in the order in which it prints them.
+/// Options that --help prints under one heading: their long names, in the order of printing.
 struct OptionGroup {
   std::string heading;
   std::vector<std::string> options;
 };
 
-/// Has --help print the options of a command in groups, then those that are in none under the last heading. Names that
-/// the command lacks are left out, so that commands can share groups.
+/// Makes --help print the options of a command in groups; options in no group come under the last heading. Names that
+/// the command lacks are ignored, so that commands can share groups.
 void group_options(CLI::App& command, const std::vector<OptionGroup>& groups);
 
 /// A command line and what it does.
@@ -29,7 +29,7 @@ struct Example {
   std::string_view effect;
 };
 
-/// Has --help end with these examples.
+/// Adds examples to the end of --help.
 void add_examples(CLI::App& command, std::initializer_list<Example> examples);
 
 }  // namespace promin::app

@@ -77,7 +77,7 @@ std::string describe_display(const DisplayTransform& display) {
 /// A place in the scene as one in the world.
 std::string describe_place(const vec3& place, const dvec3& center, int digits) {
   const dvec3 world = center + dvec3(place);
-  // Far from the origin the same digits of the scene's own coordinates would not do.
+  // Far from the origin the digits of the scene's own coordinates would not be enough.
   if (center != dvec3(0.0)) digits = 12;
   return fmt::format("{:.{}g} {:.{}g} {:.{}g}", world.x, digits, world.y, digits, world.z, digits);
 }
@@ -128,7 +128,7 @@ std::string describe_bounds(const Bounds& bounds, const dvec3& center) {
   return describe_place(bounds.lo, center, 6) + " to " + describe_place(bounds.hi, center, 6);
 }
 
-/// The file's extensions by what has become of them.
+/// The file's extensions, grouped by whether they are used.
 std::vector<std::string> describe_extensions(const Scene& scene) {
   std::vector<std::string> rows;
   for (const bool is_used : {true, false}) {
@@ -170,7 +170,7 @@ struct InfoOptions {
   bool is_json = false;
 };
 
-/// Adds what `promin render` warns of beside what was found in the file, as far as the scene decides it.
+/// Adds warnings of `promin render` that depend on the scene and were not found in the file.
 void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surroundings) {
   for (const std::string& warning : surroundings.warnings()) scene.warnings.push_back(warning);
   const std::optional<Problem> halved = warn_of(fit_images(scene.images, scene.textures, kDefaultTextureBytes));
@@ -180,7 +180,7 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
                                        scene.cameras.front().aspect_ratio));
 }
 
-/// A scene as it would be rendered, with the light that stands in.
+/// A scene as it would be rendered, with added lights.
 struct LitScene {
   AssumedLight assumed;
   world::Scene flat;

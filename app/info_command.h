@@ -6,7 +6,8 @@
 
 namespace promin::app {
 
-/// `promin info SCENE`: what a scene holds and what the renderer models of it. Needs no Vulkan device.
+/// Adds `promin info SCENE`, which prints the contents of a scene and which of them the renderer models. Needs no
+/// Vulkan device.
 Command add_info_command(CLI::App& program);
 
 }  // namespace promin::app

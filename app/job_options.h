@@ -13,29 +13,29 @@
 
 namespace promin::app {
 
-/// A job has so many pieces or more where nothing is asked for and its work is worth them: a kill loses one piece, and
-/// that is about an eighth of the work or less, even where a piece costs twice the mean.
+/// The default for the smallest number of pieces of a job that has enough work. A kill loses one piece, which is at
+/// most about an eighth of the work even if that piece costs twice the mean.
 inline constexpr uint64_t kUsualPieces = 16;
 
-/// How the work of a command is kept in pieces in a folder.
+/// How a command divides its work into pieces and saves them in a folder.
 struct JobOptions {
   std::optional<std::filesystem::path> folder;
-  /// Of pictures: bands of rows that each is cut into, or columns and rows of tiles. Of rays: pieces of all rays.
-  /// Empty: as suits it.
+  /// For pictures the number of bands of rows of each, or the columns and rows of tiles; for rays the number of pieces.
+  /// Empty for the default.
   std::optional<uint32_t> pieces;
   std::optional<uvec2> tiles;
-  /// What of the pieces is to be made; without it all, and then the files that are made of them.
+  /// The share of the pieces to make. Without it all pieces are made, and then the files.
   std::optional<jobs::Share> share;
 };
 
-/// Adds the rows of --job, --pieces and --piece with this help for --pieces, of which there are at most so many. `job`
-/// must outlive the parsing.
+/// Adds the rows of --job, --pieces and --piece, with this help for --pieces and this largest value. `job` must outlive
+/// the parsing.
 void add_job_options(OptionTable& table, JobOptions& job, const std::string& pieces_help, uint32_t most_pieces);
 
-/// Throws UsageError where one of --pieces, --tiles and --piece has no job to cut.
+/// Throws UsageError if --pieces, --tiles or --piece is given without a job.
 void check_has_job(const JobOptions& job);
 
-/// Where all who work on a job find the tree of its scene by this builder, which the first of them puts there
+/// Returns the file of the scene's tree by this builder that all processes of a job share; the first of them writes it
 /// (pack_scene_sharing).
 std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder);
 

@@ -26,18 +26,18 @@ using Json = nlohmann::ordered_json;
 /// Of the file that keeps arguments.
 constexpr int kFormat = 1;
 
-/// How a job takes an option. What has no row is an ordinary option: it decides about bits, is no file, and is kept.
+/// How a job treats an option. An option without a row is ordinary: it affects bits, is not a file, and is stored.
 struct OptionOfJobs {
   std::string_view name;
-  /// Whether the manifest has its words. The files that SCENE and others name are there by their hashes.
+  /// Whether the manifest stores its words. Files that SCENE and others name are stored by their hashes.
   bool is_in_manifest = true;
-  /// Kept by its absolute path, as the job may be planned again from any folder.
+  /// Whether it is stored by its absolute path, because the job may be planned again in any folder.
   bool names_file = false;
-  /// Not where each who works on a job chooses for themselves.
+  /// False if each process that works on a job chooses its own value.
   bool is_kept = true;
-  /// Where it is given this one word it counts as not given, as that is what it is then whatever the scene.
+  /// A word that is equivalent to not giving the option, for every scene.
   std::string_view default_word = "";
-  /// Who says it instead, where a job's arguments have no place for it.
+  /// Where it is chosen instead, if it cannot be an argument of a job.
   const char* said_elsewhere = nullptr;
 };
 constexpr const char* kMergeSays = "the files are named when the pieces are merged";

@@ -16,31 +16,32 @@ namespace CLI {
 class App;
 }
 
-// What a job keeps of its command: of its options and inputs what the manifest says, and what plans it again.
+// The parts of a command that a job stores: options and inputs for the manifest, and arguments for planning it again.
 namespace promin::app {
 
-/// The words that a command was given, by given_options().
+/// The options of a command with their words, from given_options().
 using GivenOptions = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
-/// The beginning of a command's manifest: kind, version, the hash of the program's sources, and the given options that
-/// decide about bits.
+/// Returns the first part of a command's manifest: kind, version, the hash of the program's sources, and the given
+/// options that affect bits.
 jobs::Manifest begin_manifest(std::string_view kind, const GivenOptions& given);
-/// Adds the files that a scene was loaded from. Throws InputError where one has changed since.
+/// Adds the files that a scene was loaded from. Throws InputError if one has changed since.
 void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& sources);
 
-/// What PlannedJob::arguments() is of a parsed command.
+/// Returns PlannedJob::arguments() for a parsed command.
 std::vector<std::string> keep_arguments(const CLI::App& command);
 
-/// The file of a job's folder that keeps them.
+/// Returns the file in a job's folder that stores the arguments.
 std::filesystem::path arguments_file(const jobs::Job& job);
-/// Keeps them there. Throws RunError.
+/// Writes the arguments. Throws RunError.
 void write_arguments(const jobs::Job& job, const std::vector<std::string>& arguments);
-/// What write_arguments has kept; nothing where it has not, or the file is damaged or another kind's.
+/// Returns the arguments that write_arguments has stored; nothing if there are none, or if the file is damaged or of
+/// another kind.
 std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job);
 
-/// Throws UsageError for words of a job's arguments that ask for help or the version.
+/// Throws UsageError for arguments of a job that request help or the version.
 void check_asks_for_work(const std::vector<std::string>& words);
-/// Throws UsageError for options that are none of a job's arguments, as they are chosen elsewhere, which it says.
+/// Throws UsageError for options that are not arguments of a job, with the place where they are chosen instead.
 void check_is_kept(const GivenOptions& given);
 
 }  // namespace promin::app

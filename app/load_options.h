@@ -10,9 +10,9 @@ class OptionTable;
 
 /// Adds the row of --strict, for commands that load a scene. `options` must outlive the parsing.
 void add_strict_option(OptionTable& table, LoadOptions& options);
-/// The same of --root.
+/// Does the same for --root.
 void add_root_option(OptionTable& table, LoadOptions& options);
-/// The same of --variant, for commands that show materials.
+/// Does the same for --variant, for commands that show materials.
 void add_variant_option(OptionTable& table, LoadOptions& options);
 
 }  // namespace promin::app

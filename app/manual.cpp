@@ -16,7 +16,7 @@
 namespace promin::app {
 namespace {
 
-/// Whatever has options: the program itself, then its commands.
+/// Returns the program itself and its commands, which have options.
 std::vector<const CLI::App*> with_commands(const CLI::App& program) {
   std::vector<const CLI::App*> all = {&program};
   for (const CLI::App* command : commands_of(program)) all.push_back(command);
@@ -44,7 +44,7 @@ bool takes_values(const CLI::Option& option) {
   return option.get_items_expected_max() > 0 && !option.get_type_name().empty();
 }
 
-/// The words that an option takes as they are: of "EV|auto|average" the last two. Placeholders are in capitals.
+/// Returns the literal words of an option: for "EV|auto|average" the last two. Placeholders are in capitals.
 std::vector<std::string> words_of(const CLI::Option& option) {
   std::vector<std::string> words;
   std::istringstream alternatives(option.get_type_name());
@@ -65,7 +65,7 @@ std::string replace_all(std::string text, std::string_view from, std::string_vie
 
 // The manual page.
 
-/// Text as roff takes it: a hyphen of its own sign, and no line that begins as a request.
+/// Escapes text for roff: hyphens, and lines that would begin like a request.
 std::string roff(const std::string& text) {
   const std::string escaped = replace_all(replace_all(text, "\\", "\\e"), "-", "\\-");
   return escaped.starts_with(".") || escaped.starts_with("'") ? "\\&" + escaped : escaped;
@@ -132,7 +132,7 @@ std::string make_man(const CLI::App& program) {
   return page;
 }
 
-// Completions. What is no option is a file, and so is the value of an option without words of its own.
+// Completions. Arguments are files, and so are values of options without literal words.
 
 std::string bash_words(const CLI::App& app) {
   std::vector<std::string> names;

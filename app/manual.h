@@ -12,8 +12,8 @@ class App;
 
 namespace promin::app {
 
-/// What is made of a program's option tables beside --help, when it is built: its manual page (man(7)), or the
-/// completion of its command lines for a shell. `kind` is "man", "bash", "zsh" or "fish"; nullopt for another one.
+/// Returns a text generated from a program's option tables at build time: its manual page (man(7)), or the command-line
+/// completion for a shell. `kind` is "man", "bash", "zsh" or "fish"; nullopt for others.
 std::optional<std::string> make_manual(const CLI::App& program, std::string_view kind);
 
 }  // namespace promin::app

@@ -6,15 +6,15 @@
 
 namespace promin::app {
 
-/// How much memory the process holds now, for a stage's line of -v: "holds 123 MB". It counts what is resident, which
-/// on a CPU device is the device's memory too.
+/// Returns the current memory use of the process, for a line of -v: "uses 123 MB". It counts resident memory, which on
+/// a CPU device includes the device's memory.
 std::string describe_memory();
 
-/// The most that it has held so far, in MB.
+/// Returns the largest memory use so far, in MB.
 double peak_memory_mb();
 
-/// Gives the system back what has been freed. CPU drivers free some 50 MB when they have compiled, of which the C
-/// library else keeps what lies between pieces that are in use.
+/// Returns freed memory to the system. CPU drivers free about 50 MB after compiling, and the C library would otherwise
+/// keep the parts that lie between used blocks.
 void give_back_memory();
 
 }  // namespace promin::app

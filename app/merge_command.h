@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// Adds `merge`, which makes the pictures of a job from its pieces.
+/// Adds `merge`, which writes the files of a job from its pieces.
 Command add_merge_command(CLI::App& program);
 
 }  // namespace promin::app

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a file is, by all that the manifest tells, one that the job's pieces hang on.
+/// Returns whether a file is an input of the job, according to the manifest.
 bool is_input(const jobs::Job& job, const fs::path& file) {
   return std::ranges::any_of(job.manifest().files, [&](const jobs::InputFile& input) {
     std::error_code none;
@@ -66,7 +66,7 @@ std::string merge_job_deferring(const jobs::Job& job, const std::vector<fs::path
     const auto error = merge_job(job, outputs, [&](double) { return !while_writing.is_pending(); });
     if (error && error->unmet_pixels > 0) made += fmt::format(", error {}{}", error->target, describe_unmet(*error));
   } catch (const Cancelled&) {
-    // What the signal's sender wants is an end, and has it now.
+    // The signal can now end the program.
   }
   return made;
 }

@@ -13,24 +13,24 @@
 #include "promin/progress.h"
 #include "promin/renderer.h"
 
-// The files that a job's pieces make.
+// Writes the files of a job from its pieces.
 namespace promin::app {
 
-/// Before the work: throws UsageError for files that merge_job does not make of this job, and for one that the job's
-/// pieces hang on; the manifest tells these by name, size and hash, not by folder. Throws InputError for a job of
-/// another kind. `frames`: of a path only these are to be made.
+/// Checks the files before the work: throws UsageError for files that merge_job cannot make from this job, and for a
+/// file that is an input of the job; the manifest identifies inputs by name, size and hash, not by folder. Throws
+/// InputError for a job of another kind. `frames`: only these frames of a path will be written.
 void check_job_files(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
                      const std::optional<std::vector<uint32_t>>& frames = std::nullopt);
 
-/// Makes the files of a job of its pieces: pictures of the kind "render"; of "cast" the hits or counts, and of --all
-/// the offsets as a second file. `is_mixed` is for rays alone (merge_hits), `frames` for pictures alone. Returns what
-/// pictures of an error have come to together. Throws Cancelled, and what check_job_files, merge_pictures and
+/// Writes the files of a job from its pieces: pictures for the kind "render"; for "cast" hits or counts, with --all
+/// also the offsets as a second file. `is_mixed` only applies to rays (merge_hits), `frames` only to pictures. Returns
+/// the accuracy of pictures with an error target. Throws Cancelled, and what check_job_files, merge_pictures and
 /// merge_hits do.
 std::optional<PictureError> merge_job(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs,
                                       const ProgressCallback& progress, bool is_mixed = false,
                                       const std::optional<std::vector<uint32_t>>& frames = std::nullopt);
-/// The same for a program: a signal ends it, and leaves no file half written. Returns what it has made, in words: the
-/// files and, where pixels have missed the error that was asked for, how many.
+/// Does the same for a program: a signal ends it without leaving an incomplete file. Returns a description of the
+/// result: the files and, if pixels have missed the requested error, their number.
 std::string merge_job_deferring(const jobs::Job& job, const std::vector<std::filesystem::path>& outputs);
 
 }  // namespace promin::app

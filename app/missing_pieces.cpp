@@ -17,7 +17,7 @@ namespace {
 /// Missing pieces that a message names.
 constexpr size_t kMostNamed = 5;
 
-/// Throws RunError where pieces are missing, of so many that were looked at.
+/// Throws RunError if pieces are missing; `count` is the number of pieces checked.
 void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, size_t count) {
   if (missing.empty()) return;
   std::vector<std::string> names;

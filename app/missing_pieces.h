@@ -9,9 +9,9 @@
 
 namespace promin::app {
 
-/// Throws RunError where some of these pieces are missing or bad, and names a few, with what is bad about them.
+/// Throws RunError if some of these pieces are missing or bad, and names a few with their faults.
 void check_done(const jobs::Job& job, const std::vector<size_t>& pieces);
-/// The same of all.
+/// Does the same for all pieces.
 void check_whole(const jobs::Job& job);
 
 }  // namespace promin::app

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One spelling for each file, whether it exists or not.
+/// Returns a unique path for each file, whether it exists or not.
 fs::path resolve(const fs::path& file) {
   std::error_code error;
   const fs::path resolved = fs::weakly_canonical(fs::absolute(follow_links(file), error), error);

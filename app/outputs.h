@@ -10,24 +10,24 @@
 
 namespace promin::app {
 
-/// For messages.
+/// Returns the names of the files, for messages.
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 
-/// Throws UsageError for a picture of an ending that write_image does not know.
+/// Throws UsageError for a picture with an ending that write_image does not support.
 void check_pictures(const std::vector<std::filesystem::path>& pictures);
 
-/// Whether the file is a PNG or EXR that promin has written of a scene of this file name.
+/// Returns whether the file is a PNG or EXR that promin has written from a scene with this file name.
 bool is_picture_of(const std::filesystem::path& file, std::string_view scene);
 
-/// Throws UsageError where an output is also an input. check_outputs does so with the inputs that are known before the
-/// work; a loaded scene tells of more (files_of).
+/// Throws UsageError if an output is also an input. check_outputs does so for the inputs that are known before the
+/// work; a loaded scene has more (files_of).
 void check_overwrites(const std::vector<std::filesystem::path>& inputs,
                       const std::vector<std::filesystem::path>& outputs,
                       const std::optional<std::filesystem::path>& stats);
 
-/// Finds before the work what would make it useless: the same file twice, or an input as an output (UsageError), a
-/// missing folder or one that cannot be written (RunError). No file is changed, but for what runs that were killed have
-/// left beside the outputs, which is cleared.
+/// Checks the outputs before the work. Throws UsageError for the same file twice or an input as an output, and RunError
+/// for a folder that is missing or not writable. Changes no file, except that temporary files of killed runs beside the
+/// outputs are removed.
 void check_outputs(const std::vector<std::filesystem::path>& inputs, const std::vector<std::filesystem::path>& outputs,
                    const std::optional<std::filesystem::path>& stats);
 

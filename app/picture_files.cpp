@@ -13,14 +13,14 @@
 namespace promin::app {
 namespace {
 
-/// What a band's numbers take at most: of them there are a few copies at a time.
+/// The largest size of a band's values, of which a few copies exist at a time.
 constexpr size_t kBandBytes = size_t{12} << 20;
-/// Rows of a band are a multiple of those by which EXRs are compressed, unless these take more than that.
+/// The rows of a band are a multiple of an EXR's compression block, unless such a block is larger than that size.
 constexpr uint32_t kRowsOfBlock = 16;
-/// Films are traced by so many.
+/// The number of rows in which films are traced.
 constexpr uint32_t kLeastRows = 8;
 
-// An AOV's channels, by the type of its values, which are gone then.
+// Returns an AOV's channels, by the type of its values, which are moved away.
 
 void add_channels(const std::string& name, std::string_view /*components*/, std::vector<uint32_t> values,
                   std::vector<Channel>& channels) {
@@ -101,7 +101,7 @@ void PictureFiles::write_rows(Image rows, std::vector<Channel> channels) {
   wait();
   rows_ = std::move(rows);
   channels_ = std::move(channels);
-  // Without a thread for it, when it is waited for.
+  // If no thread can be started, it runs when its result is awaited.
   writing_ = std::async([this] {
     for (PictureWriter& writer : writers_) writer.write_rows(rows_, channels_);
     // The next band takes as much.

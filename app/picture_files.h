@@ -19,18 +19,18 @@ namespace promin::app {
 /// hidden. AOVs and channels of a wide picture take much memory, so each AOV is freed when its channels are made.
 std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit);
 
-/// What the header of an EXR tells of these AOVs, without values.
+/// Channels and metadata of an EXR's header for these AOVs, without values.
 struct AovHeader {
   std::vector<Channel> channels;
   Metadata metadata;
 };
 AovHeader describe_aovs(const Scene& scene, const AovSet& choice, bool hides_unlit, DepthKind depth_kind);
 
-/// Cuts a window into bands of whole rows, so that what is held of a band at a time is bounded. `channel_count` is that
-/// of all four-byte numbers of a pixel.
+/// Divides a window into bands of whole rows, so that the memory for a band is bounded. `channel_count` is the number
+/// of four-byte values of a pixel.
 std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_count);
 
-/// The files of one picture, written band after band while the next is traced. Without commit() nothing stays behind.
+/// The files of one picture, written band by band while the next band is traced. Without commit() nothing remains.
 class PictureFiles {
  public:
   /// Throws as write_image.
@@ -39,10 +39,10 @@ class PictureFiles {
   PictureFiles(const PictureFiles&) = delete;
   PictureFiles& operator=(const PictureFiles&) = delete;
 
-  /// The next rows; returns before they are written, and throws what the rows before came to.
+  /// Adds the next rows. Returns before they are written, and throws exceptions from writing earlier rows.
   void write_rows(Image rows, std::vector<Channel> channels);
   void commit();
-  /// Until the rows before are written and no memory is held for them; throws what they came to.
+  /// Waits until all rows are written and their memory is free; throws exceptions from writing them.
   void wait();
 
  private:

@@ -24,13 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Where nothing is asked for, bands of one picture have about so many pixels at most, and bands of any at least so
-/// many rows.
+/// Defaults: the approximate largest number of pixels of a band of one picture, and the smallest number of rows of any
+/// band.
 constexpr uint64_t kBandPixels = uint64_t{1} << 19;
 constexpr uint64_t kLeastBandRows = 8;
 /// Of a picture.
 constexpr uint64_t kMostParts = 1'000'000;
-/// The names of a path's pieces begin so.
+/// Prefix of the names of a path's pieces.
 constexpr std::string_view kOfFrame = "frame";
 
 Json json_of(const PixelWindow& window) {
@@ -56,7 +56,7 @@ PictureError error_of(const Json& json) {
           .samples = json.at("samples")};
 }
 
-/// One of so many. Throws std::out_of_range.
+/// Returns a choice from this number of values. Throws std::out_of_range.
 template <typename Choice>
 Choice choice_of(const Json& json, size_t count) {
   const auto number = json.get<int64_t>();
@@ -72,14 +72,14 @@ size_t area_of(const PixelWindow& window) {
   return static_cast<size_t>(size_of(window).x) * size_of(window).y;
 }
 
-/// Where each of `count` nearly equal parts of 0...length begins, and the end.
+/// Returns the start of each of `count` nearly equal parts of 0...length, and the end.
 std::vector<uint32_t> divide(uint32_t length, uint32_t count) {
   std::vector<uint32_t> places;
   for (uint64_t i = 0; i <= count; ++i) places.push_back(static_cast<uint32_t>(i * length / count));
   return places;
 }
 
-/// What a picture of these metadata is made on, as driver_of tells it of a device.
+/// Returns the driver_of of the device of a picture with these metadata.
 std::string driver_of(const Metadata& metadata) {
   std::string driver;
   for (const auto& [name, value] : metadata) {
@@ -93,7 +93,7 @@ bool is_within(const PixelWindow& part, const PixelWindow& window) {
          glm::all(glm::lessThan(part.lo, part.hi));
 }
 
-/// Copies a part's values to their places in a row of parts.
+/// Copies a part's values to their positions in a row of parts.
 template <typename Value>
 void place(const std::vector<Value>& values, const PicturePart& part, std::vector<Value>& row) {
   const uvec2 size = size_of(part.part);
@@ -122,7 +122,7 @@ struct RowOfParts {
   }
 };
 
-/// Whether a part is of the same picture as the first: what was made by another driver has other bits.
+/// Checks that a part is of the same picture as the first; parts of another driver have other bits.
 void check_same(const PicturePart& part, const PicturePart& first, const fs::path& file) {
   const auto is_same_channel = [](const Channel& a, const Channel& b) { return a.name == b.name; };
   const bool is_same = part.full_size == first.full_size && part.window.lo == first.window.lo &&
@@ -144,14 +144,14 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
   }
 }
 
-/// What is told of a part, so that its pixels need not be held.
+/// Returns a part without its pixels, to save memory.
 PicturePart without_values(PicturePart part) {
   part.image = {};
   for (Channel& channel : part.channels) channel.values = {};
   return part;
 }
 
-/// Of a whole picture, of its parts'.
+/// Returns the whole picture's accuracy from those of its parts.
 std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const size_t> pieces, const PicturePart& first) {
   if (!first.error) return std::nullopt;
   PictureError whole{.target = first.error->target};
@@ -163,8 +163,8 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
   return whole;
 }
 
-/// Writes one picture of its pieces, which lie row by row, to the files of these names with the number of its frame. A
-/// row of pieces is held at a time. Returns what a picture of an error has come to.
+/// Writes one picture from its pieces, row by row, to files of these names with the number of its frame. Only a row of
+/// pieces is in memory at a time. Returns the accuracy of a picture with an error target.
 std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const size_t> pieces,
                                          const std::vector<fs::path>& files, const ProgressCallback& progress) {
   PicturePart part = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
@@ -203,7 +203,7 @@ std::string name_frame(uint32_t frame) {
   return fmt::format("{}{:06}", kOfFrame, frame);
 }
 
-/// The first word of a piece's name tells frames apart; without frames there is one, and the name's rest differs.
+/// The first word of a piece's name identifies its frame; without frames it is always the same.
 std::string frame_of(const std::string& piece) {
   return piece.starts_with(kOfFrame) ? piece.substr(0, piece.find('_')) : "";
 }
@@ -229,7 +229,7 @@ std::vector<size_t> find_pieces_of(const jobs::Job& job, uint32_t frame) {
   return pieces;
 }
 
-/// The same of these frames alone, in their order. Throws UsageError where the job has no such frame.
+/// Does the same for the given frames in their order. Throws UsageError if the job has no such frame.
 std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
                                                  const std::optional<std::vector<uint32_t>>& frames) {
   if (!frames) return find_pictures_of(job);
@@ -243,7 +243,7 @@ std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
   return pictures;
 }
 
-/// Before anything is written: whether the frames go to files of their own.
+/// Checks, before anything is written, that each frame has its own file.
 void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   const std::vector<std::string>& pieces = job.manifest().pieces;
   if (!pieces.front().starts_with(kOfFrame) || frame_of(pieces.front()) == frame_of(pieces.back())) return;
@@ -254,7 +254,7 @@ void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   }
 }
 
-/// Bands of each of so many pictures where nothing is asked for.
+/// Returns the default number of bands for each of this number of pictures.
 uint32_t choose_bands(const PixelWindow& window, size_t pictures) {
   const uint64_t rows = size_of(window).y;
   const uint64_t usual = std::min(divide_up<uint64_t>(kUsualPieces, pictures), rows / kLeastBandRows);

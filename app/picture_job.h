@@ -22,15 +22,15 @@ namespace promin::app {
 /// The kind of a job whose pieces are parts of pictures.
 inline constexpr std::string_view kPictureJob = "render";
 
-/// The pieces of a picture's window, row by row, where the job has so many pictures. Throws UsageError for more of them
-/// than the window has rows or columns.
+/// Returns the pieces of a picture's window, row by row, for a job of this number of pictures. Throws UsageError for
+/// more pieces than the window has rows or columns.
 std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions& options, size_t pictures);
 
-/// A part of a picture with all that the whole one's files are written with.
+/// A part of a picture, with all data for writing the files of the whole picture.
 struct PicturePart {
-  /// Of a camera path.
+  /// The frame of a camera path.
   std::optional<uint32_t> frame;
-  /// Of the whole picture, its window that is rendered, and the part of that.
+  /// Size of the whole picture, its rendered window, and this part of the window.
   uvec2 full_size{0};
   PixelWindow window;
   PixelWindow part;
@@ -43,25 +43,25 @@ struct PicturePart {
 };
 
 jobs::Content encode_part(const PicturePart& part);
-/// Throws InputError, which names the file, where the content is none of a picture.
+/// Decodes a piece. Throws InputError with the file's name if the content is not part of a picture.
 PicturePart decode_part(const jobs::Content& content, const std::filesystem::path& file);
 
-/// The manifest's names of pieces: of each frame, or of the one picture, its parts.
+/// Returns the manifest's names of pieces: the parts of each frame, or of the single picture.
 std::vector<std::string> name_pieces(const std::vector<std::optional<uint32_t>>& frames,
                                      const std::vector<PixelWindow>& parts);
 
-/// The files that a job's pictures go to: of a path those of each frame, or of these. Throws UsageError for a frame
-/// that the job does not have.
+/// Returns the files of a job's pictures: for a path those of each frame, or of the given frames. Throws UsageError for
+/// a frame that the job does not have.
 std::vector<std::filesystem::path> number_pictures(const jobs::Job& job,
                                                    const std::vector<std::filesystem::path>& files,
                                                    const std::optional<std::vector<uint32_t>>& frames);
-/// Throws UsageError for files that are no pictures, and where several frames would go to one.
+/// Throws UsageError for files that are not pictures, and if several frames would be written to one file.
 void check_merged_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
-/// Puts the pieces of a job of pictures together and writes each picture, or those of these frames of a path, to the
-/// files of these names, with the number of its frame; check_merged_pictures has seen these. Returns what pictures of
-/// an error have come to together. Throws RunError where pieces of these pictures are missing, which names some,
-/// InputError where pieces do not belong together (made by different drivers) or are damaged, UsageError for a frame
-/// that the job does not have, Cancelled where `progress`, which is asked before each piece, says so.
+/// Puts the pieces of a job of pictures together and writes each picture, or those of the given frames of a path, to
+/// files of these names with the frame's number. check_merged_pictures must have checked them. Returns the accuracy of
+/// pictures with an error target. Calls `progress` before each piece. Throws RunError with some names if pieces are
+/// missing, InputError if pieces are damaged or do not belong together (made by different drivers), UsageError for a
+/// frame that the job does not have, and Cancelled.
 std::optional<PictureError> merge_pictures(const jobs::Job& job, const std::vector<std::filesystem::path>& files,
                                            const ProgressCallback& progress,
                                            const std::optional<std::vector<uint32_t>>& frames = std::nullopt);

@@ -48,13 +48,13 @@ PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame
   const AssumedLight assumed = light_up(scene, view.look, surroundings);
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
-  // Errors as they are shown bring it to the bits of an EXR, too.
+  // With errors measured as displayed it affects the bits of an EXR, too.
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||
                             (stats.view->error_target && stats.view->error_target->display);
   const std::string assumptions =
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
   if (!assumptions.empty()) console.note(assumptions);
-  // A job's pieces may be shown later.
+  // A job's pieces may be displayed later.
   const bool keeps_unlit =
       (is_displayed || options.job.folder) && shows_unlit_apart(scene, scene.environment, view.look, stats.display);
   run.options.hides_unlit = keeps_unlit && !options.aovs.unlit;
@@ -83,7 +83,7 @@ TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_
   result.has_error_target = options.error.target && !options.error.time_limit_s;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
   result.aovs = options.aovs;
-  // The average takes pixels that hit something.
+  // The average only uses pixels with a hit.
   if (options.view.look.averages_exposure) result.aovs.object = true;
   return result;
 }

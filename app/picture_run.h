@@ -25,23 +25,23 @@ namespace promin::app {
 
 // The steps of rendering that a single run and a job have in common.
 
-/// Pictures that are about to be traced: all inputs are read, no device is open.
+/// Pictures ready to be traced: all inputs are read, but no device is open.
 struct PictureRun {
-  /// With Aovs::unlit too where what shows the pictures needs it.
+  /// The options, with Aovs::unlit if displaying the pictures needs it.
   RenderOptions options;
   std::vector<PlannedFrame> frames;
   /// Lit and framed.
   Scene scene;
   std::vector<SourceFile> sources;
-  /// With the view of all frames, but for their cameras, and how they are shown.
+  /// Includes the view of all frames, except their cameras, and the display transform.
   RunStats stats;
 };
 
-/// Loads the scene of checked options and decides what they leave open, which it notes. Throws InputError, and
-/// UsageError for what the scene does not have.
+/// Loads the scene of checked options and decides open settings, with notes. Throws InputError, and UsageError for
+/// references to things that the scene lacks.
 PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame> frames, const Console& console);
 
-/// Of all pictures together.
+/// Returns the number of samples of all pictures together.
 uint64_t count_samples(const View& view, size_t frames, const RenderOptions& options);
 
 TunedRendererOptions make_renderer_options(const RenderOptions& options, uint64_t expected_samples);
@@ -55,13 +55,13 @@ struct TracedFrame {
 TracedFrame trace(Renderer& renderer, const View& view, const RenderOptions& options,
                   const std::optional<double>& limit_s, const std::function<bool(double)>& on_progress);
 
-/// No times: equal pictures are equal files.
+/// Returns the metadata, without times, so that equal pictures give equal files.
 Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs);
 
-/// What of the whole picture is rendered.
+/// Returns the rendered window of the whole picture.
 PixelWindow window_of(const View& view);
 
-/// Gives pixels the numbers that the file has for its objects.
+/// Replaces object indices of pixels by the numbers of the scene's file.
 void number_as_in_file(const Scene& scene, Aovs& aovs);
 
 }  // namespace promin::app

@@ -18,17 +18,17 @@ struct PictureRows {
   std::vector<Channel> channels;
 };
 
-/// A picture that waits on disk until it is whole, where its files begin with what its last pixel tells: parts go in
-/// in any order, and rows come out. It takes 4 bytes a number there.
+/// A picture that is kept on disk until it is complete, because its files begin with data that depends on the last
+/// pixel. Parts are written in any order and read back as rows. It needs 4 bytes per value on disk.
 class PictureSpool {
  public:
-  /// Lies beside `file`, one that the picture is to be written to. `window` is what is rendered of the whole picture;
-  /// `channels` are those beside R, G and B, without values. Throws as ScratchFile.
+  /// Creates the spool beside `file`, one of the picture's files. `window` is the rendered part of the whole picture;
+  /// `channels` are those in addition to R, G and B, without values. Throws as ScratchFile.
   PictureSpool(const std::filesystem::path& file, const PixelWindow& window, std::vector<Channel> channels);
 
-  /// A part of the window, with values of all channels.
+  /// Writes a part of the window, with values of all channels.
   void write(const PixelWindow& part, const Image& image, const std::vector<Channel>& channels);
-  /// A band of whole rows of the window, all of which were written.
+  /// Reads a band of whole rows of the window, which must have been written.
   PictureRows read(const PixelWindow& band) const;
 
  private:
@@ -37,7 +37,7 @@ class PictureSpool {
 
   PixelWindow window_;
   std::vector<Channel> channels_;
-  /// Row by row, of each pixel R, G, B and then the channels.
+  /// Row by row, for each pixel R, G, B and then the channels.
   ScratchFile file_;
 };
 

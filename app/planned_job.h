@@ -15,33 +15,34 @@
 
 namespace promin::app {
 
-/// Makes the pieces of a planned job, with what it has opened once. It serves one thread at a time, and the plan and
-/// the device must outlive it.
+/// Makes the pieces of a planned job with resources that are opened once. Only one thread at a time may use it; the
+/// plan and the device must outlive it.
 class PieceMaker {
  public:
   virtual ~PieceMaker() = default;
-  /// Throws RunError, Cancelled where `progress` says so, and InputError where an input has changed meanwhile.
+  /// Makes a piece. Throws RunError, Cancelled if `progress` returns false, and InputError if an input has changed
+  /// meanwhile.
   virtual jobs::Content make(size_t piece, const ProgressCallback& progress) = 0;
 };
 
-/// A job that a command line asks for: its inputs are read and hashed, and no device is open.
+/// A job that a command line describes: its inputs are read and hashed, but no device is open.
 class PlannedJob {
  public:
   virtual ~PlannedJob() = default;
 
   const jobs::Manifest& manifest() const { return manifest_; }
-  /// The words by which plan_job plans it again, from any folder: files have absolute paths, and what does not decide
-  /// how pieces are made is left out.
+  /// Returns the arguments from which plan_job plans it again in any folder: files have absolute paths, and options
+  /// that do not affect the pieces are left out.
   const std::vector<std::string>& arguments() const { return arguments_; }
-  /// Opens what the device makes pieces with: about so many. The tree is that of shared_tree_file, which may be waited
-  /// for. Throws Cancelled where `progress`, which is asked meanwhile, says so.
+  /// Opens the resources for making about this number of pieces on a device. The tree is that of shared_tree_file, and
+  /// the call may wait for it. Throws Cancelled if `progress`, which is called meanwhile, returns false.
   virtual std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces,
                                            const ProgressCallback& progress) = 0;
-  /// How far apart a piece that is there and one made anew are, whose file it names in messages. Throws InputError
-  /// where they are not of one piece.
+  /// Compares an existing piece with one made again; messages name its file. Throws InputError if they are not the same
+  /// piece.
   virtual PieceDifference compare(size_t piece, const jobs::Content& there, const jobs::Content& anew,
                                   const std::filesystem::path& file) = 0;
-  /// Has the job's folder, now that it is there, keep what would cost others time to find out.
+  /// Stores information in the job's folder, after its creation, that saves other processes time.
   virtual void remember() {}
 
  protected:

@@ -16,7 +16,7 @@
 namespace promin::app {
 namespace {
 
-/// The limits 0 and 180 themselves show nothing.
+/// Angles of 0 and 180 degrees show nothing.
 constexpr double kMinFovDeg = 1e-3;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 constexpr double kMaxTurnDeg = 3600.0;
@@ -33,7 +33,7 @@ dvec3 read_up(const OptionValues& words) {
   return axis;
 }
 
-/// Rows that say what has taken the place of an option.
+/// Adds rows that name the replacement of a former option.
 void add_former_options(OptionTable& table) {
   table.add_hidden("--look", [](const OptionValues& w) {
     w.refuse("there is no option --look: --look-at X Y Z takes a point to look at, --direction X Y Z a direction");

@@ -12,12 +12,12 @@ namespace promin::app {
 
 class OptionTable;
 
-/// The user's choices of a camera's place, directions and lens. Places are those of the world. Directions need not be
+/// The user's choices of a camera's position, directions and lens. Positions are in the world. Directions need not be
 /// unit vectors.
 struct PoseOptions {
-  /// From where the scene is framed, whatever cameras it has.
+  /// The side from which to frame the scene, even if it has cameras.
   std::optional<Framing> from = std::nullopt;
-  /// The share of the picture that a framed scene covers.
+  /// The part of the picture that a framed scene covers.
   std::optional<float> fit = std::nullopt;
   std::optional<dvec3> eye = std::nullopt;
   /// At most one of these two.
@@ -38,7 +38,7 @@ struct PoseOptions {
 /// Adds the rows of the options. `pose` must outlive the parsing.
 void add_pose_options(OptionTable& table, PoseOptions& pose);
 
-/// Throws UsageError where two of the options, or one and a camera of the scene that is named, contradict each other.
+/// Throws UsageError if two options contradict each other, or an option contradicts a named camera of the scene.
 void check_pose_options(const PoseOptions& pose, bool names_camera);
 
 }  // namespace promin::app

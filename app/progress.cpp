@@ -65,7 +65,7 @@ StageNote::StageNote(std::string name, const Console& console) : name_(std::move
   try {
     waiting_ = std::thread([this] { wait_and_tell(); });
   } catch (const std::system_error&) {
-    // There are too few threads for a note.
+    // No thread could be started for the note.
   }
 }
 

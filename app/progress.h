@@ -13,22 +13,22 @@
 
 namespace promin::app {
 
-/// Shows how far long work is, on the standard error stream: a bar with the time left on a terminal, a plain line
-/// after a second and every 10 % in a pipe. Work of less than a second shows nothing.
+/// Shows the progress of long work on the standard error stream: a bar with the remaining time on a terminal, else a
+/// plain line after a second and at every 10 %. Shows nothing for work of less than a second.
 class Progress {
  public:
-  /// A quiet one shows nothing at all.
+  /// A quiet one shows nothing.
   explicit Progress(bool is_quiet, std::string program = "promin");
   /// Removes the bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Shows the fraction of the whole work that is done, 0...1, and its current step, which may be empty.
+  /// Shows the finished fraction of the work, 0...1, and its current step, which may be empty.
   void update(double fraction, const std::string& at = {});
-  /// Takes the bar away, until the next update.
+  /// Hides the bar until the next update.
   void clear();
-  /// A callback for work that reports only its fraction.
+  /// Returns a callback for work that only reports its fraction.
   ProgressCallback callback() {
     return [this](double fraction) {
       update(fraction);
@@ -48,11 +48,11 @@ class Progress {
   int last_tenth_ = -1;
 };
 
-/// Names a stage of the work on stderr where it takes more than a second. It needs a thread; without one it is silent.
+/// Prints the name of a stage on stderr if it takes more than a second. If no thread can be started, it is silent.
 class StageNote {
  public:
   StageNote(std::string name, const Console& console);
-  /// The stage is over.
+  /// Ends the stage.
   ~StageNote();
   StageNote(const StageNote&) = delete;
   StageNote& operator=(const StageNote&) = delete;

@@ -7,7 +7,7 @@
 
 namespace promin::app {
 
-/// The median of any number of values; 0 of none.
+/// Returns the median of any number of values; 0 without values.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
@@ -15,7 +15,7 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// The smallest value that is not exceeded by this fraction of them, 0...1; 0 of none.
+/// Returns the smallest value that this fraction of the values, 0...1, does not exceed; 0 without values.
 inline double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

@@ -33,7 +33,7 @@ class RayFile : public RaySource {
 
  private:
   std::filesystem::path file_;
-  // Before the reader: what is read is not older.
+  // Taken before the reader is opened, so that the data read is not older.
   std::optional<FileStamp> stamp_;
   RayReader reader_;
   std::mutex mutex_;

@@ -12,21 +12,21 @@
 
 namespace promin::app {
 
-/// The rays of a job. It serves several threads.
+/// The rays of a job. Several threads may use it.
 class RaySource {
  public:
   virtual ~RaySource() = default;
   virtual uint64_t count() const = 0;
-  /// Reads as many rays as fit in `rays`, from the one of this number on; they are there. Their origins lose the
-  /// scene's center. Throws InputError, also where they have changed since describe().
+  /// Reads as many rays as fit in `rays`, starting with this index; all must exist. The scene's center is subtracted
+  /// from their origins. Throws InputError, also if they have changed since describe().
   virtual void read(uint64_t first, std::span<Ray> rays, const dvec3& center) = 0;
-  /// What the job's manifest tells of them. Throws InputError.
+  /// Returns their description for the job's manifest. Throws InputError.
   virtual jobs::InputFile describe() = 0;
-  /// Has the job's folder, now that it is there, keep what describe() took long for.
+  /// Stores the results of describe() in the job's folder, after its creation, to save time.
   virtual void remember() {}
 };
 
-/// Rays of a NumPy file, whose hash a job's folder may know. Throws InputError.
+/// Opens the rays of a NumPy file, whose hash may be cached in a job's folder. Throws InputError.
 std::shared_ptr<RaySource> open_rays(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace promin::app

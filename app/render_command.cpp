@@ -37,7 +37,7 @@
 namespace promin::app {
 namespace {
 
-/// A picture that takes more than this share of its time limit is late.
+/// A picture that takes longer than this factor of its time limit is late.
 constexpr double kLateShare = 1.2;
 /// With less than this share of the time limit a picture could have used more of it.
 constexpr double kEarlyShare = 0.67;
@@ -56,7 +56,7 @@ PictureHeader make_header(const RenderOptions& options, const Scene& scene, cons
   return header;
 }
 
-/// The samples of a pixel and, with an error target, how exact that is, of several frames together.
+/// Returns the samples per pixel and, with an error target, the accuracy of several frames together.
 std::string describe_samples(const RunStats& stats) {
   if (stats.errors.empty() || !stats.view->error_target) return fmt::format("{} spp", stats.view->samples_per_pixel);
   PictureError all = stats.errors.front();
@@ -67,7 +67,7 @@ std::string describe_samples(const RunStats& stats) {
                      describe_errors(least.target, most.target, *stats.view->error_target), describe_unmet(all));
 }
 
-/// The options that give the last picture of a time limit again.
+/// Returns the options that reproduce the last picture of a time limit.
 std::string describe_reached(const RunStats& stats) {
   const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
   if (!stats.view->error_target)
@@ -77,7 +77,7 @@ std::string describe_reached(const RunStats& stats) {
   return fmt::format("the same picture{} again: {}", name, describe_options(target));
 }
 
-/// Says what a time limit has come to.
+/// Reports the result of a time limit.
 void tell_reached(const RunStats& stats, double limit_s, double taken_s, const Console& console) {
   if (taken_s > kLateShare * limit_s) {
     const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
@@ -105,14 +105,14 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
                      stats.mrays_per_s(), stats.device.name, fmt::join(names_of(name_pictures(options)), ", "));
 }
 
-/// Where the picture tells its exposure itself, that of a path's first frame for all.
+/// Sets an exposure that is computed from the picture; the first frame of a path determines it for all.
 void expose_by_first(const RenderOptions& options, const RenderResult& result, RunStats& stats) {
   const bool is_first = stats.frames.size() <= 1;
   if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
   stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object, result.aovs.unlit);
 }
 
-/// Whether a picture is traced by one call, which needs it whole or makes it as exact as the time allows.
+/// Returns whether a picture is traced by one call, because it is needed as a whole or limited by time.
 bool is_traced_whole(const RenderOptions& options) {
   return options.error.time_limit_s || options.view.look.averages_exposure;
 }
@@ -121,7 +121,7 @@ bool is_traced_whole(const RenderOptions& options) {
 /// the error that the whole comes to, once all is traced.
 class FrameRendering {
  public:
-  /// `limit_s` is the time that is left of a time limit.
+  /// `limit_s` is the remaining time of a time limit.
   FrameRendering(const PlannedFrame& planned, const RenderOptions& options, const std::optional<double>& limit_s,
                  const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
                  std::function<void(double)> on_progress)
@@ -175,7 +175,7 @@ class FrameRendering {
     }
     for (size_t i = 0; i < trace_ms_.size(); ++i) trace_ms_[i] += traced.trace_ms[i];
     expose_by_first(options_, result, stats_);
-    // Of a wide picture rows with all AOVs take much memory, so there are not three copies of them at a time.
+    // Rows of a wide picture with all AOVs take much memory, so at most two copies exist at a time.
     if (files_) files_->wait();
     return {std::move(result.image),
             make_channels(scene_, std::move(result.aovs), options_.aovs, options_.hides_unlit)};
@@ -183,7 +183,7 @@ class FrameRendering {
 
   void open_files() {
     if (error_) stats_.errors.push_back(*error_);
-    // From here on a signal waits until nothing is left behind.
+    // From here on signals are deferred until no temporary file remains.
     while_writing_.emplace();
     files_.emplace(planned_.pictures, make_header(options_, scene_, planned_.number, stats_));
   }
@@ -253,7 +253,7 @@ class FrameRendering {
   /// Of each repetition.
   std::vector<double> trace_ms_;
   std::optional<PictureError> error_;
-  // In this order: files that are not committed are gone before a signal ends the program.
+  // In this order, so that uncommitted files are removed before a signal ends the program.
   std::optional<DeferredSignals> while_writing_;
   std::optional<PictureFiles> files_;
 };
@@ -264,8 +264,7 @@ double writing_s(const View& view, size_t pictures) {
   return kSecondsPerPixel * static_cast<double>(area_of(window_of(view))) * static_cast<double>(pictures);
 }
 
-/// Renders all frames with what is loaded once. An error says at which frame it happened; the pictures of those before
-/// are whole.
+/// Renders all frames after loading once. An error names its frame; the pictures of earlier frames are complete.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const Stopwatch& total,
                    const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
                    const Console& console) {
@@ -277,7 +276,7 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
     const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
     stats.view = asked;
     if (frame.camera) stats.view->camera = *frame.camera;
-    // The first frame's time includes loading and compiling, and that of each writing its pictures.
+    // The first frame's time includes loading and compiling; each frame's time includes writing its pictures.
     const Stopwatch of_frame;
     const auto taken_s = [&] { return 1e-3 * (i == 0 ? total : of_frame).ms(); };
     std::optional<double> left_s;
@@ -318,7 +317,7 @@ bool is_file_there(const std::filesystem::path& file) {
   return std::filesystem::exists(file, error);
 }
 
-/// Whether all pictures of a frame are there: a folder or an empty file is none.
+/// Returns whether all pictures of a frame exist; folders and empty files do not count.
 bool is_there(const PlannedFrame& frame) {
   return std::ranges::all_of(frame.pictures, [](const std::filesystem::path& file) {
     std::error_code error;
@@ -326,8 +325,7 @@ bool is_there(const PlannedFrame& frame) {
   });
 }
 
-/// Throws UsageError where a file is there whose name the user has not given, unless it is promin's picture of a scene
-/// of this name.
+/// Throws UsageError if a file with a default name exists, unless it is promin's picture of a scene of this name.
 void check_default_names(const std::vector<std::filesystem::path>& pictures, const std::string& scene) {
   const auto found = std::ranges::find_if(
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
@@ -336,7 +334,7 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
                     "name the file to write by -o"});
 }
 
-/// Throws UsageError where a picture on the standard output would not be the only one there.
+/// Throws UsageError if several pictures would be written to the standard output.
 void check_standard_output(const RenderOptions& options) {
   const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
   if (count == 0) return;
@@ -346,8 +344,7 @@ void check_standard_output(const RenderOptions& options) {
   if (options.job.folder) refuse("-o - and --job contradict each other");
 }
 
-/// Goes on with a job, and where it has all pieces writes its pictures. `begin` is called when nothing is wrong with
-/// it.
+/// Continues a job, and writes its pictures if all pieces are done. Calls `begin` when all checks have passed.
 void render_job(PictureRun run, const CLI::App& command, const Console& console, const std::function<void()>& begin) {
   const RenderOptions options = run.options;
   RunStats stats;
@@ -362,7 +359,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
   const TracingOptions& tracing = given.tracing;
   check_render_options(given);
   check_standard_output(given);
-  // What is no scene has no name for pictures either.
+  // A file that is not a scene is refused before pictures are named after it.
   check_scene_name(tracing.scene);
   RenderOptions options = given;
   const StandardOutput standard_output(options.pictures);

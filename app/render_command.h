@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// `promin render SCENE -o FILE`: one picture.
+/// Adds `promin render SCENE -o FILE`, which renders a picture.
 Command add_render_command(CLI::App& program);
 
 }  // namespace promin::app

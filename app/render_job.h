@@ -10,7 +10,7 @@
 
 namespace promin::app {
 
-/// The job of pictures that are about to be traced, whose command was parsed to its options.
+/// Returns the job of prepared pictures for a parsed command.
 std::unique_ptr<PlannedJob> plan_pictures(PictureRun run, const CLI::App& command, const Console& console);
 
 }  // namespace promin::app

@@ -31,7 +31,7 @@ namespace {
 
 constexpr uint32_t kMaxFrame = 9999999;
 constexpr double kMaxBackground = 1e9;
-/// More would leave the range of floats.
+/// Larger values would exceed the range of floats.
 constexpr double kMaxExposureEv = 64.0;
 constexpr uint32_t kMaxTextureMib = 8192;
 /// Seconds.
@@ -77,14 +77,14 @@ PixelWindow read_window(const OptionValues& words) {
   return window;
 }
 
-/// The place of the word among names of an enumeration, of which the first `hidden` are not for users.
+/// Reads a name of an enumeration; the first `hidden` names are not for users.
 template <typename Enum>
 Enum read_name(const OptionValues& words, std::span<const std::string_view> names, size_t hidden = 0) {
   const auto place = std::find(names.begin(), names.end(), words.choice(names.subspan(hidden)));
   return static_cast<Enum>(place - names.begin());
 }
 
-/// Reads "640x480", "640" (the width), "x480" (the height) or a name. What is left open is 0.
+/// Reads "640x480", "640" (the width), "x480" (the height) or a name. A missing side is 0.
 uvec2 read_size(const OptionValues& words) {
   constexpr std::string_view kTimes = "\u00d7";
   std::string text = words.text();
@@ -135,9 +135,9 @@ BackgroundChoice read_background(const OptionValues& words) {
   return {.color = read_color(words, 1.0)};
 }
 
-/// Reads "0.02" or, as errors are spoken of, "1/64".
+/// Reads an error as "0.02" or "1/64".
 float read_error(const OptionValues& words) {
-  // The shortest decimals of the least target, as programs print them, are of a number that is a little less.
+  // The shortest decimals of the smallest target, which programs print, represent a slightly smaller number.
   const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
   const std::optional<double> quotient = words.fraction();
   const double error = quotient ? *quotient : words.real(0, least, 1.0);
@@ -174,7 +174,7 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
   return numbers;
 }
 
-/// By the AOV's name as well.
+/// Also accepts the AOV's name.
 DebugView read_shading(const OptionValues& words) {
   const OptionValues canonical = words.text() == kNormal ? words.with({std::string(kNormals)}) : words;
   return read_name<DebugView>(canonical, debug_view_names());
@@ -355,7 +355,7 @@ std::string describe_unmet(const PictureError& error) {
 namespace {
 
 constexpr uint32_t kHighSamples = 32;
-/// Samples of `best` where pictures have no error: with a debug shading or --exposure average.
+/// Samples of `best` for pictures without an error target: with a debug shading or --exposure average.
 constexpr uint32_t kBestSamples = 128;
 /// The error of `best`: one code of 8 bits in the shown colours.
 constexpr float kBestError = 1.0F / 256.0F;
@@ -499,7 +499,7 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
 
 namespace {
 
-/// An option or what is as one, by its name, and whether it is given.
+/// An option, or a group that counts as one, with its name and whether it is given.
 using Given = std::pair<bool, std::string_view>;
 
 void refuse_if(bool holds, const std::string& what, const std::string& cure) {
@@ -516,7 +516,7 @@ void refuse_beside(std::string_view name, std::initializer_list<Given> others,
 
 }  // namespace
 
-// All that options of promin render have against each other, in the order in which it is told.
+// Checks all contradictions of options of promin render, in the order of reporting.
 void check_render_options(const RenderOptions& options) {
   const ViewOptions& view = options.view;
   const ErrorOptions& error = options.error;
@@ -548,13 +548,13 @@ void check_render_options(const RenderOptions& options) {
                                 {error.time_limit_s.has_value(), "--time-limit"}});
   }
 
-  // An error to aim at.
+  // Refuses options that contradict an error target.
   if (error.is_given()) {
     const std::string_view name = error.target ? "--target-error" : "--time-limit";
     refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
                   "leave one out; --min-spp and --max-spp limit the samples");
     refuse_beside(name, {{is_debug, "--shading"}});
-    // Each turn might come to another target, and so to another picture.
+    // Each repetition could reach another target, and so another picture.
     if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
     refuse_if(
         error.space == ErrorSpace::kDisplay && averages,
@@ -599,7 +599,7 @@ void check_render_options(const RenderOptions& options) {
   refuse_if(options.frames && !options.path, "--frames needs a camera path", "give --path as well");
   refuse_if(options.fps && !options.path, "--fps needs a camera path", "give --path as well");
 
-  // What only an EXR holds; PNG files take alpha alone.
+  // Channels that only an EXR can store; PNG files only have alpha.
   const auto& pictures = options.pictures;
   const std::string stem = options.tracing.scene.stem().string();
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
@@ -621,7 +621,7 @@ void check_render_options(const RenderOptions& options) {
               "write a .png or .exr");
   }
 
-  // What only a PNG shows.
+  // Options that only affect a PNG.
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
   refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
 }

@@ -24,25 +24,24 @@ class App;
 
 namespace promin::app {
 
-/// What rays from the camera see that leave the scene.
+/// The background that camera rays see.
 struct BackgroundChoice {
-  /// Whether they see what surrounds the scene; else the colour.
+  /// Whether they see the environment; else the colour.
   bool is_environment = false;
-  /// Whether the colour is linear light, exposed and tone mapped as all light is; else it is sRGB, 0 to 1, as shown.
+  /// Whether the colour is linear light, which is exposed and tone mapped; else it is displayed sRGB, 0 to 1.
   bool is_linear = false;
   vec3 color{0.0F};
 
   bool operator==(const BackgroundChoice&) const = default;
 };
 
-/// How a scene is lit and its pictures are shown, as the user asked for it. What the user leaves open follows from the
-/// scene (promin/lighting.h).
+/// The user's choices of light and display. Open choices depend on the scene (promin/lighting.h).
 struct LookOptions {
   LightChoice light = LightChoice::kAuto;
   std::optional<BackgroundChoice> background = std::nullopt;
-  /// Stops.
+  /// Exposure in stops.
   std::optional<float> exposure_ev = std::nullopt;
-  /// Whether the picture tells its stops itself (average_exposure_ev); `exposure_ev` is not given then.
+  /// Whether the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
   bool averages_exposure = false;
   std::optional<ToneMapping> tone_mapping = std::nullopt;
   bool dithers = false;
@@ -50,144 +49,142 @@ struct LookOptions {
   uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
 };
 
-/// The part of a scene that is shown, as the user asked for it; make_view (view_setup.h) makes a View of it.
+/// The user's choices of the view, from which make_view (view_setup.h) makes a View.
 struct ViewOptions {
-  /// A side of 0 follows from the camera's aspect ratio.
+  /// Size in pixels; a side of 0 follows from the camera's aspect ratio.
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
-  /// View's where it is not given.
+  /// Samples per pixel; the default of View if empty.
   std::optional<uint32_t> samples_per_pixel = std::nullopt;
   PixelFilter filter = PixelFilter::kBox;
-  /// In pixels; the filter's own where it is not given.
+  /// Width in pixels; the filter's default if empty.
   std::optional<float> filter_width = std::nullopt;
-  /// As the scene needs where it is not given.
+  /// Largest number of bounces; depends on the scene if empty.
   std::optional<uint32_t> max_depth = std::nullopt;
   DebugView debug_view = DebugView::kNone;
   DepthKind depth_kind = DepthKind::kRay;
   bool has_no_shadows = false;
   LookOptions look;
-  /// Indices of the scene's lights to leave out.
+  /// Indices of the scene's lights to switch off.
   std::vector<uint32_t> lights_off;
   /// The name or number of a camera.
   std::optional<std::string> camera;
-  /// Whether the scene's cameras are left out unless one is named: the scene is framed.
+  /// Whether to frame the scene, and ignore its cameras unless one is named.
   bool frames_scene = false;
-  /// A pose that takes the place of the scene's cameras.
+  /// A camera that replaces those of the scene.
   std::optional<Camera> given_camera;
   PoseOptions pose;
   EnvironmentOptions environment;
 };
 
-/// Numbers of frames from 0, both included.
+/// A range of frame numbers from 0, both included.
 struct FrameRange {
   uint32_t first = 0;
   uint32_t last = 0;
 };
 
-/// Samples of a pixel where nobody says how many. Eight end the stairs at edges and the noise of small mirrors, for
+/// The default number of samples per pixel. Eight remove the stairs at edges and the noise of small mirrors, and cost
 /// about a second of two cores more at 640x480.
 inline constexpr uint32_t kDefaultSamples = 8;
 
 /// How good a picture is, for people who do not count samples.
 enum class Quality : uint32_t { kDraft, kNormal, kHigh, kBest };
 
-/// What errors are of: linear light, or what is shown of it.
+/// The space in which errors are measured: linear light, or as displayed.
 enum class ErrorSpace : uint32_t { kLinear, kDisplay };
 
-/// Names for people, by the value of the ErrorSpace.
+/// Returns names for people, indexed by ErrorSpace.
 std::span<const std::string_view> error_space_names();
 
-/// The least error to aim at, as a fraction in words.
+/// Returns the smallest target error as the text of a fraction.
 std::string least_error();
 
-/// How exact pictures are to be. What the user leaves open follows from the rest.
+/// The user's choices of accuracy. Open choices follow from the others.
 struct ErrorOptions {
   std::optional<float> target;
-  /// Seconds.
+  /// Time limit in seconds.
   std::optional<double> time_limit_s;
   std::optional<uint32_t> min_samples;
   std::optional<uint32_t> max_samples;
-  /// In what errors are measured.
+  /// The space in which errors are measured.
   std::optional<ErrorSpace> space;
 
   bool is_given() const { return target || time_limit_s; }
-  /// Empty where pictures have samples of a fixed number.
+  /// Returns the error target; empty for a fixed number of samples.
   std::optional<ErrorTarget> error_target() const;
-  /// Of this error where none is given. How the picture is shown is not known yet (fit_to_display).
+  /// Returns the error target, with this error if none is given. The display transform is not set yet (fit_to_display).
   ErrorTarget target_or(float error) const;
 };
 
-/// Gives a target what hangs on how the picture is shown: what is white and, where errors are measured as they are
-/// shown, by what.
+/// Sets the members of a target that depend on the display: the radiance of white and, if errors are measured as
+/// displayed, the transform.
 void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
 
-/// The options that ask for such a target, to the bit.
+/// Returns the options that give exactly this target.
 std::string describe_options(const ErrorTarget& target);
-/// "error 0.015625", "error 0.015625 to 0.125" or one of these with " as shown": errors that were reached, measured as
-/// the target is.
+/// Returns "error 0.015625", "error 0.015625 to 0.125" or one of these with " as shown": the errors reached, measured
+/// as for the target.
 std::string describe_errors(float least, float most, const ErrorTarget& target);
 
-/// " but for 750 pixels of at most 0.0161": those that have missed a target; empty where none has.
+/// Returns " but for 750 pixels of at most 0.0161" for pixels that have missed a target; empty if there are none.
 std::string describe_unmet(const PictureError& error);
 
 struct RenderOptions {
   TracingOptions tracing;
-  /// Where the user names none, those of name_pictures.
+  /// If the user names none, those of name_pictures.
   std::vector<std::filesystem::path> pictures;
-  /// Whether frames are left out whose pictures are there.
+  /// Whether to skip frames whose pictures exist.
   bool skips_existing = false;
   ViewOptions view;
   std::optional<Quality> quality;
   ErrorOptions error;
   JobOptions job;
-  /// Channels that an EXR carries beside R, G and B.
+  /// Further channels of an EXR in addition to R, G and B.
   AovSet aovs;
-  /// Whether AovSet::unlit is for what shows the pictures alone, which is known when the scene is read.
+  /// Whether AovSet::unlit is only needed to display the pictures, which is known when the scene is read.
   bool hides_unlit = false;
   ExrOptions exr;
-  /// Whether the user has said how EXRs are compressed, be it as they are anyway.
+  /// Whether the user has chosen the compression of EXRs, even if it is the default.
   bool names_compression = false;
-  /// A camera path, and which of its frames to render; without `frames` all.
+  /// A camera path, and the frames to render; without `frames` all.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
-  /// The rate of pictures, as PathPictures takes it.
+  /// The rate of pictures, as for PathPictures.
   std::optional<double> fps;
-  /// A pixel to explain instead of writing a picture.
+  /// A pixel to explain in place of writing a picture.
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 };
 
-/// Adds the rows that a window takes as well: what of the scene is shown, and the camera. `view` must outlive the
-/// parsing.
+/// Adds the rows that a window has too: the view of the scene and the camera. `view` must outlive the parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 
-/// Adds the rows of --spp, with what is usual, and --quality. `options` must outlive the parsing.
+/// Adds the rows of --spp, with this text for its default, and --quality. `options` must outlive the parsing.
 void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual);
 
-/// Adds the rows of --target-error, with this help, and of the samples that go with it. `error` must outlive the
-/// parsing.
+/// Adds the rows of --target-error, with this help, and of its sample options. `error` must outlive the parsing.
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help);
 
-/// Adds the row of --fps, for whatever plays a path. `fps` must outlive the parsing.
+/// Adds the row of --fps, for commands that play a path. `fps` must outlive the parsing.
 void add_fps_option(OptionTable& table, std::optional<double>& fps);
 
-/// Gives samples or an error to what is asked by its quality.
+/// Sets samples or an error target from the quality.
 void apply_quality(RenderOptions& options);
 
 /// Adds a row for each option to the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-/// The pictures that a command writes: those named or, where none is and no pixel is explained, the scene's name with
-/// .exr and .png in the current folder, of a path's frames with #### for their numbers.
+/// Returns the pictures that a command writes: those named or, if none is and no pixel is explained, the scene's name
+/// with .exr and .png in the current folder, with #### for frames of a path.
 std::vector<std::filesystem::path> name_pictures(const RenderOptions& options);
 
-/// Throws UsageError where there is a camera beside the option of this name, which brings cameras of its own.
+/// Throws UsageError if a camera is given in addition to the option of this name, which has its own cameras.
 void check_no_camera(const ViewOptions& options, std::string_view name);
 
-/// Throws UsageError where the least samples are more than the most.
+/// Throws UsageError if the smallest number of samples exceeds the largest.
 void check_error_target(const ErrorTarget& target);
 
-/// Throws UsageError where two options contradict each other.
+/// Throws UsageError if two options contradict each other.
 void check_render_options(const RenderOptions& options);
 
 }  // namespace promin::app

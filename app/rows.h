@@ -11,7 +11,7 @@
 
 namespace promin::app {
 
-/// A line of what an info command prints on the standard output.
+/// Prints a line of an info command on the standard output.
 inline void print_row(const std::string& name, const std::string& value) {
   fmt::print("{:<12}{}\n", name, to_one_line(value));
 }

@@ -27,7 +27,7 @@ namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4, kDiffers = 5 };
 
-/// How a command line says what the library, which knows no options, says of a setting.
+/// Replaces the library's words for a setting, which know no options, by those of the command line.
 struct Wording {
   Setting setting;
   std::string_view words;
@@ -56,8 +56,8 @@ std::string_view option_of(Setting setting) {
   return "";
 }
 
-/// Names the option of the problem's setting. Where none of the words above is met, it follows the cure, so that it is
-/// named whatever words the library takes.
+/// Names the option of the problem's setting. If none of the words above occurs, the option is appended to the cure, so
+/// that it is always named.
 void name_option(Problem& problem) {
   if (problem.setting == Setting::kNone) return;
   bool is_named = false;
@@ -73,7 +73,7 @@ void name_option(Problem& problem) {
   if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
 }
 
-/// What the system has refused, where no function has made a sentence of its own of that.
+/// Returns a problem for a system error that has no sentence of its own.
 Problem explain(const std::system_error& error) {
   std::error_code no_folder;
   static_cast<void>(std::filesystem::current_path(no_folder));
@@ -87,7 +87,7 @@ Problem explain(const std::system_error& error) {
           "check its limits and permissions"};
 }
 
-/// Has all threads share one heap where address space is limited: each heap of glibc's takes 64 MiB of it.
+/// Makes all threads share one heap if address space is limited, because each heap of glibc takes 64 MiB of it.
 void share_heap() {
 #ifdef __GLIBC__
   if (address_space_limit()) mallopt(M_ARENA_MAX, 1);
@@ -117,7 +117,7 @@ void run_command(const std::string& name, const std::string& help,
   std::vector<Command> commands;
   for (const auto add : add_commands) commands.push_back(add(program));
   if (argc == 3 && argv[1] == kMakeManual) return print_manual(program, argv[2]);
-  // A program that is its own command has work to do without a word.
+  // A program without commands works without arguments.
   if (argc == 1 && !commands_of(program).empty()) {
     fmt::print("{}", program.help());
     return;
@@ -173,7 +173,7 @@ int run_program(const std::string& name, const std::string& help,
     return report(kRunFailed, fmt::format("there is not enough memory, in {}; {}", name,
                                           cure_short_memory("use a smaller picture or scene")));
   } catch (const std::exception& error) {
-    // What a command prints may fail at any line, by an exception of fmt's.
+    // Printing may fail at any line with an exception of fmt.
     if (std::ferror(stdout) != 0) return report(kRunFailed, message_of(kDeafOutput));
     if (const auto* refusal = dynamic_cast<const std::system_error*>(&error)) {
       return report(kRunFailed, message_of(explain(*refusal)));

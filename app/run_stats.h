@@ -14,7 +14,7 @@
 
 namespace promin::app {
 
-/// The content of `--stats`: what one run over a scene made and cost. Times are in milliseconds.
+/// The content of `--stats`: results and costs of a run. Times are in milliseconds.
 struct RunStats {
   gpu::DeviceInfo device;
   std::string scene_file;
@@ -24,11 +24,11 @@ struct RunStats {
   size_t light_count = 0;
   /// Only set for pictures.
   std::optional<View> view;
-  /// How the picture is shown in files of 8 bits.
+  /// The display transform for 8-bit files.
   DisplayTransform display;
   SetupStats setup;
   RayCounts rays;
-  /// Of pictures with an error target: of each frame, or of the one picture.
+  /// The accuracy of pictures with an error target: of each frame, or of the single picture.
   std::vector<PictureError> errors;
   /// The numbers of a camera path's frames; the rays are then those of all frames.
   std::vector<uint32_t> frames;
@@ -38,24 +38,26 @@ struct RunStats {
   double write_ms = 0.0;
   double total_ms = 0.0;
 
-  /// The median.
+  /// Returns the median.
   double median_trace_ms() const;
-  /// All rays over the median trace time, or over the time of all frames; 0 where that was too short to measure.
+  /// Returns all rays divided by the median trace time, or by the time of all frames; 0 if that was too short to
+  /// measure.
   double mrays_per_s() const;
 };
 
-/// Of a picture with an error target, a pixel.
+/// Returns the mean number of samples per pixel of a picture with an error target.
 double mean_samples(const View& view, const PictureError& error);
 
-/// What metadata say of a picture with an error target, of so many pixels: put where it is or at their end.
+/// Sets the metadata of a picture with an error target and this number of pixels: replaces existing entries, or appends
+/// them.
 void put_error(Metadata& metadata, const PictureError& error, uint64_t pixel_count);
-/// Whether an entry of this name is put there by put_error.
+/// Returns whether put_error sets an entry of this name.
 bool is_error_metadata(std::string_view name);
 
-/// The metadata of an EXR about the run's view.
+/// Returns the metadata of an EXR about the run's view.
 Metadata describe_picture(const RunStats& stats);
 
-/// Writes the stats as a JSON object, indented.
+/// Returns the stats as an indented JSON object.
 std::string to_json(const RunStats& stats);
 
 }  // namespace promin::app

@@ -11,14 +11,14 @@
 
 namespace promin::app {
 
-/// Names of what an object may be, in the plural: not drawn, or an alternative of Geometry, in its order.
+/// Names of the kinds of objects in the plural: not drawn, or the alternatives of Geometry in their order.
 inline constexpr auto kObjectNames = [] {
   std::array<std::string_view, 1 + std::variant_size_v<Geometry>> names{"not_drawn"};
   for (size_t i = 1; i < names.size(); ++i) names[i] = kGeometryNames[i - 1];
   return names;
 }();
 
-/// What a scene holds, for `promin info` and `--stats`.
+/// The contents of a scene, for `promin info` and `--stats`.
 struct SceneCounts {
   /// The number of objects of each kind, in the order of kObjectNames.
   std::array<uint64_t, kObjectNames.size()> objects{};

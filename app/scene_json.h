@@ -12,15 +12,15 @@
 namespace promin::app {
 
 // Scenes as JSON for programs (docs/usage.md, "Scenes as JSON"). Names are those of Python's dataclasses, real numbers
-// are the shortest that give the same bits, and null stands for what is infinite or not there.
+// are the shortest that give the same bits, and null stands for infinite or missing values.
 
-/// What a scene was read to hold. Equal values mean equal scenes, whether objects share geometry or not. Vertices and
-/// texels have hashes.
+/// Returns the contents of a scene. Equal values mean equal scenes, whether objects share geometry or not. Vertices and
+/// texels are represented by hashes.
 nlohmann::json json_of(const Scene& scene);
 nlohmann::json json_of(const Environment& environment);
 nlohmann::json json_of(const DisplayTransform& display);
 
-/// The text of a file of JSON, in UTF-8; bytes that are not UTF-8 become U+FFFD.
+/// Returns the text of a JSON file in UTF-8; bytes that are not UTF-8 become U+FFFD.
 std::string write_json(const nlohmann::json& json);
 
 }  // namespace promin::app

@@ -40,12 +40,12 @@ constexpr uint32_t kMaxColumns = 1000;
 constexpr uint32_t kGap = 12;
 /// Pixels of the strip below a picture, for its name.
 constexpr uint32_t kNameHeight = 20;
-/// Linear light: of the sheet, and of a picture that could not be made.
+/// Colours in linear light: of the sheet, and of a picture that could not be made.
 constexpr vec3 kPaper{1.0F};
 constexpr vec3 kNoPicture{0.6F};
 constexpr vec3 kInk{0.02F};
 
-/// Writes a picture whole or not at all; a PNG where the name has no ending of a picture, as file managers ask for.
+/// Writes a picture completely or not at all; a name without a picture ending gives a PNG, which file managers expect.
 void write_picture(const fs::path& file, const Image& image) {
   const fs::path made = is_writable_format(file) ? file : fs::path(file.string() + ".promin.png");
   const DeferredSignals while_writing;
@@ -68,12 +68,12 @@ void make_thumbnail(const RenderOptions& options) {
 
 struct SheetOptions {
   std::vector<fs::path> scenes;
-  /// The sheet's file, and what the pictures of all scenes have in common.
+  /// The sheet's file, and the common options of all pictures.
   RenderOptions each;
   std::optional<uint32_t> columns;
 };
 
-/// Where the pictures of a sheet lie.
+/// The positions of the pictures on a sheet.
 class SheetLayout {
  public:
   SheetLayout(const uvec2& picture, uint32_t count, std::optional<uint32_t> columns)
@@ -115,7 +115,7 @@ Image draw_name(const std::string& name, const fs::path& font, uint32_t width) {
   return strip;
 }
 
-/// Renders a scene of a sheet. Where it cannot be, says why and returns an empty picture of its size.
+/// Renders a scene of a sheet. After a failure it reports the reason and returns an empty picture of the same size.
 std::optional<Image> render_cell(const RenderOptions& options, const gpu::Device& device, const Console& console) {
   try {
     return render_shown(options, device, Console(console.is_verbose() ? Verbosity::kVerbose : Verbosity::kQuiet));

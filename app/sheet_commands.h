@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// Adds `promin thumbnail`, which writes a small picture as file managers ask for one.
+/// Adds `promin thumbnail`, which writes a thumbnail for file managers.
 Command add_thumbnail_command(CLI::App& program);
 
 /// Adds `promin contact-sheet`, which writes one picture of many files, each with its name.

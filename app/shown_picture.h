@@ -9,9 +9,10 @@
 
 namespace promin::app {
 
-/// Renders a scene by checked options and returns the picture as a PNG shows it: exposed and tone mapped, in linear
-/// light, so that write_image without a display transform gives the codes of `promin render`. options.pictures names a
-/// file, which is not written. Throws InputError, UsageError for what the scene does not have, and RunError.
+/// Renders a scene by checked options and returns the picture as displayed: exposed and tone mapped, in linear light,
+/// so that write_image without a display transform gives the same sRGB values as `promin render`. options.pictures
+/// names a file, which is not written. Throws InputError, UsageError for references to things that the scene lacks, and
+/// RunError.
 Image render_shown(const RenderOptions& options, const gpu::Device& device, const Console& console);
 
 }  // namespace promin::app

@@ -6,8 +6,8 @@
 
 namespace promin::app {
 
-/// SHA-256 over the sources that decide about the bits of pictures and hits, of which this program was built
-/// (cmake/hash_sources.cmake): the programs and the Python module of one state of the sources have the same.
+/// SHA-256 over the sources of this program that affect the bits of pictures and hits (cmake/hash_sources.cmake).
+/// Programs and Python modules built from the same sources have the same hash.
 extern const std::string_view kSourcesHash;
 
 }  // namespace promin::app

@@ -8,22 +8,22 @@
 
 namespace promin::app {
 
-/// A picture that goes to the standard output: it is written to a temporary file first, as any picture appears whole or
-/// not at all.
+/// A picture for the standard output. It is written to a temporary file first, because a picture must appear completely
+/// or not at all.
 class StandardOutput {
  public:
-  /// What stands for it among pictures.
+  /// The name that stands for it among pictures.
   static constexpr const char* kName = "-";
 
-  /// Puts the temporary file, a PNG, in the place of its name, if that is there.
+  /// Replaces its name among the pictures, if present, by the temporary file, a PNG.
   explicit StandardOutput(std::vector<std::filesystem::path>& pictures);
   ~StandardOutput();
   StandardOutput(const StandardOutput&) = delete;
   StandardOutput& operator=(const StandardOutput&) = delete;
 
-  /// Where messages for people go.
+  /// Returns the stream for messages to people.
   std::FILE* messages() const { return file_.empty() ? stdout : stderr; }
-  /// Copies the picture. Throws RunError.
+  /// Copies the picture to the standard output. Throws RunError.
   void write() const;
 
  private:

@@ -16,7 +16,7 @@ namespace promin::app {
 
 class OptionTable;
 
-/// The options that every command which traces a scene takes.
+/// The options of every command that traces a scene.
 struct TracingOptions {
   std::filesystem::path scene;
   LoadOptions load;
@@ -25,7 +25,7 @@ struct TracingOptions {
   std::optional<std::string> device;
   std::optional<std::string> builder;
   std::optional<std::filesystem::path> bvh;
-  /// The program and a CPU device take so many; without it each takes as many as there are cores.
+  /// Number of threads of the program and of a CPU device; without it each uses one per core.
   std::optional<uint32_t> threads;
   uint32_t repeat_count = 1;
   bool is_quiet = false;
@@ -37,20 +37,20 @@ struct TracingOptions {
 /// Add the row of SCENE, which comes first on the command line, and those of the other options. `options` must outlive
 /// the parsing.
 void add_scene_argument(OptionTable& table, TracingOptions& options);
-/// The device to open. An empty name is refused: it is a part of any.
+/// Adds the row of the device to open. An empty name is refused, because it is part of every name.
 void add_device_option(OptionTable& table, std::optional<std::string>& device);
 
 void add_tracing_options(OptionTable& table, TracingOptions& options);
 /// Adds the rows of commands that end and then report what tracing cost.
 void add_measuring_options(OptionTable& table, TracingOptions& options);
 
-/// Throws UsageError where two options contradict each other.
+/// Throws UsageError if two options contradict each other.
 void check_tracing_options(const TracingOptions& options);
 
-/// The files that are read, none of which may be an output.
+/// Returns the input files, none of which may be an output.
 std::vector<std::filesystem::path> input_files(const TracingOptions& options);
 
-/// Hands the choice of the tree on, to RendererOptions or CasterOptions.
+/// Copies the choice of the tree to RendererOptions or CasterOptions.
 template <typename Options>
 void choose_tree(const TracingOptions& from, Options& to) {
   if (from.builder) to.builder = *from.builder;

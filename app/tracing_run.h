@@ -11,28 +11,27 @@
 
 namespace promin::app {
 
-// The steps that every command which traces a scene takes. Each reports to the console and leaves its times in the
-// stats.
+// The steps of every command that traces a scene. Each reports to the console and stores its times in the stats.
 
-/// As many threads as the options say, for the program and for a device that is the host's processor.
+/// Sets the number of threads of the program and of a CPU device from the options.
 void choose_threads(const TracingOptions& options);
 
 /// Reports the scene's files as load_scene does. Throws InputError.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Console& console,
                std::vector<SourceFile>& sources);
-/// For check_overwrites, which before the scene is loaded knows of none but the scene's own.
+/// Returns the scene's files for check_overwrites, which before loading knows only the scene's main file.
 std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sources);
 
 /// Throws DeviceError.
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Console& console);
 
-/// Takes over what setting the scene up has cost.
+/// Stores the cost of setting up the scene.
 void take_setup(const SetupStats& setup, RunStats& stats, const Console& console);
 
-/// Tells what tracing and writing took, the memory of the whole, once stats.total_ms is there.
+/// Reports the times of tracing and writing and the memory use, after stats.total_ms is set.
 void tell_end(const RunStats& stats, const Console& console);
 
-/// Throws RunError if the validation layers have reported anything: then nothing is written.
+/// Throws RunError if the validation layers have reported anything, so that nothing is written.
 void check_validation(const gpu::Device& device, const RunStats& stats);
 
 }  // namespace promin::app

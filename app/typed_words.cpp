@@ -18,18 +18,18 @@ constexpr std::string_view kSize = "--size";
 constexpr std::string_view kWidth = "--width";
 constexpr std::string_view kHeight = "--height";
 
-/// What another program calls an option or a command.
+/// Another program's name for an option or a command.
 struct OtherName {
   std::string_view typed;
   std::string_view own;
 };
 
-/// Those that can mean nothing else, and take the same values.
+/// Names that are unambiguous and take the same values.
 constexpr OtherName kSameOptions[] = {
     {"--resolution", kSize}, {"--samples", "--spp"}, {"--transparent", "--alpha"}, {"--num-threads", "--threads"}};
 
-/// Those that may have other values, or mean a little more or less. Where a name has several rows, the first holds
-/// whose option the command has.
+/// Names with other values or a slightly different meaning. If a name has several rows, the first whose option the
+/// command has counts.
 constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
                                       {"--animation", "--path"},
                                       {"--antialiasing", "--spp"},
@@ -113,7 +113,7 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
   return word == words.end() ? program : *program.get_subcommand(*word);
 }
 
-/// Takes "--name VALUE" or "--name=VALUE" out of the words; the last of several holds.
+/// Removes "--name VALUE" or "--name=VALUE" from the words; the last of several counts.
 std::optional<std::string> take_value(std::vector<std::string>& words, std::string_view name, size_t& place) {
   std::optional<std::string> value;
   for (size_t i = 1; i < words.size();) {
@@ -158,13 +158,13 @@ void join_size(std::vector<std::string>& words) {
   }
 }
 
-/// Whether these are all numbers, as many as an option takes.
+/// Returns whether these are all numbers, as many as the option takes.
 bool are_values_of(const CLI::Option* option, const std::vector<std::string>& parts) {
   return option != nullptr && parts.size() > 1 && std::cmp_equal(parts.size(), option->get_type_size()) &&
          std::ranges::all_of(parts, is_number);
 }
 
-/// The words of --eye X,Y,Z, and of all others that take several numbers.
+/// Splits --eye X,Y,Z, and all other options of several numbers, into words.
 void split_numbers(const CLI::App& command, std::vector<std::string>& words) {
   for (size_t i = 1; i < words.size(); ++i) {
     const size_t equals = words[i].find('=');
@@ -188,7 +188,7 @@ void lower_axes(std::vector<std::string>& words) {
   }
 }
 
-/// Whether it must be a file, be it there or not. A folder is taken for one, to be refused as that.
+/// Returns whether a word must be a file, existing or not. A folder counts as one, and is refused later.
 bool names_file(const std::string& word) {
   std::error_code error;
   return !word.starts_with('-') &&
@@ -204,8 +204,8 @@ void add_render(const CLI::App& program, std::vector<std::string>& words) {
   if (!is_one(words[1]) && (names_file(words[1]) || begins_with_option)) words.insert(words.begin() + 1, kRender);
 }
 
-/// "promin help render" and "promin version" are options of the command or program that they are about. False where it
-/// is neither.
+/// Turns "promin help render" and "promin version" into options of that command or program. Returns false for other
+/// words.
 bool turn_words_to_options(const CLI::App& program, std::vector<std::string>& words) {
   if (words.size() < 2 || commands_of(program).empty()) return false;
   if (words[1] == "version") {

@@ -14,7 +14,7 @@ namespace CLI {
 class App;
 }
 
-// What people type who know other programs.
+// Translates words that users of other programs may type.
 namespace promin::app {
 
 /// A command line in the words of the program's option tables: --samples becomes --spp; --width and --height, and -w
@@ -24,16 +24,16 @@ namespace promin::app {
 /// option of the program or of the command that follows. All else stays as it is.
 std::vector<std::string> spell_out(const CLI::App& program, const std::vector<std::string>& words);
 
-/// The option of a command that does what another program's option of this name does; empty where none is known.
+/// Returns the option of a command that corresponds to another program's option of this name; empty if none is known.
 std::string find_by_meaning(const CLI::App& command, std::string_view typed);
 
-/// The same of a program's commands.
+/// Does the same for a program's commands.
 std::string find_command_by_meaning(const CLI::App& program, std::string_view typed);
 
-/// The size of pictures that a name as "hd" stands for.
+/// Returns the picture size for a name such as "hd".
 std::optional<uvec2> find_named_size(std::string_view name);
 
-/// Those names.
+/// Returns those names.
 std::span<const std::string_view> size_names();
 
 }  // namespace promin::app

@@ -18,13 +18,13 @@ namespace {
 
 constexpr uint32_t kDefaultHeight = 720;
 
-/// The aspect ratio of the picture that is asked for, as far as it is known.
+/// Returns the requested aspect ratio of the picture, as far as it is known.
 float aspect_ratio_of(const ViewOptions& options) {
   const uvec2 size = options.size.value_or(uvec2(0));
   return size.x > 0 && size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : kDefaultAspectRatio;
 }
 
-/// The size with the side that the user has left open, by the aspect ratio of the size that the camera would have.
+/// Returns the size with the missing side computed from the aspect ratio of the camera's default size.
 std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2>& usual) {
   if (sides.x > 0 && sides.y > 0) return sides;
   if (!usual) return {};
@@ -90,7 +90,7 @@ void show_background(const BackgroundChoice& background, Environment& environmen
   environment.shows_sky = background.is_environment && environment.has_sky();
   environment.backdrop.reset();
   if (background.is_environment) {
-    // Without a sky what surrounds the scene is its ambient light.
+    // Without a sky the environment of the scene is its ambient light.
     environment.background = environment.ambient;
   } else if (background.is_linear) {
     environment.background = background.color;

@@ -200,7 +200,7 @@ bool goes_through_layer(uint i, uint layers) {
   return true;
 }
 
-// Written out like arrive.
+// Unrolled by hand, because drivers do not unroll such loops (see arrive).
 bool go_through_layers(uint layers) {
   bool is_any_left = goes_through_layer(0u, layers);
   if (PACKET_SIZE > 1u && goes_through_layer(1u, layers)) is_any_left = true;

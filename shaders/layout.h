@@ -172,7 +172,7 @@ LAYOUT_CONSTANT EXTENSION_TEXELS = 10u;
 // The data of materials that transmit light, or whose reflection depends on the angle (glass.glsl).
 struct GlassRecord {
   vec4 transmission;  // xyz = share of light that goes through; w = index of refraction
-  vec4 absorption;    // xyz = of light that is left after a length x the share is 2^(-absorption x)
+  vec4 absorption;    // xyz: 2^(-absorption x) is the share of light that is left after a length x
   vec4 reflectance;   // xyz = of metallic-roughness materials: factor of the reflectance at normal incidence; w = index
                       // of refraction of blue less that of green, and of green less that of red
   uvec4 bits;         // x = GLASS_*; y = number of the texture slot of what goes through

@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Makes a ray of an origin and a direction, with everything that traversal needs of it.
+// Creates a ray from an origin and a direction, with all data that traversal needs.
 
-// The box test's allowance, as a multiple of the distance that intersections may span: every accepted hit lies within
-// 8 u S of its primitive (docs/accuracy.md, BK), and the box test's own rounding moves a plane by 6 u S. Divisions that
-// are good to 2.5 ulp, Vulkan's promise, instead of 0.5 add 4 u S to each, and 8 to the t that a hit so far limits boxes
-// by: so a box grown by 32 u S never hides a hit, whatever the tree.
+// The tolerance of the box test, as a multiple of the distance that intersections may span. Every accepted hit lies
+// within 8 u S of its primitive (docs/accuracy.md, BK), and the rounding of the box test moves a plane by 6 u S.
+// Divisions with Vulkan's accuracy of 2.5 ulp and not 0.5 add 4 u S to each, and 8 u S to the t of the hit so far that
+// limits boxes. A box that is grown by 32 u S therefore never hides a hit, whatever the tree.
 const float BOX_PADDING = 32.0 * UNIT_ROUNDOFF;
-// Adding the padding to the origin rounds, and this is twice what that can take. Far from the world's origin it would
-// be all of the padding, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
+// Adding the padding to the origin rounds; this is twice the largest rounding error. Far from the world's origin that
+// error could consume the whole padding, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
 const float ORIGIN_PADDING = 2.0 * UNIT_ROUNDOFF;
-// In the box test no component of the direction counts as less than this. Then nothing overflows in scenes of 10^15,
-// and a ray along a box's side still comes no nearer to its plane than the padding.
+// The smallest component of a direction in the box test. With it nothing overflows in scenes of 10^15, and a ray along
+// a box's side still comes no closer to its plane than the padding.
 const float SMALLEST_SLOPE = 8.67361737988403547e-19;  // 2^-60
 
-// Whether all components are finite. The bits tell, because a compiler may assume that there are no NaNs.
+// Returns whether all components are finite. It tests the bits, because a compiler may assume that there are no NaNs.
 bool is_finite(vec3 v) {
   uvec3 exponents = floatBitsToUint(v) & 0x7F800000u;
   return all(notEqual(exponents, uvec3(0x7F800000u)));
@@ -35,12 +35,12 @@ void pad_origin(inout Ray ray) {
   ray.far_origin = far_origin;
 }
 
-// From 5e5 radii of the tree away the padding is as large as the tree, so that every box would be met. A floor may send
-// a mirror ray or a shadow ray from there. So rays from beyond this many radii start nearer to the tree.
+// From 5e5 radii of the tree away the padding is as large as the tree, so that every box would be hit. Mirror or shadow
+// rays from a large floor may start there. Rays from beyond this many radii are therefore moved nearer to the tree.
 const float FAR_AWAY = 1024.0;
-// And from beyond this many times the tree's own distance from the world's origin. The new origin is rounded by that
-// distance, which S does not know: of a tree at 1e5, rays that were moved from 1e3 radii met it 430 u S from where it
-// is (hard case 55). From this far off it is a quarter of u S.
+// They must also start beyond this many times the tree's own distance from the world's origin. The rounding error of
+// the new origin is relative to that distance, which S does not include: rays that were moved from 1e3 radii hit a tree
+// at 1e5 with an error of 430 u S (hard case 55). From this distance on the error is a quarter of u S.
 const float FAR_FROM_ORIGIN = 8.0;
 
 float distance_to_tree(Ray ray) {
@@ -53,16 +53,16 @@ bool is_far_away(Ray ray) {
   return distance_to_tree(ray) > near;
 }
 
-// The distance along the ray, in its t, by which the origin is moved, or 0. It leaves 4 radii and a thousandth of the
-// way, and has 12 bits, so that its product with half of the direction's bits is exact.
+// Returns the distance, in the ray's t, by which the origin is moved, or 0. It leaves 4 radii and a thousandth of the
+// distance, and has 12 bits, so that its product with half of the direction's bits is exact.
 float shift_to_tree(Ray ray) {
   if (!is_far_away(ray)) return 0.0;
   precise float shift = 0.999 * (distance_to_tree(ray) - 4.0 * VIEW.tree_bounds.w) / max_abs(ray.direction);
   return uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
 }
 
-// The same ray from the shifted origin on; its interval is left as it was. Where it comes near the tree, so that the
-// origin cancels, it strays from the ray by no more than some u times what is left of the way.
+// Returns the same ray with the shifted origin; its interval does not change. Close to the tree, where the origin
+// cancels, it deviates from the ray by at most a few u times the remaining distance.
 Ray moved_along(Ray ray, float shift) {
   vec3 upper = uintBitsToFloat(floatBitsToUint(ray.direction) & 0xFFFFF000u);
   precise vec3 origin = (ray.origin + shift * upper) + shift * (ray.direction - upper);
@@ -71,8 +71,9 @@ Ray moved_along(Ray ray, float shift) {
   return ray;
 }
 
-// The t that a crossing of a moved ray has to pass so that t + shift, rounded to nearest even, passes tmin. All that is
-// computed is exact where the tree is: there tmin is between a half and twice the shift. A negative result counts as 0.
+// Returns the t that a crossing of a moved ray must exceed so that t + shift, rounded to nearest even, exceeds tmin.
+// The computation is exact near the tree, where tmin is between half and twice the shift. A negative result counts as
+// 0.
 float shifted_tmin(float tmin, float shift) {
   uint bits = floatBitsToUint(tmin);
   precise float half_step = uintBitsToFloat(bits & 0x7F800000u) * UNIT_ROUNDOFF;
@@ -82,8 +83,8 @@ float shifted_tmin(float tmin, float shift) {
   return (bits & 1u) == 0u ? rounds_to_tmin : uintBitsToFloat(floatBitsToUint(rounds_to_tmin) - 1u);
 }
 
-// `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Any other
-// direction, NaN anywhere, tmin = +infinity and an origin beyond 10^38 give a ray that misses everything.
+// `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Other directions,
+// a NaN, tmin = +infinity and an origin beyond 10^38 give a ray that misses everything.
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
   float size = max_abs(direction);
@@ -92,7 +93,7 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   float scale = is_valid ? power_of_two_inverse(size) : 1.0;
   ray.origin = is_valid ? origin : vec3(0.0);
   ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);
-  // t * direction is kept, so t grows by the factor by which the direction shrinks.
+  // t * direction is preserved, so t grows by the factor by which the direction shrinks.
   float unscale = power_of_two_inverse(scale);
   // -0 counts as 0 too, because traversal sorts distances that are not negative by their bits.
   precise float scaled_tmin = (tmin > 0.0 ? tmin : 0.0) * unscale;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Materials as light meets them. Each model of promin/kinds/materials.def has these functions, the name followed by its
-// prefix; `direction` is the unit direction of the ray that has met the point:
+// The interface of materials. Each model of promin/kinds/materials.def has these functions, with its prefix after the
+// name; `direction` is the unit direction of the ray that has hit the point:
 //   own_light         what the point sends without any source: emitted, ambient and from the environment; with
 //                     `follows_mirror` without the part that the mirror ray brings
 //   emitted_light     the part of that which is emitted
@@ -16,11 +16,11 @@
 
 uint model_of(ShadingPoint point) { return flags_of(point.material) & MATERIAL_MODEL_MASK; }
 
-// The function of the point's model.
+// Calls the function of the point's model.
 #define RETURN_BY_MODEL(KIND, FEATURE, CALL) \
   if (has(FEATURE) && (MATERIAL_KIND_COUNT == 1u || model_of(point) == MATERIAL_##KIND)) return CALL;
 
-// What the point sends without any source.
+// Returns the radiance of the point without light sources.
 vec3 own_light(ShadingPoint point, vec3 direction, bool follows_mirror) {
 #define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   RETURN_BY_MODEL(KIND, FEATURE_##FEATURE, own_light_##PREFIX(point, direction, follows_mirror))

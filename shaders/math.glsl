@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Arithmetic in an order that no driver may change: `precise` forbids contraction and reassociation. GLSL's dot(),
-// cross(), length() and normalize() leave the order to the driver, so promin has its own.
+// Arithmetic in an order that drivers must not change: `precise` forbids contraction and reassociation. GLSL's dot(),
+// cross(), length() and normalize() leave the order to the driver, so promin has its own versions.
 
 const float UNIT_ROUNDOFF = 5.9604644775390625e-8;  // 2^-24
 const float SMALLEST_NORMAL = 1.17549435e-38;      // 2^-126
@@ -30,7 +30,7 @@ precise vec3 normalize3(vec3 v) {
   return scaled * (1.0 / length3(scaled));
 }
 
-// 2^z for z < 128, good to a few u; 0 where it would be subnormal. By Taylor on |f| <= 0.5.
+// 2^z for z < 128, accurate to a few u; 0 instead of subnormal results. By a Taylor series on |f| <= 0.5.
 precise float power_of_two(float z) {
   if (!(z > -126.0)) return 0.0;
   precise float n = floor(z + 0.5);
@@ -42,9 +42,9 @@ precise float power_of_two(float z) {
   return e * uintBitsToFloat(uint(int(n) + 127) << 23);
 }
 
-// x^y for x in (0, 1] and y >= 0. GLSL's pow is exp2(y * log2(x)) with a log2 that may err by 2^-21 absolute, which
-// is 0.3 % of a highlight with exponent 10^4; here the logarithm's error is a few u relative, so that the result is
-// good to a few u * |y log2 x|. log2 by the series of atanh, |s| <= 0.172.
+// x^y for x in (0, 1] and y >= 0. GLSL's pow is exp2(y * log2(x)) with a log2 that may err by 2^-21 absolute, which is
+// 0.3 % of a highlight with exponent 10^4; here the relative error of the logarithm is a few u, so that the result is
+// accurate to a few u * |y log2 x|. log2 by the series of atanh, |s| <= 0.172.
 precise float power(float x, float y) {
   uint bits = floatBitsToUint(x);
   int exponent = int(bits >> 23) - 127;
@@ -61,14 +61,14 @@ precise float power(float x, float y) {
   return power_of_two(z);
 }
 
-// -x where `other` is negative.
+// Returns -x if `other` is negative, else x.
 float times_sign_of(float x, float other) {
   return uintBitsToFloat(floatBitsToUint(x) ^ (floatBitsToUint(other) & 0x80000000u));
 }
 
-// greater() and lesser() take the second number where either is a NaN. NaNs come of 0 * infinity in scenes beyond
-// 10^18, and what a NaN should bound is then bounded by tmin or the hit so far. GLSL's max and min take three
-// instructions each on lavapipe, these take one.
+// greater() and lesser() return the second number if either is a NaN. NaNs result from 0 * infinity in scenes beyond
+// 10^18; the interval is then bounded by tmin or the hit so far. GLSL's max and min take three instructions each on
+// lavapipe, these take one.
 vec4 greater(vec4 a, vec4 b) {
   precise vec4 result =
       vec4(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z, a.w > b.w ? a.w : b.w);

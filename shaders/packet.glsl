@@ -1,34 +1,36 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The rays that an invocation traces together, PACKET_SIZE of them: they share the fetching and unpacking of nodes and
-// primitives and the stack, and each is tested on its own. It pays on CPU drivers, for rays that run side by side. A
-// ray's place in the packet is its slot.
+// The PACKET_SIZE rays that an invocation traces together. They share the stack and the fetching and unpacking of nodes
+// and primitives, but each ray is tested separately. This is faster on CPU drivers for neighbouring rays. A ray's index
+// in the packet is its slot.
 
-// What is asked, by the entry point. descend_from_nearby lends the rays other origins and gives theirs back.
+// The rays, set by the entry point. descend_from_nearby temporarily changes their origins.
 Ray packet[PACKET_SIZE];
-// What is answered: the nearest hit so far. trace_packet empties it, keep_nearest and glance_at_triangle fill it.
+// The results: the nearest hit so far. trace_packet resets it, keep_nearest and glance_at_triangle set it.
 Hit found[PACKET_SIZE];
-// The t that a hit may have at most; negative for a ray that takes no part. By the same, and descend_by_octants leaves
-// out the rays whose turn it is not.
+// The largest t of a hit; negative for a ray that takes no part. Set by the same functions; descend_by_octants excludes
+// the rays of other octants.
 float limits[PACKET_SIZE];
-// By how much the origin is moved along the ray: what intersections call t is so much less. By descend_from_nearby.
+// The distance by which the origin is moved along the ray; t in intersections is smaller by this. Set by
+// descend_from_nearby.
 float shifts[PACKET_SIZE];
-// Inverse direction of one of the rays that take part: all have its signs. By who calls descend.
+// Inverse direction of one of the rays that take part; all have its signs. Set by the callers of descend.
 vec3 octant;
 
-// How the packet's rays see. By the entry point; shadow rays see backs, and textures at their finest level.
+// What the packet's rays hit and at which level of textures, set by the entry point. Shadow rays hit backs, and use the
+// finest level.
 bool passes_backs = false;  // with FEATURE_ONE_SIDED
 float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
 float sight_spread = 0.0;   // and how much it grows at a distance of 1
-// Where rays pass through surfaces (PASSES): what a ray has passed counts no more, which is all that is nearer than
-// this, and at this t what has no higher order. By the entry point.
+// If rays pass through surfaces (PASSES): everything nearer than this t has been passed and no longer counts, and at
+// this t everything whose order is not higher. Set by the entry point.
 const uint PASSES = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];
 
-// With FEATURE_GLASS: a refracted ray begins a little before the face that it comes through, so that it meets what
-// touches that (tree.glsl). Up to here, in its units, it meets no face of that object which it crosses in the same
-// sense: the object's hash (object_hash_of), with SKIPS_EXIT where it leaves.
+// With FEATURE_GLASS: a refracted ray starts slightly before the face that it passes through, so that it hits objects
+// that touch the face (tree.glsl). Up to this t it skips faces of that object that it crosses in the same direction.
+// The object is given by its hash (object_hash_of), with SKIPS_EXIT if the ray leaves it.
 const uint SKIPS_EXIT = 0x10000u;
 float skipped_until = -1.0;
 uint skipped_object = 0u;
@@ -36,29 +38,29 @@ bool is_skipped(float t, Primitive p, bool leaves) {
   return t <= skipped_until && (object_hash_of(p) | (leaves ? SKIPS_EXIT : 0u)) == skipped_object;
 }
 
-// The ray from its beginning on.
+// Resets the ray to its start.
 void forget_passed(uint slot) {
   passed_t[slot] = -1.0;
   passed_order[slot] = 0u;
 }
 
-// The ray from behind what it has met on; the same ray, so that it meets all else at the same t as before.
+// Continues the ray behind its hit. It is the same ray, so that it hits everything else at the same t as before.
 void pass(uint slot, float t, uint order) {
   passed_t[slot] = t;
   passed_order[slot] = order;
-  // What lies at the same t is not passed yet.
+  // Other surfaces at the same t have not been passed yet.
   packet[slot].tmin = t > 0.0 ? uintBitsToFloat(floatBitsToUint(t) - 1u) : 0.0;
 }
 
-// Whether there is nothing of a triangle where a ray of this direction crosses it: a hole in its texture, its back
-// where that is not shown, or of what is seen through an edge that is a neighbour's (cutouts.glsl; cast.comp has rays
-// that see geometry alone).
+// Returns whether a triangle is absent where a ray of this direction crosses it: at a hole in its texture, on its back
+// if that is not shown, or, for surfaces that are seen through, at an edge that belongs to a neighbour (cutouts.glsl;
+// the rays of cast.comp see only geometry).
 const uint MAY_BE_CUT_OUT =
     FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | PASSES;
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge);
 bool may_have_holes(uint index);
 
-// What the invocation's rays took: x = node steps, y = primitive tests. The entry point sets it to zero.
+// Counts of the invocation: x = node steps, y = primitive tests. The entry point sets them to zero.
 uvec2 step_counts;
 
 void count_steps(uint nodes, uint tests) {
@@ -71,20 +73,20 @@ bool any_takes_part() {
   return result;
 }
 
-// A ray as a solid takes it: of the surfaces of one that it has passed the next is sought.
+// Returns the ray for intersecting a solid: after passing one of the solid's surfaces it searches for the next.
 Ray ray_past(uint slot, Primitive p) {
   Ray ray = packet[slot];
   if (PASSES != 0u && order_of(p) <= passed_order[slot] && passed_t[slot] > 0.0) {
     ray.tmin = shifts[slot] > 0.0 ? shifted_tmin(passed_t[slot], shifts[slot]) : passed_t[slot];
   }
-  // Where the way in is skipped too.
+  // The entry is skipped too.
   if (has(FEATURE_GLASS) && skipped_until > 0.0 && object_hash_of(p) == skipped_object) {
     ray.tmin = max(ray.tmin, shifts[slot] > 0.0 ? shifted_tmin(skipped_until, shifts[slot]) : skipped_until);
   }
   return ray;
 }
 
-// A solid's crossing, unless it is skipped. What ray_past lets through nearer than that is a way out.
+// Returns a solid's crossing unless it is skipped. Nearer crossings of ray_past are exits.
 Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
   if (!has(FEATURE_GLASS)) return crossing;
   precise float t = crossing.t + shifts[slot];
@@ -92,7 +94,7 @@ Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
   return crossing;
 }
 
-// Takes the crossing if it is nearer, or as near and of a lower number: the hit does not depend on the tree.
+// Keeps the crossing if it is nearer, or equally near with a lower number, so that the hit does not depend on the tree.
 void keep_nearest(uint slot, Crossing crossing, uint primitive, uint order, bool asks_for_any) {
   precise float t = crossing.t + shifts[slot];
   if (PASSES != 0u) {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// In place of packet_shapes.glsl and packet_triangles.glsl in kernels that ask for all crossings: those of a packet's rays
-// are counted, or where LISTS_CROSSINGS put in a list, in whatever order the tree has them. No limit is ever lowered.
-// A primitive that the tree refers to twice is met twice, with the same bits; the host drops the second one.
+// Replaces packet_shapes.glsl and packet_triangles.glsl in kernels for all crossings: crossings of a packet's rays are
+// counted or, with LISTS_CROSSINGS, listed in the order of the tree. Limits are never lowered. A primitive that the
+// tree references twice is crossed twice, with the same bits; the host drops the second crossing.
 
 layout(constant_id = CONSTANT_LISTS_CROSSINGS) const uint LISTS_CROSSINGS = 0u;
 
-// By the entry point, which empties the counts too: of each ray how many crossings it has so far; its list's first record
-// and for how many there is room; t in units of the given direction over t here, and between which such t they count.
+// Set by the entry point, which also resets the counts. For each ray: its number of crossings so far; the first record
+// and the size of its list; the factor from t here to t in units of the given direction; and the interval of such t in
+// which crossings count.
 uint crossing_counts[PACKET_SIZE];
 uint first_places[PACKET_SIZE];
 uint rooms[PACKET_SIZE];
@@ -15,7 +16,7 @@ float units[PACKET_SIZE];
 float given_tmins[PACKET_SIZE];
 float given_tmaxs[PACKET_SIZE];
 
-// In units within this factor of the given ones nothing overflows or underflows that a glance is sure of.
+// If the units are within this factor of the given ones, nothing overflows or underflows where a glance is certain.
 const float PLAIN_UNITS = 1048576.0;  // 2^20
 
 void take_crossing(uint slot, Crossing crossing, uint primitive, uint order, uint leaves) {
@@ -47,8 +48,8 @@ void take_crossing(uint slot, Crossing crossing, uint primitive, uint order, uin
   }
 #include "promin/kinds/primitives.def"
 
-// What rounding takes from a product of numbers up to 2, exact where it is no smaller than 2^-100 (Dekker, "A
-// Floating-Point Technique for Extending the Available Precision", 1971).
+// Returns the rounding error of a product of numbers up to 2; exact if it is at least 2^-100 (Dekker, "A Floating-Point
+// Technique for Extending the Available Precision", 1971).
 float product_error(float a, float b, float product) {
   precise float split_a = 4097.0 * a;
   precise float a_high = split_a - (split_a - a);
@@ -60,12 +61,13 @@ float product_error(float a, float b, float product) {
   return error;
 }
 
-// Whether the area over an edge is positive, of to.x * from.y - to.y * from.x, which is exact: where its two products
-// round to the same number, what was rounded off tells, and where the ray meets the edge, leads_up. So all triangles see
-// the corners of the mesh in the same places of the plane, and a ray that moves across an edge leaves one of its
-// triangles as it enters the other: without exactness a corner between slivers may be crossed by one too many.
+// Returns whether the area over an edge, to.x * from.y - to.y * from.x, is positive. The result is exact: if the two
+// products round to the same number, their rounding errors decide, and if the ray hits the edge, leads_up decides. All
+// triangles therefore see the corners of the mesh at the same positions in the plane, and a ray that moves across an
+// edge leaves one of its triangles as it enters the other. Without exactness there could be one crossing too many at a
+// corner between slivers.
 bool has_positive_area(vec2 from, vec2 to) {
-  // A power of two takes nothing from a number, nor from the sign.
+  // Scaling by a power of two is exact and keeps the sign.
   precise vec2 a = from * power_of_two_inverse(max(abs(from.x), abs(from.y)));
   precise vec2 b = to * power_of_two_inverse(max(abs(to.x), abs(to.y)));
   precise float added = b.x * a.y;
@@ -79,13 +81,13 @@ bool has_positive_area(vec2 from, vec2 to) {
 
 bool is_crossed(ShearedTriangle sheared) {
   bool side = has_positive_area(sheared.b, sheared.c);
-  // In one place all three corners have the same side of each other.
+  // If all three corners coincide, each lies on the same side of the others.
   bool is_point = sheared.a == sheared.b && sheared.b == sheared.c;
   return has_positive_area(sheared.c, sheared.a) == side && has_positive_area(sheared.a, sheared.b) == side && !is_point;
 }
 
-// The triangle as cross_triangle takes it. Of one that is seen edge-on the areas may be too small for weights: there any
-// weights do, as the point is brought back to the ray along the longest side.
+// Returns the triangle for cross_triangle. The areas of a triangle that is seen edge-on may be too small for weights.
+// Any weights then suffice, because the point is moved back to the ray along the longest side.
 ShearedTriangle with_weights(ShearedTriangle sheared) {
   bool has_area = abs(sheared.determinant) >= SMALLEST_NORMAL;
   sheared.areas = has_area ? sheared.areas : vec3(1.0);
@@ -94,7 +96,8 @@ ShearedTriangle with_weights(ShearedTriangle sheared) {
   return sheared;
 }
 
-// Few of a packet's rays meet a triangle whose box they meet: first whether they may, then where, one after the other.
+// Few of a packet's rays hit a triangle whose box they hit. The first test is whether each may hit it; then the hits
+// are computed one after the other.
 void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
   ShearedTriangle sheared[PACKET_SIZE];
   bool may_be_crossed[PACKET_SIZE];
@@ -130,8 +133,8 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
   } while (may_another_be_crossed);
 }
 
-// Where a glance tells of each of the rays whether it crosses the triangle it counts. Whether it does not, and the
-// triangle needs a second look, by intersect_packet_with_triangle. A glance has no place for a list.
+// Counts the crossings if a glance is certain for each ray. Returns whether it is not, so that the triangle needs a
+// second look by intersect_packet_with_triangle. A glance cannot write a list.
 bool glance_at_triangle(Primitive p, uint index) {
   bool needs_second_look = false;
   bool is_sure[PACKET_SIZE];

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A packet against shapes, a function for each kind but triangles (packet_triangles.glsl). Kernels that ask for all
-// crossings have packet_crossings.glsl in place of both.
+// Intersects a packet with shapes; there is a function for each kind except triangles (packet_triangles.glsl). Kernels
+// for all crossings use packet_crossings.glsl in place of both.
 
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                      \
   void intersect_packet_with_##PREFIX(Primitive p, uint index, bool asks_for_any) {       \

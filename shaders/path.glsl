@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A path is Whitted's recursion, written as a loop: I = sum of (product of weights so far) * what a point sends. Where
-// glass parts it, tree.glsl says in which order.
-// Who includes this has defined `load_sum(record)`, which loads the record of a sum as earlier dispatches have left it,
-// and where the lane may have added to it in this one, with that.
+// A path is Whitted's recursion, written as a loop: I = sum of (product of weights so far) * (radiance of a point).
+// Where glass splits the path, tree.glsl defines the order. The including file defines `load_sum(record)`, which loads
+// the record of a sum with the additions of earlier dispatches and of this lane.
 
 struct Path {
   vec3 origin;     // origin of the next ray
@@ -26,20 +25,20 @@ struct Path {
   uint skipped;
   uint kind;    // LOG_*, of its next ray
   // With FEATURE_LIGHT_AOVS:
-  uint part;  // PART_*, that takes what its next ray brings; of the camera's PART_BACKGROUND
+  uint part;  // PART_* that gets the light of its next ray; PART_BACKGROUND for the camera's ray
 };
 
-// Makes the path's next ray one of a part of the picture, unless it is already.
+// Assigns the path's next ray to a part of the picture, unless it already has one.
 void enter_part(inout Path path, uint part) {
   if (has(FEATURE_LIGHT_AOVS) && path.part == PART_BACKGROUND) path.part = part;
 }
 
-// Whether the number of a path's bounces is its own and not that of the turn.
+// Whether each path has its own number of bounces, which may differ from that of the turn.
 const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 
 #include "light_parts.glsl"
 
-// Takes what the medium absorbs on the way to a hit, from where the ray has passed a surface before.
+// Applies the medium's absorption on the way to a hit, from the surface that the ray passed before.
 void absorb(inout Path path, Ray ray, Hit hit) {
   if (!has(FEATURE_GLASS)) return;
   precise float way = (hit.t - max(path.passed_t, 0.0)) * length3(ray.direction);
@@ -47,14 +46,14 @@ void absorb(inout Path path, Ray ray, Hit hit) {
   path.weight = weight;
 }
 
-// Follows the path's cone to where its ray is met.
+// Widens the path's cone up to its ray's hit.
 void widen_cone(inout Path path, Ray ray, Hit hit) {
   if (!has(FEATURE_TEXTURES)) return;
   precise float width = path.cone_width + path.cone_spread * (hit.t * length3(ray.direction));
   path.cone_width = width;
 }
 
-// Adds what is seen of a point that covers so much of what is behind it.
+// Adds the radiance of a point with this opacity.
 void add_radiance(inout Path path, vec3 seen, float coverage) {
   precise vec3 weight = path.weight;
   if (has(FEATURE_BLENDING)) weight = coverage * weight;
@@ -62,7 +61,7 @@ void add_radiance(inout Path path, vec3 seen, float coverage) {
   path.radiance = sum;
 }
 
-// How much of what is behind it the point covers; where it is not 1 the ray goes on through it.
+// Returns the opacity of the point; if it is not 1, the ray continues behind it.
 float coverage_of(Path path, ShadingPoint point) {
   if (!has(FEATURE_BLENDING) || (flags_of(point.material) & MATERIAL_BLENDS) == 0u) return 1.0;
   float alpha = clamp(point.material.cover.x, 0.0, 1.0);
@@ -70,7 +69,7 @@ float coverage_of(Path path, ShadingPoint point) {
   return path.layers < MOST_LAYERS && max_abs(behind) >= LEAST_SHARE_BEHIND ? alpha : 1.0;
 }
 
-// Turns the path into the same ray from behind the hit on; its direction is as traced, not unit.
+// Turns the path into the continuation of its ray behind the hit. Its direction is as traced, not of unit length.
 void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
   precise vec3 weight = (1.0 - coverage) * path.weight;
   path.weight = weight;
@@ -82,16 +81,16 @@ void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
   ++path.layers;
 }
 
-// Whether a mirror ray leads on from the point, the path's bounce of this number.
+// Returns whether the path continues with a mirror ray at the point, its bounce of this number.
 bool leads_on(ShadingPoint point, uint bounce) {
   return has(FEATURE_MIRRORS) && bounce < most_bounces() && max_abs(mirror_weight(point)) > 0.0;
 }
 
-// Turns the path into its mirror ray, but for its weight.
+// Turns the path into its mirror ray, except for its weight.
 void turn_back(inout Path path, ShadingPoint point) {
   path.origin = lift_off(point.position, point.geometric_normal, point.lift);
   if (has(FEATURE_TEXTURES)) {
-    // What is curved spreads the cone, beyond a focus too.
+    // Curvature widens the cone, also after a focus.
     precise float facing = max(-dot3(mirror_normal(point), path.direction), 1.0 / 64.0);
     precise float spread = path.cone_spread + 2.0 * point.curvature * path.cone_width / facing;
     path.cone_spread = spread;
@@ -106,7 +105,7 @@ void turn_back(inout Path path, ShadingPoint point) {
   if (SEES_ENVIRONMENT) path.roughness = max(path.roughness, mirror_roughness(point));
 }
 
-// Turns the path into its mirror ray. False where the mirror ray would add nothing.
+// Turns the path into its mirror ray. Returns false if the mirror ray would add nothing.
 bool bounce(inout Path path, ShadingPoint point) {
   precise vec3 weight = path.weight * mirror_weight(point);
   path.weight = weight;
@@ -115,7 +114,7 @@ bool bounce(inout Path path, ShadingPoint point) {
   return true;
 }
 
-// Keeps in the stream what tells a path that may go through surfaces from others.
+// Stores in the stream the data of a path that may pass through surfaces.
 void store_passed(uint number, Path path) {
   if (KEEPS_PROGRESS == 0u) return;
   pixels[record_of_weight(number, 0u)].w = floatBitsToUint(path.passed_t);
@@ -135,13 +134,13 @@ void extend_range(uint pixel, vec3 sampled) {
   bool is_first = sample_at_hand() == 0u;
   vec3 lo = is_first ? vec3(INFINITY) : load_sum(least).xyz;
   vec3 hi = is_first ? vec3(-INFINITY) : load_sum(largest).xyz;
-  // Most samples are within.
+  // Most samples lie within the range.
   if (is_first || any(lessThan(sampled, lo))) pixels[least].xyz = floatBitsToUint(min(lo, sampled));
   if (is_first || any(greaterThan(sampled, hi))) pixels[largest].xyz = floatBitsToUint(max(hi, sampled));
 }
 
-// Adds the path's radiance to its pixel, as one sample; the first begins the sum. CPU drivers execute a branch's stores
-// even where no lane takes it, so a branch that cleared the sums for the first sample would cost every sample.
+// Adds the path's radiance to its pixel, as one sample; the first begins the sum. CPU drivers execute the stores of a
+// branch even if no lane takes it, so a branch that clears the sums for the first sample would slow down every sample.
 void finish_path(Path path) {
   precise vec3 sum = path.radiance;
   if (!has(FEATURE_LISTED_SAMPLES) && sample_at_hand() > 0u) sum += load_sum(path.pixel).xyz;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The pixels that a lane of the camera stage takes together (camera_stage.comp): what it keeps of each, and how they
-// begin.
+// The pixels that a lane of the camera stage traces together (camera_stage.comp): their data and their start.
 
 uvec3 ray_count = uvec3(0u);
 
@@ -13,14 +12,14 @@ ShadingPoint points[PACKET_SIZE];
 vec3 seen[PACKET_SIZE];  // from the hit, so far
 vec3 own_lights[PACKET_SIZE];  // with FEATURE_LIGHT_AOVS, of that what no source brings
 vec3 contributions[PACKET_SIZE];
-// Where rays pass through surfaces, of the shadow rays:
+// For shadow rays, if rays pass through surfaces:
 LightWay ways[PACKET_SIZE];
 Hit blockers[PACKET_SIZE];  // what they have met last
 uint pass_count = 0u;
 uint refraction_count = 0u;
 uint hit_count = 0u;
 
-// Prepares those pixels of the packet that lie in the window, with their camera rays. False where none does.
+// Prepares the pixels of the packet that lie in the window, with their camera rays. Returns false if none does.
 bool begin_packet() {
   uint place = PACKET_SIZE * (group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
   uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);

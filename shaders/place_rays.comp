@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Begins a turn of the stream, in one workgroup: tells where each bin begins in the list, and how many workgroups the
-// rest of the turn takes. Each lane adds up all bins before its own, because lanes share no memory.
+// Starts a turn of the stream, in one workgroup: computes where each bin begins in the list, and the number of
+// workgroups for the remainder of the turn. Each lane sums all bins before its own, because lanes share no memory.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "layout.h"
@@ -13,7 +13,7 @@ layout(local_size_x = STREAM_LANES) in;
 #include "stream.glsl"
 #include "stream_records.glsl"
 
-// Workgroups for so many lanes, in rows (engine/trace/group_rows.h).
+// Returns the workgroups for this number of lanes, in rows (engine/trace/group_rows.h).
 uvec4 groups_of(uint lanes) {
   uint groups = (lanes + BLOCK_SIZE * BLOCK_SIZE - 1u) / (BLOCK_SIZE * BLOCK_SIZE);
   uint rows = min(groups, stream.place.w);

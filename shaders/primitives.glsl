@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The primitives that promin/kinds/primitives.def lists, each with its file in primitives/.
 
-// A hit's point, rebuilt on its primitive.
+// A hit point, recomputed on its primitive.
 struct SurfacePoint {
   vec3 position;
   vec3 normal;  // geometric, unit: outward, or as wound
@@ -19,6 +19,6 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (has(FEATURE_##FEATURE) && (TREE_KIND_COUNT == 1u || kind_of(p) == NUMBER)) return PREFIX##_surface(ray, p, hit);
 #include "promin/kinds/primitives.def"
-  // The pipeline was specialised to none of this kind, so that nothing of it has been hit.
+  // The pipeline was specialised without this kind, so nothing of it can have been hit.
   return SurfacePoint(vec3(0.0), vec3(0.0), 0.0);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays as the intersections take them (make_ray.glsl makes them), and hits as they return them.
+// Rays in the form for intersections (make_ray.glsl creates them), and hits as they return them.
 
 struct Ray {
   vec3 origin;
@@ -30,7 +30,7 @@ const uint PART_SIDE = 0u;
 const uint PART_BOTTOM = 1u;
 const uint PART_TOP = 2u;
 
-// Where a ray meets one primitive: the nearest t > tmin, or NO_CROSSING.
+// The crossing of a ray with one primitive: the nearest t > tmin, or NO_CROSSING.
 struct Crossing {
   float t;
   float u;
@@ -60,22 +60,22 @@ Approach approach(Ray ray, vec3 center) {
   return Approach(corrected, t_far, t_near);
 }
 
-// The t between which a ray is inside a convex shape, with the part of the surface at either end; nowhere unless
-// entry <= exit. As the ends of a shape (ends_of_*), where it is not closed, one that lies in what is missing is infinite.
+// The interval of t in which a ray is inside a convex shape, with the part of the surface at each end; empty unless
+// entry <= exit. In the ends of an open shape (ends_of_*), an end in the missing part is infinite.
 struct Inside {
   float entry;
   uint entry_part;
   float exit;
   uint exit_part;
 };
-// Kernels that ask for all crossings say true (crossings.comp). For them what a ray only touches is not met.
+// True in kernels for all crossings (crossings.comp), where surfaces that a ray only touches do not count.
 #ifndef ASKS_FOR_ALL
 #define ASKS_FOR_ALL false
 #endif
 bool is_interval(float begin, float end) { return ASKS_FOR_ALL ? begin < end : begin <= end; }
 #define NOWHERE Inside(INFINITY, PART_SIDE, -INFINITY, PART_SIDE)
 
-// The nearest end that is valid, of the interval in which a ray is inside.
+// Returns the nearest valid end of the interval in which a ray is inside.
 Crossing nearest_crossing(Ray ray, float entry, uint entry_part, float exit, uint exit_part) {
   if (!(entry <= exit)) return NO_CROSSING;
   bool takes_entry = entry > ray.tmin;

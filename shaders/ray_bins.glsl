@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays that begin near each other in similar directions share a bin, and those of neighbouring bins do so roughly
-// (engine/rays/ray_order.h sorts rays that are cast). No answer depends on it.
+// Rays with nearby origins and similar directions share a bin, and rays of neighbouring bins are roughly similar
+// (engine/rays/ray_order.h sorts rays of casts). Results do not depend on the bins.
 
-// Two bits of where the ray begins, between -1 and 1 or beyond, and one of its direction for each coordinate: more make
-// nothing faster (docs/performance_log.md).
+// For each coordinate two bits of the ray's origin, between -1 and 1 or beyond, and one bit of its direction; more bits
+// are not faster (docs/performance_log.md).
 uint cell_of(float x, uint levels) {
   precise float cell = (0.5 * x + 0.5) * float(1u << levels);
   return min(uint(cell > 0.0 ? min(cell, 64.0) : 0.0), (1u << levels) - 1u);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// FEATURE_RAY_LOG keeps the rays of a picture of one pixel, behind that pixel in the film. The log contains the numbers
-// that the picture is made of: nothing here computes any.
+// FEATURE_RAY_LOG stores the rays of a picture of one pixel after that pixel in the film. The log contains the
+// picture's own numbers; this file computes none.
 
 layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
   FILM_HEAD(logged_dispatch, logged_stream, logged_ray_counts, logged_pass_counts)
@@ -13,7 +13,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
 RayLog path_log;    // entry of the ray that the path follows
 RayLog source_log;  // entry of the source at hand
 
-// Of the first ray of a sample.
+// Starts the log with the first ray of a sample.
 void begin_log() {
   if (has(FEATURE_RAY_LOG)) log_count.x = 0u;
 }
@@ -78,8 +78,8 @@ void end_path_log(vec3 radiance, float coverage) {
   append_log(path_log);
 }
 
-// What the stream adds to entries that an earlier dispatch has appended: the path's was the last, the sources' before it
-// those of the last turn. `entry` counts from the end: 1 is the last.
+// The stream adds data to entries of an earlier dispatch: the last entry is the path's, and those before it are the
+// light sources of the last turn. `entry` counts from the end: 1 is the last.
 void log_answer(uint entry, Ray ray, Hit blocker) {
   RayLog log = logs[log_count.x - entry];
   log_ray(log, ray, blocker);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shading (docs/model.md, "Light") of a point that a ray hit.
 
-// A clear coat as the eye sees it (KHR_materials_clearcoat): what it reflects covers `weight` of all that is below.
+// A clear coat as the eye sees it (KHR_materials_clearcoat): its reflection replaces the part `weight` of the light
+// from below.
 struct Coat {
   float weight;
   float roughness;
@@ -17,7 +18,7 @@ struct Sheen {
   float share;  // of light from all around, what it sends were its colour 1; what is above 1 is not sent
 };
 
-// What glass does with the ray that has met it (tree.glsl), with FEATURE_GLASS or FEATURE_FRESNEL.
+// Reflection and transmission of a ray at glass (tree.glsl), with FEATURE_GLASS or FEATURE_FRESNEL.
 struct Glass {
   vec3 mirror;       // Phong's weight of the mirror ray
   vec3 through;      // weight of what is seen beyond; 0: nothing
@@ -67,7 +68,7 @@ struct ShadingPoint {
 
 #include "glass.glsl"
 
-// Whether some faces part light by their angle.
+// Whether some faces split light depending on the angle.
 const bool HAS_FACES = (FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_FRESNEL)) != 0u;
 
 #include "materials.glsl"
@@ -88,7 +89,7 @@ vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
   return projected;
 }
 
-// How fast the normals turn along the triangle's edges, per distance; positive where it is convex.
+// Returns the change of the normals along the triangle's edges per distance; positive if it is convex.
 float curvature_of(Primitive p, vec3 n0, vec3 n1, vec3 n2) {
   precise vec3 e0 = corner1(p) - corner0(p);
   precise vec3 e1 = corner2(p) - corner1(p);
@@ -137,7 +138,7 @@ vec3 turned_normal(vec3 normal, vec3 texel, float scale, vec4 tangent, float sid
   precise vec3 sum = scaled.x * axis + scaled.y * across + z * normal;
   vec3 turned = normalize3(sum);
   if (max_abs(axis) == 0.0 || max_abs(turned) == 0.0) return normal;
-  // Where it is turned away from the eye it is bent back until it is seen edge-on.
+  // A normal that points away from the eye is bent back until it is perpendicular to the view.
   precise float cosine = -dot3(turned, direction);
   precise vec3 bent = turned - (LEAST_COSINE - cosine) * direction;
   return cosine < LEAST_COSINE ? normalize3(bent) : turned;
@@ -156,7 +157,7 @@ vec4 tangent_of(Primitive p, vec2 a, vec2 b, vec2 c) {
   return vec4(normalize3(tangent), -sign_of_area);
 }
 
-// Where the mesh has tangents they are interpolated, else they are the triangle's own.
+// Returns interpolated tangents if the mesh has some, else the triangle's own.
 vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint slot) {
   if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
     precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
@@ -168,7 +169,7 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
   return is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
 }
 
-// `number` is that of the slot with the normals; `texel` is what it shows.
+// `number` is that of the slot with the normals; `texel` is its value.
 vec3 textured_normal(vec3 normal, uint number, vec3 texel, float scale, Primitive p, uvec4 corners, vec3 weights,
                      CornerUvs uvs, bool is_flipped, vec3 direction) {
   if (number == 0u) return normal;
@@ -232,7 +233,7 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
                     bool is_flipped, vec3 direction, float cone_width) {
   CornerUvs uvs = load_corner_uvs(corners.xyz);
   TexturePlace place = texture_place(p, uvs, weights, dot3(wound_normal, direction), cone_width);
-  // Nested members are not written to one by one: glslang dies over that.
+  // Nested members are not written individually, because glslang crashes on that.
   MaterialRecord material = point.material;
   bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
   bool is_metallic_roughness = has(FEATURE_METALLIC_ROUGHNESS) && model_of(point) == MATERIAL_METALLIC_ROUGHNESS;
@@ -324,7 +325,7 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   point.material = material;
 }
 
-// Coat and sheen as the material has them, without their textures; the coat's weight is how much of it there is.
+// Sets the material's coat and sheen without their textures; the coat's weight is its factor.
 void put_bare_layers(inout ShadingPoint point) {
   Coat coat = Coat(0.0, 0.0, 0.0, point.normal);
   Sheen sheen = Sheen(vec3(0.0), 0.0, 0.0);
@@ -339,7 +340,7 @@ void put_bare_layers(inout ShadingPoint point) {
   point.sheen = sheen;
 }
 
-// What few materials have, without textures.
+// Sets rare properties of materials, without textures.
 void put_bare_rarities(inout ShadingPoint point) {
   vec4 scattering = vec4(0.0);
   ThinFilm film = ThinFilm(vec4(0.0), vec3(0.0));
@@ -353,7 +354,7 @@ void put_bare_rarities(inout ShadingPoint point) {
   if (has(FEATURE_ANISOTROPY)) point.anisotropy = Anisotropy(0.0, vec2(0.0), vec3(0.0), vec3(0.0));
 }
 
-// What the eye sees of the coat: Schlick's factor of an index of refraction of 1.5.
+// Returns the coat as the eye sees it: with Schlick's factor for an index of refraction of 1.5.
 Coat seen_coat(Coat coat, vec3 direction) {
   float cosine = clamp(-dot3(coat.normal, direction), 0.0, 1.0);
   precise float p = 1.0 - cosine;
@@ -368,10 +369,10 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
 
 #include "faces.glsl"
 
-// `direction` is the ray's, unit; `cone_width` is how wide the cone of its pixel is at the hit; `media` are those that
-// the ray is in, and it is bent as this color of light. The point is not returned but written to: of a call that is
-// assigned glslang 12 to 15 spread `precise` from the struct's eighth member to the eighth of every argument, and crash
-// where one of these is built from fewer (propagateNoContraction.cpp).
+// `direction` is the ray's unit direction; `cone_width` is the width of its pixel's cone at the hit; `media` are the
+// media that contain the ray, which is refracted as this color of light. The point is an out parameter and not
+// returned: for a call whose result is assigned, glslang 12 to 15 propagate `precise` from the struct's eighth member
+// to the eighth member of every argument, and crash if one of these has fewer (propagateNoContraction.cpp).
 void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, uint color,
                         out ShadingPoint point) {
   Primitive p = load_primitive(hit.primitive);
@@ -422,11 +423,11 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec
   }
 }
 
-// What a source adds where nothing is between.
+// Returns the unblocked contribution of a light source.
 vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
   vec3 to_light = normalize3(sampled.direction);
   precise float cosine = dot3(point.normal, to_light);
-  // A coat has a normal of its own.
+  // A coat has its own normal.
   bool is_lit = has(FEATURE_COATS) ? cosine > 0.0 || dot3(point.coat.normal, to_light) > 0.0 : cosine > 0.0;
   if (has(FEATURE_DIFFUSE_TRANSMISSION) && scatters_through(point)) is_lit = true;
   if (!(is_lit && sampled.strength > 0.0)) return vec3(0.0);

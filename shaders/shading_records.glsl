@@ -87,8 +87,8 @@ vec2 load_shares(uint table, float cosine, float roughness) {
   return result;
 }
 
-// What a lobe of this roughness does with light from all around, as seen from an eye at the angle of this cosine: the
-// shares x = E1, of what it would reflect if all light were, and y = B, of what Schlick's factor would add.
+// Returns how a lobe of this roughness reflects light from all directions to an eye at the angle of this cosine: x =
+// E1, the part reflected with a reflectance of 1, and y = B, the part that Schlick's factor adds.
 vec2 load_lobe_shares(float cosine, float roughness) { return load_shares(VIEW.first_lookup.x, cosine, roughness); }
 
 // The share of light from all around that a sheen of colour 1 sends to the eye; its table follows that of lobes.

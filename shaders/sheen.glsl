@@ -24,7 +24,7 @@ float fitted_lambda(float x, float alpha) {
   return fitted;
 }
 
-// How much more fibres hide of one another than they show, as seen at the angle of this cosine.
+// Returns the ratio of hidden to visible fibres, seen at the angle of this cosine.
 float sheen_lambda(float cosine, float alpha) {
   precise float from_normal = 1.0 - cosine;
   precise float logarithm = cosine < 0.5 ? fitted_lambda(cosine, alpha)

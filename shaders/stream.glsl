@@ -30,10 +30,10 @@ const uint WAITING_BOUNCES_MASK = 0x3FFFu;
 const uint HAS_SEEN_SHIFT = 16u;
 const uint KIND_SHIFT = 16u;
 
-// Then come words: what each path asks for, a word for its own ray and one for each source; the list of the paths of
-// even turns and that of odd ones; the list of shadow rays; and of paths and shadow rays the bins: how many are in
-// each, then where each begins in the list.
-// An ask is a bin and, above it, the ray's number in that bin; or one of these:
+// Then come words, in this order: the asks of each path, one word for its own ray and one for each source; the list of
+// the paths of even turns, and that of odd turns; the list of shadow rays; and the bins of paths and of shadow rays:
+// the number of rays in each bin, then where each bin begins in the list. An ask is a bin and, above it, the ray's
+// number in that bin; or one of these:
 const uint ASK_NOTHING = 0xFFFFFFFFu;  // a path that has ended, a source without a shadow ray, or one that is not blocked
 const uint ASK_BLOCKED = 0xFFFFFFFEu;  // the answer to a shadow ray that is
 // The last bin is of paths that have no ray, but wait for shadow rays.

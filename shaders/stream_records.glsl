@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Records and words of the film that earlier dispatches have written, of the stream and of pixels. Lavapipe loads them
-// faster as texels. These do not tell of what a lane has written in the same dispatch, so it reads a record before.
+// Loads records and words of the film, of the stream and of pixels, that earlier dispatches have written. Lavapipe
+// loads them faster as texels. Texels do not show what a lane has written in the same dispatch, so a lane must read a
+// record before it writes it.
 
 layout(constant_id = CONSTANT_FETCHES_FILM_TEXELS) const uint FETCHES_FILM_TEXELS = 0u;
 layout(set = 0, binding = BINDING_FILM_TEXELS) uniform usamplerBuffer film_texels;

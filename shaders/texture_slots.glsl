@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The textures of a material at a point.
 
-// Whether materials may have layers above them, and what of them else few have (ExtensionRecord).
+// Whether materials may have layers above them, or other rare properties (ExtensionRecord).
 const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
 const uint RARE_FEATURES = FEATURE_BIT(FEATURE_SPECULAR_TEXTURES) | FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION) |
                            FEATURE_BIT(FEATURE_IRIDESCENCE) | FEATURE_BIT(FEATURE_ANISOTROPY);
 const bool HAS_EXTENSIONS = HAS_LAYERS || RARE_FEATURES != 0u;
 
-// What may be looked up at a point, each in a place of its own. What only few materials have comes last.
+// The textures that may be looked up at a point, each with its own place. Rare ones come last.
 const uint BASE_SLOT = 0u;  // colour and alpha
 const uint EMISSIVE_SLOT = 1u;
 const uint SURFACE_SLOT = 2u;  // metal and roughness, or Phong's specular colour
@@ -40,9 +40,9 @@ uint next_slot_number() {
   return number;
 }
 
-// Fills `shown`, with 1 where there is no texture, and empties `slot_numbers`. One level after the other, in one place:
-// CPU drivers execute for all lanes what any of them may need, and most materials lack most of the textures that there
-// may be. What has one number is looked up once.
+// Fills `shown`, with 1 for missing textures, and clears `slot_numbers`. It looks up one level after the other in a
+// single place of the code, because CPU drivers execute for all lanes what any of them may need, and most materials
+// lack most textures. Slots with the same number are looked up once.
 void look_up_slots(TexturePlace place) {
   [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) shown[i] = vec4(1.0);
   uint number = next_slot_number();

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Textures (docs/model.md, "Textures"). Filtering is written out, in an order that no driver may change: samplers differ
-// by some bits of where between two texels a place lies. How large a pixel is on a surface is told by a ray's cone
-// (Akenine-Moller and others, "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems ch. 20).
+// Textures (docs/model.md, "Textures"). Filtering is written out in an order that drivers must not change, because
+// samplers differ in some bits of the position between two texels. A ray's cone determines the size of a pixel on a
+// surface (Akenine-Moller and others, "Texture Level of Detail Strategies for Real-Time Ray Tracing", Ray Tracing Gems
+// ch. 20).
 
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer ImageWords { uint image_words[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Slots { TextureSlotRecord slots[]; };
@@ -13,7 +14,7 @@ uint load_image_word(uint index) {
   return texelFetch(image_texels, int(index)).x;
 }
 
-// They are numbered from 1 on.
+// Returns a slot; numbers start at 1.
 TextureSlotRecord load_slot(uint number) {
   uint index = VIEW.first_texture.z + number - 1u;
   if (FETCHES_TEXELS == 0u) return slots[index];
@@ -26,7 +27,7 @@ uint flags_of(TextureSlotRecord slot) { return floatBitsToUint(slot.to_u.w); }
 uint wrap_of(TextureSlotRecord slot, uint shift) { return (flags_of(slot) >> shift) & TEXTURE_WRAP_MASK; }
 bool has_flag(TextureSlotRecord slot, uint flag) { return (flags_of(slot) & flag) != 0u; }
 
-// log2 of a positive number, off by at most 1e-3, which is a thousandth of a level.
+// Returns log2 of a positive number with an error of at most 1e-3, a thousandth of a level.
 float log2_about(float x) {
   uint bits = floatBitsToUint(x);
   precise float m = uintBitsToFloat((bits & 0x007FFFFFu) | 0x3F800000u);
@@ -35,7 +36,7 @@ float log2_about(float x) {
   return result;
 }
 
-// (code / 255) as light, to 0.006 of a code's step.
+// Returns the linear light of an sRGB value (code / 255), accurate to 0.006 of a code's step.
 vec3 decode_srgb(vec3 code) {
   precise vec3 s = sqrt((code + 0.055) * (1.0 / 1.055));
   precise vec3 s2 = s * s;
@@ -46,7 +47,7 @@ vec3 decode_srgb(vec3 code) {
               code.z <= 0.04045 ? line.z : curve.z);
 }
 
-// A coordinate in 0...1, of which a texture repeats outside.
+// Returns the coordinate wrapped to 0...1.
 float wrap(float x, uint mode) {
   precise float repeated = x - floor(x);
   precise float twice = x - 2.0 * floor(0.5 * x);
@@ -54,7 +55,7 @@ float wrap(float x, uint mode) {
   return mode == WRAP_REPEAT ? repeated : (mode == WRAP_MIRRORED ? mirrored : clamp(x, 0.0, 1.0));
 }
 
-// The texel in place of one beyond the edge by at most one.
+// Returns the texel index for one that lies at most one beyond the edge.
 uint wrap_texel(int i, uint count, uint mode) {
   int last = int(count) - 1;
   int other_side = i < 0 ? last : (i > last ? 0 : i);
@@ -75,8 +76,8 @@ vec4 load_texel(TextureSlotRecord slot, Level level, ivec2 place) {
   return numbers;
 }
 
-// Between the texels around a place, or where `is_linear` is not set of the one it lies in: then it is at the corner of
-// those around, which has all of the weight.
+// Returns the bilinear interpolation of the four texels around `uv`. Without `is_linear` the texel that contains `uv`
+// gets all of the weight.
 vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) {
   Level level = Level(slot.image.x + load_image_word(slot.image.x + number), max(slot.image.yz >> number, uvec2(1u)));
   vec2 wrapped = vec2(wrap(uv.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT)), wrap(uv.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT)));
@@ -94,7 +95,7 @@ vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) 
   return result;
 }
 
-// What of a surface's texture coordinates lookups need.
+// The texture coordinates of a surface point for lookups.
 struct TexturePlace {
   vec4 uvs;           // of both sets
   vec2 log_coverage;  // of each: log2 of the area of coordinates that a pixel covers
@@ -112,7 +113,7 @@ CornerUvs load_corner_uvs(uvec3 corners) {
                    load_vertex4(VIEW.first_texture.x + corners.z));
 }
 
-// The area of texture coordinates over that of the triangle, for coordinates at its corners.
+// Returns the area in texture coordinates divided by that of the triangle, for coordinates at its corners.
 float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
   precise vec2 ab = b - a;
   precise vec2 ac = c - a;
@@ -121,13 +122,14 @@ float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
   return ratio;
 }
 
-// Of a point of a triangle: `facing` is the cosine between its normal and the ray, `cone_width` that of the ray's cone.
+// Returns the place for a point of a triangle: `facing` is the cosine between its normal and the ray, `cone_width` the
+// width of the ray's cone.
 TexturePlace texture_place(Primitive p, CornerUvs corners, vec3 weights, float facing, float cone_width) {
   precise vec4 uvs = weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
   precise vec3 e1 = corner1(p) - corner0(p);
   precise vec3 e2 = corner2(p) - corner0(p);
   float area = length3(cross3(e1, e2));
-  // Seen at an angle the cone covers an ellipse; the mean of its axes' logarithms is taken.
+  // At an angle the cone covers an ellipse; the mean of its axes' logarithms is used.
   precise float footprint = max(cone_width * cone_width, SMALLEST_NORMAL) / max(abs(facing), 1.0 / 64.0);
   precise vec2 coverage = footprint * vec2(coordinates_per_area(corners.a.xy, corners.b.xy, corners.c.xy, area),
                                            coordinates_per_area(corners.a.zw, corners.b.zw, corners.c.zw, area));
@@ -135,7 +137,7 @@ TexturePlace texture_place(Primitive p, CornerUvs corners, vec3 weights, float f
                                 log2_about(max(coverage.y, SMALLEST_NORMAL))));
 }
 
-// The level of a texture whose texels are as large as the pixel, and how the next is mixed in.
+// The level of a texture whose texels have the size of the pixel, and the weight of the next level.
 struct LevelChoice {
   uint first;
   uint end;
@@ -143,8 +145,8 @@ struct LevelChoice {
   bool is_linear;
 };
 
-// Where levels are interpolated and a pixel has four samples or more, each sample takes one level: their mean is that
-// of both.
+// If levels are interpolated and a pixel has four samples or more, each sample uses one level; their mean is that of
+// both.
 LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   precise float scale = abs(slot.to_u.x * slot.to_v.y - slot.to_u.y * slot.to_v.x);
   precise float texels = max(scale * float(slot.image.y) * float(slot.image.z), SMALLEST_NORMAL);
@@ -162,7 +164,7 @@ LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   return LevelChoice(uint(first), uint(first) + (takes_one || first >= last ? 1u : 2u), part, is_linear);
 }
 
-// What a slot is asked for at a place.
+// A lookup of a slot at a place.
 struct Lookup {
   TextureSlotRecord slot;
   vec2 uv;
@@ -178,13 +180,13 @@ Lookup lookup_of(uint number, TexturePlace place) {
   return Lookup(slot, uv, choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x));
 }
 
-// What the first levels show, and with it the one that has just been looked up.
+// Returns the mix of the first levels with the one just looked up.
 vec4 mix_level(Lookup lookup, uint level, vec4 first, vec4 seen) {
   precise vec4 between = first + lookup.levels.part * (seen - first);
   return level == lookup.levels.first ? seen : between;
 }
 
-// What a slot shows at a place. Its number is not 0.
+// Returns the value of a slot at a place. Its number is not 0.
 vec4 look_up(uint number, TexturePlace place) {
   Lookup lookup = lookup_of(number, place);
   vec4 result = vec4(0.0);

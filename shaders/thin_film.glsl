@@ -29,8 +29,8 @@ float cosine_of_turns(float turns) {
   return is_far ? -series : series;
 }
 
-// What the eye's sensitivities x, y and z make of waves with this path difference, in linear Rec. 709. They are Gaussians
-// over frequency, x has two. Each wave has its sign.
+// Returns the colour of waves with this path difference in linear Rec. 709, by the eye's sensitivities x, y and z.
+// These are Gaussians over frequency; x has two. Each wave has its sign.
 vec3 color_of_waves(float path_difference, vec3 signs) {
   float difference = min(path_difference, LONGEST_DIFFERENCE);
   precise float square = difference * difference;
@@ -47,7 +47,7 @@ vec3 color_of_waves(float path_difference, vec3 signs) {
   return color;
 }
 
-// The reflectance of film and base at the angle of this cosine; `f0` is the base's at normal incidence, beside air.
+// Returns the reflectance of film and base at the angle of this cosine; `f0` is the base's at normal incidence in air.
 vec3 film_reflectance(vec3 f0, float ior, float thickness, float cosine) {
   precise float t = min(thickness / SMOOTH_THICKNESS, 1.0);
   precise float film_ior = 1.0 + (ior - 1.0) * (t * t * (3.0 - 2.0 * t));
@@ -67,7 +67,7 @@ vec3 film_reflectance(vec3 f0, float ior, float thickness, float cosine) {
   precise vec3 body = t121 * t121 * r23 / (1.0 - round_trip);
   precise vec3 first = (body - t121) * amplitude;
   precise float difference = 2.0 * film_ior * thickness * inside;
-  // A wave turns by half its length where it meets the film from inside, and where the base is denser.
+  // A wave's phase shifts by half a wavelength if it hits the film from inside, and if the base is denser.
   vec3 signs = vec3(base_ior.x < film_ior ? 1.0 : -1.0, base_ior.y < film_ior ? 1.0 : -1.0,
                     base_ior.z < film_ior ? 1.0 : -1.0);
   precise vec3 sum = r12 + body + 2.0 * first * color_of_waves(difference, signs) +
@@ -75,7 +75,7 @@ vec3 film_reflectance(vec3 f0, float ior, float thickness, float cosine) {
   return clamp(sum, vec3(0.0), vec3(1.0));
 }
 
-// The reflectance at normal incidence with which Schlick's factor gives the film's reflectance at this cosine.
+// Returns the reflectance at normal incidence for which Schlick's factor gives the film's reflectance at this cosine.
 vec3 reflectance_under_film(ThinFilm film, vec3 f0, float f90, float cosine) {
   float seen = clamp(cosine, LEAST_FILM_COSINE, 1.0);
   vec3 reflected = film_reflectance(f0, film.layer.y, film.layer.z, seen);

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// How radiance beyond a display's range is shown (docs/model.md, "Showing a picture"), as engine/image/display.cpp has
-// it in double for files.
+// Maps radiance into a display's range (docs/model.md, "Showing a picture"), as engine/image/display.cpp does in double
+// for files.
 
 #define PROMIN_TONE_MAPPING(KIND, ENUMERATOR, NUMBER, NAME) const uint TONE_MAPPING_##KIND = NUMBER;
 #include "promin/kinds/tone_mappings.def"
 
-// More is shown as this: beyond it the curves are flat, and their products overflow nowhere.
+// Larger values are clamped to this: beyond it the curves are flat, and products cannot overflow.
 const float MOST_RADIANCE = 1e9;
 
-// Khronos PBR Neutral (https://github.com/KhronosGroup/ToneMapping): base colours lose the 0.04 that a surface reflects
-// beside them, and what is brighter than 0.8 is compressed and loses colour.
+// Khronos PBR Neutral (https://github.com/KhronosGroup/ToneMapping): base colours lose the 0.04 that a surface
+// additionally reflects, and values brighter than 0.8 are compressed and desaturated.
 vec3 map_neutral(vec3 c) {
   float least = min(c.x, min(c.y, c.z));
   c -= least < 0.08 ? least - 6.25 * least * least : 0.04;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Answers the shadow rays of the stream's list.
+// Traces the shadow rays of the stream's list.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -33,7 +33,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "group_rows.glsl"
 #include "loop_check.glsl"
 
-// What blocks the ray, or the last surface that it has gone through. `record` is that of the source's contribution.
+// Returns the hit that blocks the ray, or the last surface that it has passed through. `record` is that of the source's
+// contribution.
 Hit go_through_layers(uint record, uvec2 media) {
   LightWay way = light_way(media);
   Hit last = Hit(INFINITY, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// One traversal for every ray: primary, mirror and shadow. No recursion; the stack has the size that the tree needs.
-// What a ray hits depends neither on the packet nor on the tree.
-// `asks_for_any`: the packet's rays ask for any hit. Where ALL_ASK_FOR_ANY it is true and the compiler knows.
+// One traversal for all rays: primary, mirror and shadow rays. There is no recursion; the stack has the size that the
+// tree needs. The hit of a ray depends neither on the packet nor on the tree. `asks_for_any`: the packet's rays are
+// any-hit rays. With ALL_ASK_FOR_ANY it is true at compile time.
 //
-// Loops have the form do { if (goes_on) { ... } } while (goes_on). CPU drivers execute what is behind a loop's exit for
-// no lane once all have left: with the condition at the top that is the whole body once more. Without the branch older
-// lavapipes give lanes that have left what later turns compute, from loads that answer 0 for them; what a branch
-// changes is theirs to keep.
+// Loops have the form do { if (goes_on) { ... } } while (goes_on). When all lanes have left, CPU drivers still execute
+// the code after a loop's exit once for no lane; with the condition at the top that would be the whole body. Without
+// the branch, older versions of lavapipe overwrite variables of lanes that have left with results of later turns, whose
+// loads return 0 for them; variables changed inside a branch keep their values.
 
-// Whether the solids of a leaf wait until no lane can go on without them. Where all primitives are solids none do.
+// Whether the solids of a leaf wait until no lane can continue without them. If all primitives are solids, none waits.
 const uint SOLIDS_WAIT = WAITS_WITH_SOLIDS * FEATURE_BIT(FEATURE_TRIANGLES) * uint(TREE_KIND_COUNT > 1u);
 
-// What is left of the leaf at hand. By enter_leaf, and by what intersects its primitives.
+// The remainder of the current leaf. Set by enter_leaf and by the functions that intersect its primitives.
 struct Leaf {
   uint next;
   uint end;
@@ -21,12 +21,13 @@ struct Leaf {
 };
 Leaf leaf;
 
-// Whether the lane waits with what CPU drivers would otherwise execute for all lanes after each leaf of one.
+// Returns whether the lane delays work that CPU drivers would otherwise execute for all lanes after each leaf of one
+// lane.
 bool waits() {
   return (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) || (SOLIDS_WAIT != 0u && leaf.has_solids_next);
 }
 
-// Where in the tree the packet is. By take_child and enter_family.
+// The position of the packet in the tree. Set by take_child and enter_family.
 struct Descent {
   uint family;  // of the node at hand
   uint stack_top;
@@ -34,12 +35,12 @@ struct Descent {
 Descent descent;
 uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one that is not kept
 
-// Instead of a child; they have CHILD_IS_LEAF.
+// Special values in place of a child, with CHILD_IS_LEAF.
 const uint DONE = 0xFFFFFFFFu;
 const uint IN_LEAF = 0xFFFFFFFEu;  // the one that was entered
 
-// The next child that is left, or DONE. Where not `takes` nothing changes. Without branches, which CPU drivers execute
-// for all lanes.
+// Returns the next remaining child, or DONE. Without `takes` nothing changes. It has no branches, because CPU drivers
+// execute them for all lanes.
 uint take_child(bool takes) {
   bool has_child = takes && descent.family != NO_FAMILY;
   uint node = has_child ? node_of_family(descent.family) : 0u;
@@ -52,8 +53,8 @@ uint take_child(bool takes) {
   return has_child ? child : DONE;
 }
 
-// The old family is stored whether or not it is kept: of a store under a condition LLVM makes a branch for each lane,
-// which no processor foresees.
+// The old family is always stored, even if it is not kept: LLVM turns a conditional store into a branch for each lane,
+// which processors cannot predict.
 void enter_family(uint met) {
   bool enters = met != NO_FAMILY;
   stack[descent.stack_top] = descent.family;
@@ -61,7 +62,7 @@ void enter_family(uint met) {
   descent.family = enters ? met : descent.family;
 }
 
-// A step from a node to the next child. Lanes that are at no node take part and stay where they are.
+// Makes a step from a node to the next child. Lanes that are not at a node take part without moving.
 uint step_together(uint current) {
   bool steps = is_inner(current);
   count_steps(steps ? 1u : 0u, 0u);
@@ -77,12 +78,12 @@ void enter_leaf(uint child) {
   count_steps(0u, leaf.end - leaf.next);
 }
 
-// Whether a primitive of this kind comes next. Where the tree has no other kind, the answer needs no fetch.
+// Returns whether the next primitive has this kind. If the tree has no other kind, no fetch is needed.
 bool is_next_in_leaf(uint kind) {
   return leaf.next < leaf.end && (TREE_KIND_COUNT == 1u || load_primitive_kind(leaf.next) == kind);
 }
 
-// The triangles that come next, up to one that needs a second look.
+// Intersects the next triangles, up to one that needs a second look.
 void intersect_triangles(bool asks_for_any) {
   bool is_next = is_next_in_leaf(KIND_TRIANGLE);
   do {
@@ -99,7 +100,7 @@ void intersect_triangles(bool asks_for_any) {
   } while (is_next);
 }
 
-// The closed shapes of a kind that come next.
+// Intersects the next closed shapes of a kind.
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                        \
   void intersect_each_##PREFIX(bool asks_for_any) {                                         \
     bool is_next = is_next_in_leaf(NUMBER);                                                 \
@@ -113,15 +114,15 @@ void intersect_triangles(bool asks_for_any) {
   }
 #include "promin/kinds/primitives.def"
 
-// The closed shapes that come next, kind by kind: leaves hold them sorted so.
+// Intersects the next closed shapes, kind by kind, which is their order in leaves.
 void intersect_solids(bool asks_for_any) {
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (has(FEATURE_##FEATURE)) intersect_each_##PREFIX(asks_for_any);
 #include "promin/kinds/primitives.def"
 }
 
-// What is left of a leaf, up to what waits: a triangle that needs a second look, until no lane has another triangle to
-// glance at, and solids.
+// Intersects the remainder of a leaf up to primitives that wait: a triangle that needs a second look, until no lane has
+// another triangle to glance at, and solids.
 void intersect_leaf(bool asks_for_any) {
   if (has(FEATURE_TRIANGLES)) intersect_triangles(asks_for_any);
   if (leaf.needs_second_look) return;
@@ -132,7 +133,7 @@ void intersect_leaf(bool asks_for_any) {
   }
 }
 
-// What has no box lies behind the tree's primitives.
+// Intersects the unbounded primitives, which lie behind those of the tree.
 void intersect_unbounded(bool asks_for_any) {
   uint index = first_unbounded();
   do {
@@ -146,7 +147,7 @@ void intersect_unbounded(bool asks_for_any) {
   } while (index < end_unbounded());
 }
 
-// From an inner node down to a leaf.
+// Descends from an inner node to a leaf.
 uint step_down(uint current) {
   do {
     if (is_inner(current)) {
@@ -158,8 +159,8 @@ uint step_down(uint current) {
   return current;
 }
 
-// To the next leaf and through it; with STEPS_TOGETHER lanes that have not come to one take part in no leaf. Returns
-// the next child, IN_LEAF where the lane waits, or DONE.
+// Moves to the next leaf and intersects it; with STEPS_TOGETHER, lanes that have not reached a leaf skip it. Returns
+// the next child, IN_LEAF if the lane waits, or DONE.
 uint go_through_leaf(uint current, bool asks_for_any) {
   if (STEPS_TOGETHER == 0u) {
     current = step_down(current);
@@ -173,7 +174,7 @@ uint go_through_leaf(uint current, bool asks_for_any) {
   return asks_for_any && !any_takes_part() ? DONE : take_child(true);
 }
 
-// What waits at the leaf at hand.
+// Intersects the waiting primitives of the current leaf.
 void end_waiting(bool asks_for_any) {
   if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
     intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
@@ -185,7 +186,7 @@ void end_waiting(bool asks_for_any) {
   }
 }
 
-// Those of the packet's rays that take part, all in one octant, through the tree.
+// Traces the rays of the packet that take part, all in one octant, through the tree.
 void descend(bool asks_for_any) {
   descent = Descent(NO_FAMILY, 0u);
   leaf.needs_second_look = false;
@@ -205,7 +206,7 @@ void descend(bool asks_for_any) {
   } while (has_waited);
 }
 
-// One octant after the other: the first ray's, then the first's of those that are left.
+// Traces one octant after the other: that of the first ray, then that of the first remaining ray.
 void descend_by_octants(bool asks_for_any) {
   float waiting[PACKET_SIZE];
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) waiting[slot] = limits[slot];
@@ -236,7 +237,7 @@ void descend_as_they_are(bool asks_for_any) {
   }
 }
 
-// Rays from far away go down the tree from nearby.
+// Traces rays from far away with origins moved near the tree.
 void descend_from_nearby(bool asks_for_any) {
   vec3 origins[PACKET_SIZE];
   float tmins[PACKET_SIZE];
@@ -246,7 +247,7 @@ void descend_from_nearby(bool asks_for_any) {
   }
   bool is_any_far = false;
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) is_any_far = is_any_far || is_far_away(packet[slot]);
-  // Each time a thousandth of the way is left.
+  // Each step leaves a thousandth of the distance.
   for (uint i = 0u; i < 4u && is_any_far; ++i) {
     is_any_far = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
@@ -267,8 +268,8 @@ void descend_from_nearby(bool asks_for_any) {
   }
 }
 
-// Fills `found` from `packet`: with the nearest hits, or with `asks_for_any` some hits; where there is none,
-// `primitive` is NO_PRIMITIVE. Where ALL_ASK_FOR_ANY only that and `order` are told.
+// Fills `found` for the rays in `packet`: with the nearest hits, or with `asks_for_any` some hits. On a miss
+// `primitive` is NO_PRIMITIVE. With ALL_ASK_FOR_ANY only that and `order` are set.
 void trace_packet(bool asks_for_any) {
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
     shifts[slot] = 0.0;
@@ -280,7 +281,7 @@ void trace_packet(bool asks_for_any) {
   descend_from_nearby(asks_for_any);
 }
 
-// A single ray; for kernels with packets of one.
+// Traces a single ray, for kernels with packets of one.
 Hit trace(Ray ray, bool asks_for_any) {
   packet[0] = ray;
   trace_packet(asks_for_any);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The tree of rays that glass makes of a path, with FEATURE_GLASS. A lane follows it depth first, the mirror ray before
-// the refracted one, which waits in the stream until the path has come to its end: so the order of a pixel's sum hangs on
-// nothing but the tree, at most one ray waits for each bounce, and no path outgrows its place.
+// The tree of rays into which glass splits a path, with FEATURE_GLASS. A lane follows it depth first. The mirror ray
+// comes before the refracted one, which waits in the stream until the path has ended. The order of a pixel's sum
+// therefore depends only on the tree, at most one ray waits for each bounce, and no path exceeds its space.
 
-// Whether a ray is worth to be followed. In place of others what they would see of the environment is added, of Phong's
+// Returns whether a ray is worth tracing. For other rays the environment that they would see is added, for Phong
 // materials nothing.
 bool is_followed(inout Path parent, ShadingPoint point, Path child) {
   bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
@@ -22,24 +22,25 @@ bool is_followed(inout Path parent, ShadingPoint point, Path child) {
   return false;
 }
 
-// The least cosine beyond a face at which a ray begins before it.
+// The smallest cosine beyond a face at which a ray starts before it.
 const float LEAST_COSINE_BEYOND = 0.125;
 
-// Turns the path into the ray that goes through the point's surface. It begins before that, skips the face, and so
-// meets what touches it: the liquid in a glass, the table under it. Where the hit is such a face itself, or the ray runs
-// along the surface, it begins behind. `touches`: the hit lies where the path's last ray skipped faces.
+// Turns the path into the ray that passes through the point's surface. It starts before the surface and skips the face,
+// and so hits objects that touch it: the liquid in a glass, or the table under it. If the hit is such a face itself, or
+// the ray runs along the surface, it starts behind it. `touches`: the hit lies in the range in which the path's last
+// ray skipped faces.
 void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   precise vec3 weight = path.weight * point.glass.through;
   path.weight = weight;
   float cosine = -dot3(point.glass.direction, point.geometric_normal);
   bool begins_before = !touches && cosine >= LEAST_COSINE_BEYOND;
   path.origin = lift_off(point.position, begins_before ? point.geometric_normal : -point.geometric_normal, point.lift);
-  // The point is off its face by its lift at most, and so is the ray's origin.
+  // The distance of the point from its face is at most its lift, and so is that of the ray's origin.
   precise float skip = 2.0 * point.lift / cosine;
   path.skip = begins_before ? skip : 0.0;
   path.skipped = point.glass.object;
   if (has(FEATURE_TEXTURES)) {
-    // What is curved spreads or gathers the cone.
+    // Curvature widens or narrows the cone.
     precise float spread =
         point.glass.bend * path.cone_spread + (point.glass.bend - 1.0) * point.curvature * path.cone_width;
     path.cone_spread = spread;
@@ -54,12 +55,12 @@ void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   path.passed_order = 0u;
 }
 
-// The face at hand, as it bends light of this color.
+// Sets the face as it refracts light of this color.
 void make_colored_face(Path path, ShadingPoint point, uint color, out Face face) {
   make_face(glass_number(point.material), false, (point.glass.object & SKIPS_EXIT) != 0u, path.media, color, face);
 }
 
-// The colours of what goes through the face, as bits, where it bends them apart; else 0.
+// Returns the colours of light through the face, as bits, if the face separates them; else 0.
 uint parted_colors(Path path, ShadingPoint point) {
   if (!has(FEATURE_DISPERSION)) return 0u;
   if (count_colors(path.weight) < 2u || point.glass.bend == 1.0) return 0u;
@@ -72,7 +73,7 @@ uint parted_colors(Path path, ShadingPoint point) {
   return is_parted ? uint(weight.x > 0.0) | uint(weight.y > 0.0) << 1 | uint(weight.z > 0.0) << 2 : 0u;
 }
 
-// Turns the path into the ray of one color that goes through the point's surface, or that is reflected totally where
+// Turns the path into the ray of one color that passes through the point's surface, or that is reflected totally while
 // others are not.
 void send_color(inout Path path, ShadingPoint point, bool touches, uint color) {
   precise vec3 kept = point.glass.through * vec3(color == RED, color == GREEN, color == BLUE);
@@ -96,8 +97,8 @@ void send_color(inout Path path, ShadingPoint point, bool touches, uint color) {
   }
 }
 
-// The children of a path: its mirror ray, the ray beyond the surface, or in place of that one of each color; of all those
-// that are followed.
+// The children of a path that are traced: its mirror ray, and the ray beyond the surface, or one ray of each color in
+// its place.
 struct Children {
   bool is_mirrored;
   bool is_refracted;
@@ -107,7 +108,7 @@ struct Children {
 
 uint count_refracted(Children children) { return children.is_refracted ? 1u : uint(bitCount(children.colors)); }
 
-// Parts a path at a surface: it becomes the first of its children, or itself where it has none.
+// Splits a path at a surface: it becomes the first of its children, or stays unchanged without children.
 void part_path(inout Path path, ShadingPoint point, bool touches, out Children children) {
   Path parent = path;
   Path next = path;
@@ -144,14 +145,14 @@ void part_path(inout Path path, ShadingPoint point, bool touches, out Children c
   children.through = through;
 }
 
-// Keeps what tells the path from others. `has_seen`: the point that it has reached is still to be added.
+// Stores the data of the path. `has_seen`: the light of its current point has not been added yet.
 void store_glass(uint number, Path path, uint waiting, bool has_seen) {
   pixels[record_of_glass(number) + RECORD_MEDIA] =
       uvec4(path.media, path.rays | (has_seen ? 1u << HAS_SEEN_SHIFT : 0u), waiting | path.kind << KIND_SHIFT);
   pixels[record_of_glass(number) + RECORD_SHADOW_MEDIA].zw = uvec2(floatBitsToUint(path.skip), path.skipped);
 }
 
-// Keeps the ray that a path follows when those before it have come to their ends.
+// Stores a ray that the path follows when all rays before it have ended.
 void store_waiting(uint number, uint place, Path path) {
   uint record = record_of_waiting(number, place);
   pixels[record] = uvec4(floatBitsToUint(path.origin), floatBitsToUint(path.cone_width));
@@ -162,15 +163,15 @@ void store_waiting(uint number, uint place, Path path) {
   pixels[record + 3u] = uvec4(path.media, progress, floatBitsToUint(path.skip));
 }
 
-// Keeps the children that wait for the first, the last to be followed first; `waiting` are there already. Returns how many
-// wait then.
+// Stores the children that wait for the first one; the last stored is followed first. `waiting` is the number that
+// already wait. Returns the new number.
 uint store_children(uint number, uint waiting, Children children, ShadingPoint point, bool touches) {
   if (children.is_mirrored && children.is_refracted) {
     store_waiting(number, waiting, children.through);
     ++waiting;
   }
   if (!has(FEATURE_DISPERSION)) return waiting;
-  // The first color is the path itself where there is no mirror ray.
+  // Without a mirror ray the first color is the path itself.
   uint colors = children.is_mirrored ? children.colors : children.colors & (children.colors - 1u);
   for (uint left = colors; left != 0u;) {
     uint color = uint(findMSB(left));

@@ -9,7 +9,7 @@
 
 namespace promin::app {
 
-/// Work on a thread of its own, one piece at a time. The destructor waits for it.
+/// Runs work on a separate thread, one piece at a time. The destructor waits for it.
 template <typename Result>
 class Background {
  public:
@@ -22,7 +22,7 @@ class Background {
   /// True until the result is taken.
   bool is_busy() const { return result_.valid(); }
   bool is_ready() const { return is_busy() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
-  /// The result, once it is there. Throws what the work threw.
+  /// Returns the result when it is ready. Throws what the work threw.
   std::optional<Result> take() { return is_ready() ? std::optional<Result>(result_.get()) : std::nullopt; }
   void wait() const {
     if (is_busy()) result_.wait();

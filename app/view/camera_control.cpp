@@ -15,9 +15,9 @@ constexpr double kRollSpeed = 0.8;
 constexpr double kOrbitSpeed = 0.8;
 /// A second of orbiting nearer multiplies the distance to the center by exp(-kApproach).
 constexpr double kApproach = 1.0;
-/// A step of the wheel multiplies the distance to the pivot by it.
+/// Factor of the distance to the pivot for each step of the wheel.
 constexpr double kZoomStep = 0.85;
-/// An orbit by the pointer ends so near to straight above and below, degrees.
+/// An orbit by the pointer stops at this distance from straight above and below, in degrees.
 constexpr double kHighestElevation = 89.0;
 
 }  // namespace
@@ -30,7 +30,7 @@ CameraControl::CameraControl(const Camera& camera, const Bounds& bounds, const v
       speed_(speed_to_cross(bounds)) {}
 
 void CameraControl::apply(const Motion& motion, double window_height) {
-  // What was not moved keeps its bits.
+  // Values that were not moved keep their bits.
   if (motion.is_none()) return;
   if (motion.orbit != dvec2(0.0)) turn_around(motion.orbit, window_height);
   if (motion.pan != dvec2(0.0)) pan(motion.pan, window_height);
@@ -59,7 +59,7 @@ void CameraControl::turn_around(const dvec2& pixels, double window_height) {
   const double degrees_a_pixel = 180.0 / window_height;
   const double elevation = glm::degrees(std::asin(std::clamp(-glm::dot(camera_.look(), up_), -1.0, 1.0)));
   const double wanted = elevation + degrees_a_pixel * pixels.y;
-  // A camera that is beyond the limits may come back.
+  // A camera beyond the limits may return.
   const double highest = std::max(kHighestElevation, std::abs(elevation));
   const Orbit orbit{.azimuth_deg = -degrees_a_pixel * pixels.x,
                     .elevation_deg = std::clamp(wanted, -highest, highest) - elevation};

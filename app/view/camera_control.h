@@ -9,30 +9,30 @@
 
 namespace promin::app {
 
-/// Moves the free camera. Either it flies: all angles are about the camera's own axes and no direction of the world is
-/// up, so that no pose is special and there is no gimbal to lock. Or it orbits a point, which it faces. The pointer
-/// takes it around what it looks at, in either case.
+/// Moves the free camera. It either flies or orbits. When flying, all angles are about the camera's own axes and no
+/// direction of the world is up, so no pose is special and there is no gimbal lock. When orbiting, it faces a point. In
+/// both cases the pointer moves it around the point that it looks at.
 class CameraControl {
  public:
   /// `bounds` is of the scene, and `up` its direction, of any length but 0.
   CameraControl(const Camera& camera, const Bounds& bounds, const vec3& up);
 
-  /// `window_height` is in pixels. A drag over all of it turns the camera by the field of view, so that what is under
-  /// the pointer stays there; one that orbits takes the camera half around the pivot.
+  /// `window_height` is in pixels. A drag over the whole height turns the camera by the field of view, so that the
+  /// scene follows the pointer; when orbiting it moves the camera half around the pivot.
   void apply(const Motion& motion, double window_height);
 
-  /// What the camera looks at: the center of an orbit, else the point of its axis that is nearest to the middle of the
-  /// scene, or that middle where it lies behind the camera.
+  /// Returns the point that the camera looks at: the center of an orbit, else the point on its axis nearest to the
+  /// middle of the scene, or that middle itself if it lies behind the camera.
   dvec3 pivot() const;
 
-  /// Takes another pose; the start pose is kept.
+  /// Sets another pose; the start pose does not change.
   void place(const Camera& camera);
-  /// Takes all that it holds elsewhere: the pose, the start pose and what it orbits.
+  /// Moves everything by an offset: the pose, the start pose and the orbited point.
   void move(const dvec3& offset);
-  /// Goes back to the pose that the control was made with, and flies.
+  /// Returns to the start pose and to flying.
   void reset();
 
-  /// Turns towards `center` and orbits it from now on, unless the camera is there.
+  /// Turns towards `center` and orbits it from now on, unless the camera is at that point.
   void orbit(const dvec3& center);
   void fly() { center_.reset(); }
   bool is_orbiting() const { return center_.has_value(); }
@@ -47,7 +47,7 @@ class CameraControl {
   void turn_around(const dvec2& pixels, double window_height);
   void pan(const dvec2& pixels, double window_height);
   void zoom(double steps);
-  /// Moves on a sphere around the center: it turns, then goes to where the center is straight ahead.
+  /// Moves on a sphere around the center: turns, then moves so that the center is straight ahead.
   void swing(double alpha, double beta, double gamma, double distance);
 
   Camera start_;
@@ -56,11 +56,11 @@ class CameraControl {
   /// The middle of the scene, and its direction up, of unit length.
   dvec3 middle_;
   dvec3 up_;
-  /// In world units a second.
+  /// Speed in world units per second.
   double speed_;
 };
 
-/// The speed at which a scene is crossed in some seconds.
+/// Returns the speed at which a scene is crossed in a few seconds.
 double speed_to_cross(const Bounds& bounds);
 
 }  // namespace promin::app

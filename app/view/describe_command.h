@@ -13,11 +13,11 @@
 
 namespace promin::app {
 
-/// What of a scene a command leaves out, how it lights and shows it, and which camera gives an orthographic view its
-/// size.
+/// The settings of a scene for a command: its file, lights, display, and the camera that determines the size of an
+/// orthographic view.
 struct DescribedScene {
   std::filesystem::path file;
-  /// The picture's file; without one the command gets a name of its own.
+  /// The picture's file; without one the command gets a default name.
   std::optional<std::filesystem::path> output = std::nullopt;
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
@@ -29,19 +29,19 @@ struct DescribedScene {
   dvec3 center = dvec3(0.0);
   /// The scene's camera that has the view's half height.
   std::optional<size_t> camera_index = std::nullopt;
-  /// The tree, which decides the steps that a picture may show.
+  /// The builder of the tree, which affects the step counts that a picture may show.
   std::string builder = "sah";
   std::optional<std::filesystem::path> bvh = std::nullopt;
 };
 
-/// The scene's camera that has an orthographic camera's half height, which no option gives.
+/// Returns the scene's camera with an orthographic camera's half height, which no option can set.
 std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera);
 
-/// Whether there is such a command. There is none for an orthographic view whose half height no camera of the scene
-/// has.
+/// Returns whether there is such a command. There is none for an orthographic view whose half height no camera of the
+/// scene has.
 bool can_describe(const DescribedScene& scene, const View& view);
 
-/// The `promin render` command that gives the picture of a view, to the bit, for a shell.
+/// Returns the `promin render` command, for a shell, that gives the picture of a view bit for bit.
 std::string describe_command(const DescribedScene& scene, const View& view);
 
 }  // namespace promin::app

@@ -8,28 +8,29 @@
 
 namespace promin::app {
 
-/// Commands that a device is given, one list at a time, without waiting for it.
+/// Submits commands to a device, one list at a time, without waiting for it.
 class DeviceWork {
  public:
   explicit DeviceWork(std::shared_ptr<const gpu::Device> device);
-  /// Waits for the device where it is busy.
+  /// Waits for the device if it is busy.
   ~DeviceWork();
   DeviceWork(const DeviceWork&) = delete;
   DeviceWork& operator=(const DeviceWork&) = delete;
 
   /// Begins to record; must not be called while busy.
   const vk::raii::CommandBuffer& begin();
-  /// Takes the time at this place of the commands; kMostMarks at most.
+  /// Records a timestamp at this point of the commands; at most kMostMarks.
   void mark();
-  /// Hands over what was recorded. It waits for a semaphore and signals one, where they are not null.
+  /// Submits the recorded commands. They wait for a semaphore and signal one, if these are not null.
   void submit(vk::Semaphore wait = {}, vk::Semaphore signal = {});
-  /// Drops what was recorded.
+  /// Discards the recorded commands.
   void drop() { commands_.end(); }
 
   bool is_busy() const { return is_busy_; }
-  /// Whether what was submitted is finished: true once.
+  /// Returns whether the submitted commands have finished; true only once.
   bool take_finished();
-  /// Milliseconds between a mark and the next, of what finished last; 0 where the device has no timestamps.
+  /// Returns the milliseconds between a mark and the next, for the commands that finished last; 0 if the device has no
+  /// timestamps.
   double ms_after(uint32_t mark) const;
 
   static constexpr uint32_t kMostMarks = 4;

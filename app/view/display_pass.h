@@ -11,21 +11,21 @@
 
 namespace promin::app {
 
-/// Draws a picture to the window as often as the window wants it, scaled to all of the window (shaders/display.frag).
+/// Draws a picture, scaled to the whole window, whenever the window is drawn (shaders/display.frag).
 class DisplayPass {
  public:
   /// Throws vk::SystemError.
   DisplayPass(const gpu::Device& device, const Swapchain& swapchain);
 
-  /// Takes a picture over; the device must be idle.
+  /// Sets the picture; the device must be idle.
   void take(const EncodedPicture& picture);
-  /// Records drawing the picture that was taken last, if any, within a render pass of the swapchain.
+  /// Records drawing the current picture, if any, within a render pass of the swapchain.
   void record_drawing(const vk::raii::CommandBuffer& commands, const uvec2& window_size) const;
 
  private:
   const gpu::Device* device_;
   std::optional<gpu::Buffer> encoded_;
-  /// The size of the picture; none at first.
+  /// The size of the picture; empty at first.
   std::optional<uvec2> encoded_size_;
   vk::raii::DescriptorSetLayout set_layout_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kScenes = "*.gltf *.glb *.obj *.ply *.stl *.nff";
 
-/// Starts a program that writes to a pipe. Returns 0 where no program has that name.
+/// Starts a program that writes to a pipe. Returns 0 if there is no such program.
 pid_t start(const std::vector<std::string>& command, int output) {
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
@@ -49,7 +49,7 @@ std::vector<std::string> dialog_command(const std::string& program, FileUse use,
 
 void FileDialog::close() {
   if (!is_open()) return;
-  // It may have inherited that other signals are blocked.
+  // It may have inherited blocked signals.
   kill(process_, SIGKILL);
   ::close(pipe_);
   waitpid(process_, nullptr, 0);

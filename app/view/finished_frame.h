@@ -13,20 +13,20 @@ struct StageTimes {
   double display = 0.0;
 };
 
-/// What is known of a frame of tracing once the device has finished it.
+/// The data of a frame of tracing after the device has finished it.
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
-  /// The driver cut the tracing short (trace/film.h): pixels are wrong.
+  /// Whether the driver has cut loops (trace/film.h), so that pixels are wrong.
   bool has_cut_loops = false;
   /// The units of tracing (ProgressivePicture::record).
   double units = 0.0;
-  /// Whether they are samples that refine (ProgressivePicture::has_recorded_list).
+  /// Whether they are samples of refinement (ProgressivePicture::has_recorded_list).
   bool has_list = false;
   /// Whether it shows the next camera of a flight.
   bool is_of_flight = false;
-  /// The time to its end, from when it was first asked for, or from the end of the frame before if that was later. A
-  /// rest does not count.
+  /// The time to its end from its first request, or from the end of the previous frame if that was later. Idle time
+  /// does not count.
   double time_ms = 0.0;
 };
 

@@ -24,7 +24,7 @@ void FlightRecorder::add(double time_s, const Camera& camera, const dvec3& cente
 
 Camera FlightReplay::next_camera(double time_s) {
   const double interval_s = pictures_.interval_s();
-  // A delay of less than an interval is made up for; the time of a slow picture or of a pause is not.
+  // A delay of less than an interval is compensated; the time of a slow picture or of a pause is not.
   due_s_ = time_s - due_s_ < interval_s ? due_s_ + interval_s : time_s + interval_s;
   return pictures_.camera(next_++);
 }

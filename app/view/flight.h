@@ -11,16 +11,16 @@
 
 namespace promin::app {
 
-/// Records a flight of the camera for a file.
+/// Records the flight of a camera for a file.
 class FlightRecorder {
  public:
-  /// Adds the camera at a time in seconds; the first is at 0. Between two calls the camera is taken to move evenly, so
-  /// a call belongs to each frame and to the end of each rest. Of a rest the beginning and the end are kept.
-  /// `center` is of the scene (Scene::center).
+  /// Adds the camera at a time in seconds; the first is at 0. The camera is assumed to move evenly between two calls,
+  /// so call it for each frame and at the end of each rest. Only the beginning and the end of a rest are stored.
+  /// `center` is that of the scene (Scene::center).
   void add(double time_s, const Camera& camera, const dvec3& center = dvec3(0.0));
   const CameraPath& path() const { return path_; }
 
-  /// The rate that a recorded flight is meant to be played with, in pictures a second.
+  /// The playback rate of a recorded flight, in pictures per second.
   static constexpr double kFps = 30.0;
 
  private:
@@ -28,21 +28,21 @@ class FlightRecorder {
   CameraPath path_{{}, kFps};
 };
 
-/// Plays a flight picture by picture, without leaving any out, however long each takes, and measures their times.
+/// Plays a flight picture by picture without skipping any, however long each takes, and measures their times.
 class FlightReplay {
  public:
   explicit FlightReplay(PathPictures pictures) : pictures_(std::move(pictures)) {}
 
-  /// Whether it is time for the next picture: none comes earlier than its interval after the one before. Never when
+  /// Returns whether the next picture is due: not earlier than its interval after the previous one, and never when
   /// done. Times are in seconds.
   bool is_due(double time_s) const { return !is_done() && time_s >= due_s_; }
-  /// The next picture's camera. Must not be called when done.
+  /// Returns the next picture's camera. Must not be called when done.
   Camera next_camera(double time_s);
   bool is_done() const { return next_ == pictures_.count(); }
 
   void add(const FinishedFrame& frame);
-  /// One line: how many frames, the median and the 99th percentile of their times, what of it was tracing, and the rate
-  /// of camera rays, which is that of pixels where each has one sample.
+  /// Returns one line: the number of frames, the median and the 99th percentile of their times, the part of tracing,
+  /// and the rate of camera rays, which with one sample per pixel is that of pixels.
   std::string summarize() const;
 
  private:

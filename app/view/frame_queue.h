@@ -7,18 +7,18 @@
 
 namespace promin::app {
 
-/// Pictures of the window on their way to the display, one at a time. Nothing here waits, but for finish().
+/// Submits the window's pictures to the display, one at a time. Only finish() waits.
 class FrameQueue {
  public:
   FrameQueue(std::shared_ptr<const gpu::Device> device, Swapchain& swapchain);
 
   bool is_idle() const { return !work_.is_busy(); }
-  /// Begins drawing to the next image of the swapchain; null where none is free now.
+  /// Begins drawing to the next image of the swapchain; null if none is free now.
   const vk::raii::CommandBuffer* begin();
   uint32_t image() const { return image_; }
-  /// Hands over what was recorded.
+  /// Submits the recorded commands.
   void submit();
-  /// Presents what the device has drawn, where that is presented late (DeviceProfile).
+  /// Presents a finished image, if the device presents late (DeviceProfile).
   void poll();
   /// Waits until the device is idle, then polls.
   void finish();

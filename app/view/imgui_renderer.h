@@ -19,14 +19,14 @@ class ImguiRenderer {
   ImguiRenderer(const ImguiRenderer&) = delete;
   ImguiRenderer& operator=(const ImguiRenderer&) = delete;
 
-  /// Sets the scale of all that is drawn; the device must be idle.
+  /// Sets the scale of everything that is drawn; the device must be idle.
   void set_scale(const OverlayScale& scale);
   const OverlayScale& scale() const { return scale_; }
 
-  /// Between these calls ImGui is told what to show.
+  /// Call functions of ImGui between these two.
   void begin_frame();
   void end_frame();
-  /// Records drawing what ImGui was told, within a render pass of the swapchain.
+  /// Records drawing ImGui's content within a render pass of the swapchain.
   void record(const vk::raii::CommandBuffer& commands) const;
 
   bool wants_keys() const;

@@ -9,7 +9,7 @@
 
 namespace promin::app {
 
-/// What a key does once when it is pressed.
+/// An action that a key triggers once when it is pressed.
 enum class Press {
   kHelp,
   kOverlay,
@@ -31,7 +31,7 @@ enum class Press {
   kFirstDebugView
 };
 
-/// A key, by GLFW's number, and its effect: a row of the help too.
+/// A key, by GLFW's number, and its effect; also a row of the help.
 struct KeyBinding {
   int key = 0;
   const char* name = "";
@@ -42,7 +42,7 @@ struct KeyBinding {
 
 std::span<const KeyBinding> key_bindings();
 
-/// What the pointer does: name and effect.
+/// An action of the pointer: name and effect.
 struct PointerBinding {
   const char* name = "";
   const char* effect = "";

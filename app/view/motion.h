@@ -8,21 +8,21 @@
 
 namespace promin::app {
 
-/// What the camera does while its key is down.
+/// The camera's motion while a key is down.
 enum class Hold { kAhead, kBack, kLeft, kRight, kUp, kDown, kRollLeft, kRollRight, kFast, kSlow };
 inline constexpr size_t kHoldCount = 10;
 
-/// What the keys and the pointer asked of the camera over some time.
+/// The camera motion that keys and pointer requested over some time.
 struct Motion {
-  /// Movement along the camera's right, up and look: the seconds that the keys were down, counted several times when
-  /// fast.
+  /// Movement along the camera's right, up and look, in seconds that the keys were down, multiplied by the speed key's
+  /// factor.
   dvec3 travel{0.0};
   /// Seconds of roll, anticlockwise.
   double roll = 0.0;
-  // The pointer's way, in pixels to the right and down:
+  // The pointer's movement in pixels to the right and down:
   /// while it turned the camera,
   dvec2 turn{0.0};
-  /// while it turned the scene around what the camera looks at,
+  /// while it orbited the point that the camera looks at,
   dvec2 orbit{0.0};
   /// while it moved the scene,
   dvec2 pan{0.0};
@@ -35,23 +35,23 @@ struct Motion {
   bool is_none() const { return *this == Motion(); }
 };
 
-/// Sums motion up between frames, event by event: how far the camera goes does not depend on when frames are taken.
+/// Sums motion between frames, event by event, so that the distance does not depend on the times of frames.
 class MotionSum {
  public:
-  /// Takes note that a key goes down or up at a time in seconds, which never goes back.
+  /// Records that a key goes down or up at a time in seconds, which never decreases.
   void set(Hold hold, bool is_down, double time);
   void turn(const dvec2& pixels) { sum_.turn += pixels; }
   void orbit(const dvec2& pixels) { sum_.orbit += pixels; }
   void pan(const dvec2& pixels) { sum_.pan += pixels; }
   void turn_light(double pixels) { sum_.light += pixels; }
   void zoom(double steps) { sum_.zoom += steps; }
-  /// Takes note that all keys go up, because the window has lost them.
+  /// Records that all keys go up, because the window has lost the focus.
   void release_all(double time);
 
-  /// The motion since the last call.
+  /// Returns the motion since the last call.
   Motion take(double time);
   bool is_held() const;
-  /// Whether there is any motion but that of keys that are down.
+  /// Returns whether there is any motion other than that of keys that are down.
   bool has_any() const { return !sum_.is_none(); }
 
   static constexpr double kFastFactor = 4.0;

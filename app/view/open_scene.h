@@ -17,7 +17,7 @@
 
 namespace promin::app {
 
-/// A scene as a window opens it: read, lit up, and seen from somewhere.
+/// A scene opened for a window: read, lit, and with a camera.
 struct OpenedScene {
   std::filesystem::path file;
   LoadOptions load;

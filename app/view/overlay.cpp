@@ -55,7 +55,7 @@ void show_times(const OverlayContent& content) {
   show_text("samples per pixel: {:.3g}", static_cast<double>(shown->error->samples) / shown->size.x / shown->size.y);
 }
 
-/// How good the picture is, in words.
+/// Returns a description of the picture's quality.
 std::string describe_picture(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
   if (!shown) return "making the first picture";

@@ -16,16 +16,16 @@
 
 namespace promin::app {
 
-/// What frames cost lately: each a mean in which the last tenth of a second or so weighs most.
+/// The recent cost of frames, as means in which about the last tenth of a second has the largest weight.
 class FrameStatistics {
  public:
   void add(const FinishedFrame& frame);
 
   double frame_ms() const { return frame_ms_; }
   const StageTimes& stages() const { return stages_; }
-  /// The rates of primary, shadow and reflection rays, in 1e6 a second of tracing.
+  /// Returns the rates of primary, shadow and reflection rays, in 1e6 per second of tracing.
   const dvec3& mrays_per_s() const { return mrays_per_s_; }
-  /// The part of a frame's work that is not tracing.
+  /// Returns the part of a frame's work that is not tracing.
   double overhead_ms() const { return stages_.display; }
 
  private:
@@ -35,7 +35,7 @@ class FrameStatistics {
   dvec3 mrays_per_s_{0.0};
 };
 
-/// What the user has chosen, in the overlay or otherwise.
+/// The user's choices, in the overlay or otherwise.
 struct Switches {
   SceneChoice scene;
   Surroundings surroundings;
@@ -43,7 +43,7 @@ struct Switches {
   bool has_mirrors = true;
   bool has_shadows = true;
   DebugView debug_view = DebugView::kNone;
-  /// The scene's own where the user has chosen none.
+  /// The exposure; the scene's own if the user has chosen none.
   std::optional<float> exposure_ev;
   /// The scale, as ProgressivePicture::fix_scale takes it.
   std::optional<double> scale;
@@ -52,7 +52,7 @@ struct Switches {
   uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
 };
 
-/// A path that the user types where the desktop has no dialog.
+/// A path that the user types if the desktop has no dialog.
 struct PathEntry {
   FileUse use = FileUse::kOpen;
   std::array<char, 4096> text{};
@@ -60,7 +60,7 @@ struct PathEntry {
   bool is_new = true;
 };
 
-/// What else the overlay shows.
+/// Further content of the overlay.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
   /// Null before the first.
@@ -69,17 +69,17 @@ struct OverlayContent {
   const Scene* scene = nullptr;
   std::string device;
   double speed = 0.0;
-  /// That of the scene.
+  /// Exposure of the scene.
   float exposure_ev = 0.0F;
   /// The colour of its background, sRGB.
   vec3 background{0.0F};
-  /// The work that goes on beside the picture; empty where there is none.
+  /// The work in progress beside the picture; empty if there is none.
   std::string awaited;
-  /// What happened last; a failure is highlighted.
+  /// The last message; failures are highlighted.
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
-  /// Null where none is typed.
+  /// Null if no path is being typed.
   PathEntry* entry = nullptr;
 };
 
@@ -89,15 +89,15 @@ float overlay_margin();
 /// Makes ImGui's fonts and sizes anew; not within a frame.
 void scale_overlay(const OverlayScale& scale);
 
-/// What the user did in the overlay beside the switches.
+/// The user's actions in the overlay other than switches.
 struct OverlayAnswer {
   /// The camera that was picked from the lists.
   std::optional<Camera> camera;
   /// The speed to fly with.
   std::optional<double> speed;
-  /// What a file is asked for.
+  /// The purpose of a requested file.
   std::optional<FileUse> asked;
-  /// Whether the path is typed.
+  /// Whether the typed path is complete.
   bool has_typed = false;
   /// Whether the user types none after all.
   bool gives_up = false;

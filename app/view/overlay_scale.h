@@ -4,7 +4,7 @@
 
 namespace promin::app {
 
-/// The size of the overlay on a display of many pixels an inch.
+/// The scale of the overlay on a display of high resolution.
 struct OverlayScale {
   /// The number of pixels that correspond to one pixel of an ordinary display.
   double content = 1.0;

@@ -24,27 +24,27 @@ struct ExplainedPixel {
   ScreenCover cover;
 };
 
-/// Traces single pixels of a shown scene beside its picture, each question on a thread of its own.
+/// Traces single pixels of a shown scene beside its picture, each query on a separate thread.
 class PixelQuery {
  public:
-  /// Asks what a pixel of the view is made of, traced with one sample. A question that comes before the answer to the
-  /// one before is dropped.
+  /// Requests the explanation of a pixel of the view, traced with one sample. A query that comes before the previous
+  /// one is answered is dropped.
   void ask_why(std::shared_ptr<const ShownScene> scene, const View& view, const uvec2& pixel);
-  /// Asks which point of the scene a pixel of the view shows; it is dropped in the same case.
+  /// Requests the point of the scene that a pixel of the view shows; it is dropped in the same case.
   void ask_point(std::shared_ptr<const ShownScene> scene, View view, const uvec2& pixel);
 
   bool is_busy() const { return explained_.is_busy() || point_.is_busy(); }
   bool is_looking_for_point() const { return point_.is_busy(); }
-  /// The answers, once they are there. They throw RunError.
+  /// Return the answers when they are ready. They throw RunError.
   std::optional<ExplainedPixel> take_explained() { return explained_.take(); }
-  /// The point in the world; nullopt where there is nothing.
+  /// Returns the point in the world; the inner optional is empty on a miss.
   std::optional<std::optional<dvec3>> take_point() { return point_.take(); }
 
-  /// Waits until no question is being answered.
+  /// Waits until no query is running.
   void wait() const;
 
  private:
-  /// Where questions about a scene are answered, made when the first is asked.
+  /// The device and scene for queries, created at the first one.
   struct Place {
     std::mutex one_at_a_time;
     SceneOn apart;

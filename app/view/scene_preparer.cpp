@@ -29,7 +29,7 @@ std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scen
   return lights;
 }
 
-/// Leaves out what takes long to compile, and of what is seen as little as may be.
+/// Leaves out features that compile slowly, with as little visible effect as possible.
 FeatureMask without_slow_parts(FeatureMask features) {
   return features.without(layout::FEATURE_SHADOWS)
       .without(layout::FEATURE_MIRRORS)
@@ -44,7 +44,7 @@ std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device) {
 }
 
 bool sets_apart(const gpu::Device& device) {
-  // What presents late has one queue for all that it does, compiling too.
+  // Devices that present late have one queue for everything, including compiling.
   return device.profile().presents_late;
 }
 
@@ -97,7 +97,7 @@ void ShownScene::put() const {
 }
 
 SceneOn ShownScene::set_apart() const {
-  // A few copies of it are no matter for the memory.
+  // A few copies of it need little memory.
   constexpr uint64_t kMostBytes = 256U << 20;
   if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
   SceneOn apart{open_same_device(*first.device), nullptr};
@@ -154,7 +154,7 @@ bool ScenePreparer::update(const std::shared_ptr<ShownScene>& shown, const Pictu
 }
 
 std::optional<ReadyPicture> ScenePreparer::take() {
-  // Only reading tells of files; other work leaves the watched files as they are.
+  // Only reading returns files; other work does not change the watched files.
   if (is_ready() && !sources_.empty()) watch_.follow(std::exchange(sources_, {}));
   return work_.take();
 }
@@ -280,7 +280,7 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, 
     }
     if (request.is_draft) features = without_slow_parts(features);
     FilmOptions film_options;
-    // A draft gives way too soon for more to repay compiling.
+    // A draft is replaced too soon for longer compilation to pay.
     if (request.is_draft) film_options.expected_samples = 0;
     const bool is_light = request.mode.debug_view == DebugView::kNone;
     picture = std::make_unique<TracedPicture>(

@@ -22,17 +22,17 @@ namespace promin::app {
 gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
                                   const gpu::Buffer& exposure, const DisplayTransform& display, bool has_unlit);
 
-/// A picture as the window shows it: a word for each pixel, sRGB in 8 bits.
+/// A picture for the window: a word for each pixel, 8-bit sRGB.
 struct EncodedPicture {
   std::span<const uint32_t> words;
   uvec2 size{0};
 };
 
-/// The picture of a view, traced on its device frame by frame and encoded for the window. Nothing waits for the device,
-/// but where it says so.
+/// The picture of a view, traced on its device frame by frame and encoded for the window. No function waits for the
+/// device unless stated.
 class TracedPicture {
  public:
-  /// `set_apart` and `options` as ProgressivePicture takes them. Throws vk::SystemError and RunError.
+  /// `set_apart` and `options` are as for ProgressivePicture. Throws vk::SystemError and RunError.
   TracedPicture(SceneOn scene, FeatureMask features, double budget_ms, const DisplayTransform& display,
                 std::function<SceneOn()> set_apart, const FilmOptions& options);
   /// Waits for the device.
@@ -43,37 +43,37 @@ class TracedPicture {
   ProgressivePicture& picture() { return picture_; }
   const ProgressivePicture& picture() const { return picture_; }
   const SceneOn& scene() const { return scene_; }
-  /// How it is shown; only the exposure may change.
+  /// Returns the display transform; only its exposure may change.
   const DisplayTransform& display() const { return display_; }
   void expose(float exposure_ev);
 
   /// Makes room for a window; must be idle.
   void resize(const uvec2& size);
   const uvec2& size() const { return size_; }
-  /// Compiles what it needs at first, and waits; resize() comes before.
+  /// Compiles the first kernels, and waits; call resize() before.
   void warm_up();
 
-  /// Whether no frame may begin: one of the picture's device is under way.
+  /// Returns whether a frame is running on the picture's device, so that no other may begin.
   bool is_tracing() const { return work_.is_busy(); }
-  /// Whether a frame is under way.
+  /// Returns whether a frame is running.
   bool is_busy() const { return work_.is_busy() || (refining_ && refining_->is_busy()); }
-  /// Whether it may be destroyed without waiting.
+  /// Returns whether it may be destroyed without waiting.
   bool is_idle() const { return !is_busy() && !picture_.is_busy_beside(); }
-  /// Whether there is anything to trace or to encode now.
+  /// Returns whether there is anything to trace or to encode now.
   bool has_work() const;
 
-  /// Begins a frame, where there is room for it: traces, encodes what is complete, then calls `record_more`, if there
-  /// is one, with the commands.
+  /// Begins a frame if possible: traces, encodes a complete picture, then calls `record_more`, if given, with the
+  /// commands.
   void begin_frame(bool is_of_flight, double time_s,
                    const std::function<void(const vk::raii::CommandBuffer&)>& record_more = {});
-  /// Says that a frame is wanted: its time counts from here on.
+  /// Requests a frame; its time counts from here on.
   void ask(double time_s);
-  /// The next frame that is finished. The caller passes it to learn().
+  /// Returns the next finished frame, which the caller must pass to learn().
   std::optional<FinishedFrame> poll(double time_s);
-  /// Learns from its time. Throws RunError where the driver cut loops.
+  /// Adjusts the next budget by its time. Throws RunError if the driver has cut loops.
   void learn(const FinishedFrame& frame);
 
-  /// What has been encoded since the last call, if anything; valid until the next frame begins.
+  /// Returns the picture encoded since the last call, if any; valid until the next frame begins.
   std::optional<EncodedPicture> take_encoded();
 
  private:
@@ -89,7 +89,7 @@ class TracedPicture {
   gpu::Buffer exposure_;
   gpu::Buffer counters_;
   std::optional<gpu::Buffer> encoded_;
-  /// Where the host reads it.
+  /// The buffer from which the host reads it.
   std::optional<gpu::Buffer> words_;
   std::array<std::optional<gpu::ComputePipeline>, kFilmCount> encoders_;
   /// The value of ProgressivePicture::shown_count when a picture was encoded last, and the exposure then.

@@ -23,7 +23,7 @@
 namespace promin::app {
 namespace {
 
-/// Drivers of GPUs kill what takes seconds.
+/// GPU drivers kill work that takes seconds.
 constexpr double kMinTargetMs = 1.0;
 constexpr double kMaxTargetMs = 1000.0;
 constexpr double kMinScale = 0.01;
@@ -116,7 +116,8 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   return opened;
 }
 
-/// The options for another file than that of the command line: what names parts of that one does not count.
+/// Returns the options for another file than that of the command line: options that name parts of that file are
+/// dropped.
 WindowOptions options_for(WindowOptions options, const std::filesystem::path& file) {
   if (file == options.tracing.scene) return options;
   options.tracing.scene = file;
@@ -189,7 +190,7 @@ void view(const WindowOptions& options) {
     window = std::make_unique<Window>(first_size(options.view), title_of(start.file));
     device = open_device(*window, options.tracing.device);
   } catch (const Error&) {
-    // What is wrong with the scene comes first.
+    // Problems of the scene are reported first.
     opening.wait();
     static_cast<void>(opening.take());
     throw;
@@ -198,7 +199,7 @@ void view(const WindowOptions& options) {
   gpu::translate_vulkan_errors([&] {
     Viewer viewer(*window, device, console, std::move(start), std::move(opening));
     viewer.run();
-    // A driver does not give up what it compiles; nobody waits for that. On a machine that is busy its threads of low
+    // A driver cannot cancel a compilation, and nobody waits for it. On a machine that is busy its threads of low
     // priority take a while to end, and the process with them.
     if (viewer.is_busy()) {
       window->hide();

@@ -26,10 +26,10 @@ constexpr double kShortWait = 1e-3;
 constexpr double kLongWait = 0.1;
 /// The least time in seconds from one drawing of the window to the next.
 constexpr double kDrawInterval = 1.0 / 75.0;
-/// The least part of a frame's target time that is spent on tracing.
+/// The smallest part of a frame's target time for tracing.
 constexpr double kLeastTraceShare = 0.5;
 
-/// A drag over the window's height turns the light by half a turn. Steps are such that a command names them shortly.
+/// A drag over the window's height rotates the light by half a turn. The step size keeps the numbers in commands short.
 void turn_light(Surroundings& surroundings, double pixels, double window_height) {
   constexpr double kStepsOfDegree = 8.0;
   const double turned = surroundings.light_rotation_deg + 180.0 / window_height * pixels;
@@ -78,7 +78,7 @@ Viewer::~Viewer() {
   try {
     device_->wait_idle();
   } catch (const vk::SystemError&) {
-    // A lost device: what threw before says so.
+    // The device was lost; an earlier exception has reported it.
   }
 }
 
@@ -87,7 +87,7 @@ void Viewer::run() {
   try {
     show_frames(signals);
   } catch (...) {
-    // The flight up to here is whole, whatever happened to the device.
+    // The recorded flight up to here is complete, whatever happened to the device.
     if (start_.record) write_camera_path(*start_.record, recorder_.path());
     throw;
   }
@@ -177,7 +177,8 @@ void Viewer::show_scene(OpenedScene opened) {
 }
 
 PictureRequest Viewer::request() const {
-  // What is to be shown as it is from the start is not begun with a draft. Nothing else is compiled before it is seen.
+  // A picture that must be shown in full from the start is not begun with a draft. Nothing else is compiled before it
+  // is shown.
   const bool has_draft = asked_mode().debug_view == DebugView::kNone && !opened_.replay && !start_.record;
   const bool needs_draft = !traced_ || (is_draft_ && !traced_->picture().shown());
   return {switches_.scene, switches_.surroundings, asked_mode(), glm::max(swapchain_.size(), uvec2(1)),
@@ -242,7 +243,7 @@ void Viewer::dispose() {
 void Viewer::update_picture() {
   dispose();
   if (!preparer_) return;
-  // A question uses the lights that would change. So does what is compiled where the scene is not set apart.
+  // A pixel query uses the lights that would change. So does compilation if the scene is not set apart.
   const bool is_free = !traced_ || !traced_->picture().is_compiling() || sets_apart(*device_);
   if (preparer_->is_ready() && !query_.is_busy() && !on_copied_ && is_free) {
     try {
@@ -253,7 +254,7 @@ void Viewer::update_picture() {
       report_failure(error.what());
     }
   }
-  // What is compiled may be tried on the devices where surroundings are put.
+  // Compilation may run on the devices to which the environment is copied.
   if (traced_ && !putting_.is_busy() && preparer_->update(scene_, request(), Window::now())) draw_again();
 }
 
@@ -369,7 +370,7 @@ void Viewer::trace() {
   for (const std::unique_ptr<TracedPicture>& retired : retired_) static_cast<void>(retired->poll(Window::now()));
   if (!traced_) return;
   while (const std::optional<FinishedFrame> finished = traced_->poll(Window::now())) take_finished(*finished);
-  // What is encoded is taken over before the next frame encodes again.
+  // The encoded picture is taken before the next frame encodes again.
   if (!frames_.is_idle()) return;
   if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
     display_.take(*encoded);
@@ -489,7 +490,7 @@ void Viewer::build_overlay() {
     content.bookmarks = bookmarks_;
     content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
-    // The panel has the height of its text a frame later.
+    // The panel gets the height of its text only in the next frame.
     if (std::exchange(overlay_height_, answer.height) != answer.height) frames_to_draw_ = std::max(frames_to_draw_, 1);
     panel = answer.area;
     if (answer.asked) ask_for_file(*answer.asked);

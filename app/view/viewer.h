@@ -29,7 +29,7 @@
 
 namespace promin::app {
 
-/// The title of a window that shows a file.
+/// Returns the title of a window that shows a file.
 std::string title_of(const std::filesystem::path& file);
 
 /// The options that a viewer starts with.
@@ -41,12 +41,12 @@ struct ViewerStart {
   /// The direction that is up in the scene.
   vec3 up{0.0F, 1.0F, 0.0F};
   EnvironmentOptions environment;
-  /// Of pictures at rest that show light; what hangs on how they are shown follows from the scene.
+  /// The error target of pictures at rest that show light; members that depend on the display follow from the scene.
   ErrorTarget error_target;
   std::optional<std::string> present_mode;
-  /// None: the display's refresh interval where the device keeps up with it, else kCpuTargetMs.
+  /// If empty, the display's refresh interval if the device keeps up with it, else kCpuTargetMs.
   std::optional<double> target_ms;
-  /// The scale, as ProgressivePicture::fix_scale takes it.
+  /// The scale, as for ProgressivePicture::fix_scale.
   std::optional<double> scale;
   /// Whether the window stays open after a replay.
   bool stays_open = false;
@@ -56,9 +56,9 @@ struct ViewerStart {
   static constexpr double kCpuTargetMs = 100.0;
 };
 
-/// The window's program: it takes input, lets pictures be made and shows them, until the user quits. Nothing that may
-/// take long is done on its thread: scenes are read, trees built and kernels compiled beside it, and pictures are
-/// traced on other devices than the one that draws.
+/// The main loop of the window: it handles input, requests pictures and shows them until the user quits. Long work
+/// never runs on its thread: other threads read scenes, build trees and compile kernels, and pictures are traced on
+/// other devices than the one that draws.
 class Viewer {
  public:
   /// `device` draws to the window; `opening` opens the scene. Throws RunError, vk::SystemError.
@@ -66,10 +66,11 @@ class Viewer {
          Background<OpenedScene> opening);
   ~Viewer();
 
-  /// SIGINT, SIGTERM and SIGHUP end it as the user does, and the program when what was recorded is written. Throws
-  /// InputError where the scene is not one, RunError where the flight cannot be written, vk::SystemError.
+  /// Runs until the user quits. SIGINT, SIGTERM and SIGHUP end it in the same way, and the program ends after the
+  /// recorded flight is written. Throws InputError if the scene is not valid, RunError if the flight cannot be written,
+  /// and vk::SystemError.
   void run();
-  /// Whether there is work that the destructor would wait for.
+  /// Returns whether there is work that the destructor would wait for.
   bool is_busy() const;
   const RunStats& stats() const { return opened_.stats; }
 
@@ -79,81 +80,81 @@ class Viewer {
   void handle_press(Press press);
   void handle_clicks();
   void print_command();
-  /// The pixel of the full picture at a place of the window, in its pixels.
+  /// Returns the pixel of the full picture at a position in the window's pixels.
   uvec2 pixel_at(const dvec2& place) const;
-  /// Looks at what a pixel shows, and orbits it, once it is known.
+  /// Turns to the point that a pixel shows, and orbits it, when it is known.
   void look_at(const View& view, const uvec2& pixel);
   /// Opens another scene.
   void open(const std::filesystem::path& file);
-  /// Asks the user for a file, by a dialog of the desktop or in the panel.
+  /// Requests a file from the user, by a dialog of the desktop or in the panel.
   void ask_for_file(FileUse use);
   void take_file(FileUse use, const std::filesystem::path& file);
   /// Writes the picture to a file as soon as it is complete.
   void save(std::filesystem::path file);
-  /// Frames the scene as it is seen now, or from a side.
+  /// Frames the scene in the current direction, or from a side.
   void frame_from(std::optional<Framing> from);
-  /// Goes to another of the scene's cameras, so many further.
+  /// Moves to another of the scene's cameras, this number of steps further.
   void show_camera(int step);
   void move_camera(bool is_of_flight);
-  /// Keeps all cameras where they are in the world, when a scene has another center.
+  /// Keeps the world positions of all cameras when a scene has another center.
   void move_cameras(const dvec3& offset);
-  /// Adds the camera to the flight that is recorded, if one is.
+  /// Adds the camera to the flight being recorded, if any.
   void keep_camera();
   bool is_replaying() const { return replay_ && has_replay_started_; }
-  /// Whether the next picture of a replay is due.
+  /// Returns whether the next picture of a replay is due.
   bool is_picture_due() const;
-  /// Begins the replay when its first camera is shown, and ends it.
+  /// Starts the replay when its first camera is shown, and ends it.
   void update_replay();
-  /// Reports what has become of screenshots.
+  /// Reports finished and failed screenshots.
   void update_screenshot();
-  /// Takes over a scene that has been opened.
+  /// Switches to a scene that has been opened.
   void update_opening();
   void show_scene(OpenedScene opened);
-  /// Destroys pictures that are no longer needed, which may take a while.
+  /// Destroys pictures that are no longer needed, which may take some time.
   void dispose();
-  /// Brings the surroundings that the user has changed to the devices, while nothing is traced there.
+  /// Copies a changed environment to the devices, while nothing is traced there.
   void update_surroundings();
-  /// Whether that is to be done, and the devices do nothing that may take long.
+  /// Returns whether this is needed and the devices are not busy with long work.
   bool may_put_surroundings() const;
-  /// Takes over a picture that is ready, and asks for those that changed switches and files need.
+  /// Switches to a picture that is ready, and requests pictures for changed switches and files.
   void update_picture();
   void show_picture(ReadyPicture ready);
-  /// Reports the answers to questions about pixels.
+  /// Reports the answers to pixel queries.
   void update_answers();
   RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
   PictureRequest request() const;
-  /// Whether a picture in another mode than the one shown is being made.
+  /// Returns whether a picture in another mode than the one shown is being made.
   bool awaits_mode() const;
-  /// The work that goes on beside the picture, in words.
+  /// Returns a description of the work in progress beside the picture.
   std::string describe_awaited() const;
-  /// Fits everything to the window. False while it has no pixels.
+  /// Adapts everything to the window's size. Returns false while it has no pixels.
   bool fit_window();
-  /// Takes finished frames, and begins the next.
+  /// Handles finished frames, and begins the next.
   void trace();
   void take_finished(const FinishedFrame& finished);
-  /// Says when a better kind of picture is shown first, if verbose.
+  /// Logs the first time that a better kind of picture is shown, if verbose.
   void log_shown();
   bool has_tracing() const;
   void begin_frame();
   void record_screenshot(const vk::raii::CommandBuffer& commands);
-  /// Draws the window, where there is something new.
+  /// Draws the window if there is something new.
   void draw();
   void build_overlay();
-  /// Shows what has changed beside the picture.
+  /// Requests drawing after a change other than the picture.
   void draw_again() { frames_to_draw_ = kSettlingFrames; }
   bool is_at_rest() const;
   void report(const std::string& text);
   void report_failure(const std::string& text);
-  /// What describe_command needs for the command that gives a view's picture.
+  /// Returns the data from which describe_command makes the command for a view's picture.
   DescribedScene described_scene(const View& view) const;
-  /// How the picture's light is shown.
+  /// Returns the picture's display transform.
   DisplayTransform display() const;
   View current_view() const;
   View view_of_middle() const;
-  /// The view that is shown, with its samples, where it is complete; else the current one.
+  /// Returns the shown view with its samples, if complete; else the current one.
   View reproducible_view() const;
 
-  /// The kinds of pictures that come one after the other.
+  /// The successive kinds of pictures.
   enum class Shown { kNothing, kDraft, kWhole, kRefined };
 
   /// ImGui settles its windows within this many frames.
@@ -171,22 +172,22 @@ class Viewer {
   /// The file of the scene that is being opened, or is open.
   std::filesystem::path file_;
   Background<OpenedScene> opening_;
-  /// Without a scene before the first is open.
+  /// Has no scene before the first is open.
   OpenedScene opened_;
   std::unique_ptr<ScenePreparer> preparer_;
   std::shared_ptr<ShownScene> scene_;
   /// The mode of the picture.
   RenderMode mode_;
   bool is_draft_ = false;
-  /// None before the first; those before it end beside it.
+  /// Null before the first picture; older ones are destroyed in parallel.
   std::unique_ptr<TracedPicture> traced_;
   std::vector<std::unique_ptr<TracedPicture>> retired_;
   std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
-  /// True once the surroundings are on the devices.
+  /// Returns true when the environment is on the devices.
   Background<bool> putting_;
-  /// Whether an orbit begins when its center is found.
+  /// Whether to start an orbit when its center is found.
   bool wants_orbit_ = false;
   /// Whether it is that of the picture, for which the middle of the scene stands in.
   bool is_of_middle_ = false;
@@ -206,15 +207,15 @@ class Viewer {
   FrameQueue frames_;
   Screenshot screenshot_;
   bool wants_screenshot_ = false;
-  /// Where the picture is to be saved; none for a screenshot.
+  /// The file in which to save the picture; empty for a screenshot.
   std::optional<std::filesystem::path> saved_file_;
-  /// The command that gives the picture which is being saved; empty where no command gives it.
+  /// The command that gives the picture being saved; empty if there is none.
   std::string saved_command_;
   FileDialog dialog_;
   std::optional<PathEntry> path_entry_;
-  /// Whether the command is printed as soon as there is a picture.
+  /// Whether to print the command as soon as there is a picture.
   bool wants_command_ = false;
-  /// Is called when the frame that copies a screenshot is finished.
+  /// Called when the frame that copies a screenshot is finished.
   std::function<void(const FinishedFrame&)> on_copied_;
 
   FrameStatistics statistics_;
@@ -227,7 +228,7 @@ class Viewer {
   bool has_overlay_ = true;
   bool has_help_ = false;
   bool is_quitting_ = false;
-  /// The number of frames to draw, because there is a new picture or the overlay answers to events.
+  /// The number of frames still to draw, because of a new picture or events in the overlay.
   int frames_to_draw_ = kSettlingFrames;
   float overlay_height_ = 0.0F;
   double next_draw_s_ = 0.0;

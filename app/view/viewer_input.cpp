@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// What the user does, apart from flying.
+// The user's input to the viewer, except for flying.
 
 #include <fmt/format.h>
 

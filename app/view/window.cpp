@@ -20,7 +20,7 @@ namespace {
 
 /// A click that wanders further, in screen coordinates, is a drag.
 constexpr double kClickSlack = 3.0;
-/// The second of two clicks comes within so many seconds.
+/// The longest time between two clicks of a double click, in seconds.
 constexpr double kDoubleClickTime = 0.3;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -50,7 +50,7 @@ GLFWmonitor* find_monitor(GLFWwindow* window) {
   return areas.empty() ? nullptr : monitors[find_display(areas, place)];
 }
 
-/// The seconds that this thread has had a processor.
+/// Returns the CPU seconds of this thread.
 double work_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -58,8 +58,7 @@ double work_seconds() {
 }
 
 #ifdef GLFW_PLATFORM
-/// Whether the environment says where a Wayland compositor could be found. libwayland prints a line of its own where it
-/// does not.
+/// Returns whether environment variables name a Wayland compositor. If they do not, libwayland would print a message.
 bool could_have_wayland() {
   const auto is_path = [](const char* name) {
     const char* value = std::getenv(name);
@@ -276,7 +275,7 @@ void Window::on_button(int button, int action, int modifiers) {
     went_down_[number] = went_down_[number] || is_down;
   }
   if (is_down && wants_pointer_ && !is_captured_) return;
-  // A captured pointer is nowhere in the window.
+  // A captured pointer has no position in the window.
   if (is_captured_) {
     if (is_down && button == GLFW_MOUSE_BUTTON_RIGHT) capture_pointer(false);
     return;

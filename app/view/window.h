@@ -16,76 +16,76 @@ struct GLFWwindow;
 
 namespace promin::app {
 
-/// A window of the desktop and what its user does with keys and pointer. One at a time, on the main thread.
+/// A window of the desktop and its keyboard and pointer input. Only one may exist, on the main thread.
 class Window {
  public:
-  /// `size` is in screen coordinates. Throws DeviceError where there is no display.
+  /// `size` is in screen coordinates. Throws DeviceError if there is no display.
   Window(const uvec2& size, const std::string& title);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// The surface that a device needs to present here; valid as long as the window.
+  /// Returns the surface that a device needs to present here; valid as long as the window.
   gpu::Presentation presentation() const;
   GLFWwindow* handle() const { return window_; }
 
-  /// The size in pixels; 0 while minimised.
+  /// Returns the size in pixels; 0 while minimised.
   uvec2 framebuffer_size() const { return is_minimised_ ? uvec2(0) : framebuffer_size_; }
-  /// The number of pixels of the framebuffer in a unit of screen coordinates.
+  /// Returns the number of pixels of the framebuffer per unit of screen coordinates.
   double pixel_ratio() const { return overlay_scale_.pixel_ratio; }
-  /// The scale that the overlay is to have.
+  /// Returns the scale for the overlay.
   const OverlayScale& overlay_scale() const { return overlay_scale_; }
-  /// The refresh interval of the display that most of the window is on, in milliseconds.
+  /// Returns the refresh interval, in milliseconds, of the display that shows most of the window.
   double refresh_interval_ms() const;
   /// The time in seconds, by a clock of the window.
   static double now();
 
-  /// Takes events in, and waits until one comes, for at most so many seconds.
+  /// Handles events, and waits for one for at most this number of seconds.
   void wait(double seconds);
-  /// The longest time from one wait() to the next, in milliseconds: no event has waited longer.
+  /// Returns the longest time from one wait() to the next, in milliseconds; no event has waited longer.
   double longest_turn_ms() const { return 1e3 * longest_turn_s_; }
-  /// The most time of a processor that was taken from one wait() to the next, in milliseconds: what the longest turn
-  /// would be on a machine that does nothing else.
+  /// Returns the largest CPU time from one wait() to the next, in milliseconds: the longest turn on an otherwise idle
+  /// machine.
   double longest_work_ms() const { return 1e3 * longest_work_s_; }
-  /// How many times keys have gone down.
+  /// Returns the number of key presses.
   uint64_t key_count() const { return key_count_; }
 
   bool should_close() const;
   /// Whether the window was asked to close, or the key to quit is among the presses that are to be taken.
   bool wants_to_close() const;
   void set_title(const std::string& title);
-  /// Makes it as large, in screen coordinates, where the user has left it as it was made.
+  /// Sets the size in screen coordinates, unless the user has changed it.
   void resize(const uvec2& size);
   void toggle_fullscreen();
   bool is_fullscreen() const;
   /// Puts a text on the clipboard.
   void copy(const std::string& text) const;
-  /// Takes it off the display at once.
+  /// Hides the window immediately.
   void hide();
 
-  // These return what happened since they were last called.
+  // These return the events since their last call.
   Motion take_motion() { return motion_.take(now()); }
   std::vector<Press> take_presses();
-  /// Places where the pointer was clicked once without being dragged, in pixels; a while after, as a second click might
+  /// Returns positions of single clicks without dragging, in pixels, after a delay in which a second click could
   /// follow.
   std::vector<dvec2> take_clicks();
-  /// Where it was clicked twice.
+  /// Returns positions of double clicks.
   std::vector<dvec2> take_double_clicks() { return std::exchange(double_clicks_, {}); }
-  /// Files that were dropped.
+  /// Returns files that were dropped.
   std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
-  /// Whether the window may be on another display; at first it may.
+  /// Returns whether the window may have moved to another display; true at first.
   bool take_change_of_place() { return std::exchange(may_have_moved_, false); }
-  /// Whether anything happened at all.
+  /// Returns whether anything happened.
   bool take_activity();
 
-  /// Whether a key is down that moves the camera.
+  /// Returns whether a key that moves the camera is down.
   bool is_moving() const { return motion_.is_held(); }
-  /// Whether the pointer has moved the camera since the last take_motion().
+  /// Returns whether the pointer has moved the camera since the last take_motion().
   bool has_turned() const { return motion_.has_any(); }
 
-  /// Where the pointer is, in screen coordinates; nowhere while it turns the camera without a button.
+  /// Returns the pointer's position in screen coordinates; empty while it turns the camera without a button.
   std::optional<dvec2> pointer() const { return is_captured_ ? std::nullopt : std::optional(pointer_); }
-  /// Which of its first buttons are down, or went down since the last call.
+  /// The state of the first buttons: whether each is down or went down since the last call.
   using Buttons = std::array<bool, 3>;
   Buttons take_buttons();
 
@@ -101,7 +101,7 @@ class Window {
   void on_click();
   void on_pointer(const dvec2& place);
   void change_place();
-  /// Asks the display, which takes a while, for what changes with the place.
+  /// Queries the display for values that depend on the window's position, which takes some time.
   void ask_display();
   void release();
   void capture_pointer(bool is_captured);
@@ -128,10 +128,10 @@ class Window {
   uint64_t key_count_ = 0;
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
-  /// What the pointer does while a button is down.
+  /// The effect of the pointer while a button is down.
   enum class Drag { kNone, kOrbit, kPan, kLight };
   Drag drag_ = Drag::kNone;
-  /// Whether the pointer has not wandered since the button went down.
+  /// Whether the pointer has not moved since the button went down.
   bool is_click_ = false;
   /// Whether the overlay has had a frame since a button went down.
   bool is_press_judged_ = true;
@@ -140,7 +140,7 @@ class Window {
   Buttons buttons_{};
   Buttons went_down_{};
   dvec2 drag_start_{0.0};
-  /// Place and size before full screen, in screen coordinates.
+  /// Position and size before full screen, in screen coordinates.
   int windowed_[4] = {0, 0, 0, 0};
 };
 

@@ -60,9 +60,9 @@ std::pair<LaneBox, LaneBox> Bins::boxes_of(const Split& split, const BinGrid& gr
 }
 
 Split find_best_split(const BinGrid& grid, const Bins& bins) {
-  // First the cost of everything from bin b on, then that of everything below b: these are both sides of the plane
-  // below b. A side without records has the cost infinity times 0, a NaN, which is not less than anything. A branch
-  // instead would often be mispredicted.
+  // First computes the cost of everything from bin b on, then that of everything below b: the two sides of the plane
+  // below b. A side without records has the cost infinity times 0, a NaN, which compares less than nothing. A branch
+  // would often be mispredicted.
   double costs_above[BinGrid::kMaxBins][3];
   LaneBox boxes[3];
   uint32_t counts[3] = {};
@@ -92,7 +92,7 @@ Split find_best_split(const BinGrid& grid, const Bins& bins) {
 }
 
 Split find_best_split(const BinGrid& grid, const Record& a, const Record& b) {
-  // Wherever their centres differ, one record is in the first bin and the other in the last.
+  // If their centres differ, one record is in the first bin and the other in the last.
   for (int axis = 0; axis < 3; ++axis) {
     if (grid.is_divided(axis)) return {axis, 1, LaneBox{a.lo, a.hi}.half_area() + LaneBox{b.lo, b.hi}.half_area()};
   }

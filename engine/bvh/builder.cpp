@@ -51,7 +51,7 @@ Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOpti
 BvhStats measure_bvh(std::string_view builder, const Bvh& bvh) {
   BvhStats stats{.builder = std::string(builder), .nodes = bvh.nodes.size()};
   if (bvh.nodes.empty()) return stats;
-  // A root without area (points, a line) is met exactly where all of its nodes are.
+  // A ray that hits a root without area (points, a line) hits all of its nodes.
   const double root_area = bvh.nodes.front().bounds.half_area();
   std::vector<uint32_t> depths(bvh.nodes.size(), 1);
   for (size_t i = 0; i < bvh.nodes.size(); ++i) {

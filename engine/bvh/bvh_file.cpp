@@ -26,7 +26,7 @@ using layout::Node;
 
 static_assert(std::endian::native == std::endian::little, "the file is little-endian and used as it lies in memory");
 
-// The magic number has a byte beyond ASCII and both line ends, so that a transfer in text mode shows here.
+// The magic number has a byte beyond ASCII and both line ends, so that a transfer in text mode is detected.
 constexpr std::array<char, 8> kMagic = {'\x89', 'P', 'B', 'V', 'H', '\r', '\n', '\x1A'};
 constexpr uint32_t kByteOrder = 0x01020304;
 constexpr uint32_t kVersion = 1;
@@ -60,9 +60,9 @@ static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && st
 /// The traversal stack of a tree of kMaxBvhDepth cannot need more: an entry for each node above the deepest.
 constexpr uint32_t kMaxStackSize = kMaxBvhDepth - 1;
 
-/// The number of kinds that the first files knew: triangles, spheres, cylinders and cones. Their numbers are in the
-/// hash of every file, whatever it holds. Those of further kinds are in it only where the tree holds them, so that a
-/// new kind leaves older files valid.
+/// The number of kinds in the first version of the format: triangles, spheres, cylinders and cones. The hash of every
+/// file includes their numbers. It includes those of further kinds only if the tree contains them, so that a new kind
+/// does not invalidate older files.
 constexpr uint32_t kFirstKinds = 4;
 
 /// The kinds of primitive that lie in trees, as bits 1 << KIND_*.
@@ -73,8 +73,8 @@ constexpr uint32_t kTreeKinds = 0
 constexpr uint32_t kFirstKindBits = (1U << kFirstKinds) - 1;
 static_assert((kTreeKinds & kFirstKindBits) == kFirstKindBits);
 
-/// A hash of what pack_tree makes of a small tree, and of the kinds that the tree holds. It changes with the meaning of
-/// a node's bits and with the number of entries that the stack takes.
+/// A hash of the result of pack_tree for a small tree, and of the tree's kinds. It changes with the meaning of a node's
+/// bits and with the number of stack entries.
 uint64_t hash_layout(uint32_t further_kinds) {
   Bvh probe;
   // Five leaves are one more than a node holds, so there are inner, leaf and absent children.
@@ -142,7 +142,7 @@ std::string read_builder(const Header& header, const fs::path& file) {
   return {header.builder.begin(), end};
 }
 
-/// Walks a tree from untrusted hands once, in the order of the nodes.
+/// Checks an untrusted tree in one pass, in the order of the nodes.
 class TreeCheck {
  public:
   TreeCheck(const TreeView& tree, const fs::path& file)
@@ -274,7 +274,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
                  .max_leaf_size = header.max_leaf_size,
                  .sah_cost = header.sah_cost,
                  .bytes = node_bytes};
-  // This is checked before memory is taken for the counts.
+  // This is checked before memory is allocated for the counts.
   if (header.primitive_count > header.reference_count)
     refuse(file, "the BVH file has fewer references than primitives");
   TreeCheck(tree_, file).run();

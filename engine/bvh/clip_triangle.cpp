@@ -42,8 +42,8 @@ Bounds clip_triangle(const std::array<vec3, 3>& corners, const Bounds& window) {
     whole.extend(corner);
     polygon.add(dvec3(corner));
   }
-  // Clipping at six planes moves corners by less than 2^-46 of the size. Planes that lie farther out by more keep what
-  // such a move would lose where a side runs almost in the plane.
+  // Clipping at six planes moves corners by less than 2^-46 of the size. The planes are moved outwards by more, so that
+  // no part is lost where a side runs almost in a plane.
   const auto size = static_cast<double>(std::max(max_abs_component(whole.lo), max_abs_component(whole.hi)));
   const double margin = 0x1p-44 * size;
   for (int axis = 0; axis < 3; ++axis) {

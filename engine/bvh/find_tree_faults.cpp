@@ -30,7 +30,7 @@ bool is_beyond(double coordinate, double plane, Side side) {
 
 // This is separate from bvh/clip_triangle on purpose: the code that cuts for builders must not check itself.
 
-/// Something cut at a plane; either part may be missing.
+/// The two parts of a polygon that is cut at a plane; either may be missing.
 template <typename Piece>
 struct Cut {
   std::optional<Piece> beyond;
@@ -73,7 +73,7 @@ Cut<ExactBounds> cut_at(const ExactBounds& box, int axis, double plane, Side sid
   return cut;
 }
 
-/// Collects what is left of `piece` outside of `box`.
+/// Collects the parts of `piece` outside of `box`.
 template <typename Piece>
 void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& left) {
   const size_t first = left.size();
@@ -117,7 +117,7 @@ constexpr ExactBounds kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
 /// The intersection of both boxes.
 ExactBounds intersect(const ExactBounds& a, const ExactBounds& b) {
   const ExactBounds both{glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
-  // Written so that a NaN holds nothing.
+  // Written so that a box with a NaN contains nothing.
   const bool is_box = glm::all(glm::lessThanEqual(b.lo, b.hi)) && glm::all(glm::lessThanEqual(both.lo, both.hi));
   return is_box ? both : kNothing;
 }

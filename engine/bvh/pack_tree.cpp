@@ -25,9 +25,10 @@ struct Children {
   uint32_t count = 0;
 };
 
-/// Which inner nodes of the binary tree become wide ones, so that the expected cost of a ray is the least: dynamic
-/// programming over how many slots of a wide node a subtree takes (Ylitie, Karras, Laine, "Efficient Incoherent Ray
-/// Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1; the leaves stay as the builder made them).
+/// Chooses the inner nodes of the binary tree that become wide nodes, so that the expected cost of a ray is minimal:
+/// dynamic programming over the number of slots of a wide node that a subtree takes (Ylitie, Karras, Laine, "Efficient
+/// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1; the leaves stay as the
+/// builder made them).
 class Collapse {
  public:
   explicit Collapse(const Bvh& bvh) : bvh_(bvh), root_area_(bvh.nodes[0].bounds.half_area()), plans_(bvh.nodes.size()) {
@@ -92,7 +93,7 @@ class Collapse {
     // A subtree in one slot is a wide node of its own.
     result.cost[0] = static_cast<float>(kNodeCost * area) + result.cost[layout::NODE_WIDTH - 1];
     for (uint32_t slots = 2; slots < layout::NODE_WIDTH; ++slots) {
-      // At equal cost the fuller node is taken, also where all areas are 0.
+      // At equal cost the fuller node is chosen, also if all areas are 0.
       if (result.cost[slots - 2] >= result.cost[slots - 1]) continue;
       result.cost[slots - 1] = result.cost[slots - 2];
       result.first_slots[slots - 1] = 0;
@@ -113,7 +114,7 @@ class Collapse {
   }
 
   const Bvh& bvh_;
-  /// Costs are divided by this, so that they are of the size of counts, whatever the size of the scene.
+  /// Costs are divided by this, so that their magnitude is that of counts, whatever the size of the scene.
   double root_area_;
   UnsetVector<Plan> plans_;
 };
@@ -175,7 +176,7 @@ Node make_node(std::span<const Bounds> boxes) {
 struct Open {
   uint32_t source = 0;
   uint32_t target = 0;
-  /// Most families on the traversal stack when a ray leaves this node: one for each node above.
+  /// Largest number of families on the traversal stack when a ray leaves this node: one for each node above.
   uint32_t stack_entries = 0;
 };
 
@@ -236,7 +237,7 @@ PackedTree pack_tree(const Bvh& bvh) {
   tree.nodes[0] = {};
   if (bvh.nodes.empty()) return tree;
   if (bvh.nodes[0].count > 0) {
-    // A root must be an inner node, so an only leaf becomes its child.
+    // The root must be an inner node, so a single leaf becomes its child.
     tree.nodes[0] = make_node(std::array{bvh.nodes[0].bounds});
     tree.nodes[0].children.x = leaf_reference(bvh.nodes[0]);
     return tree;

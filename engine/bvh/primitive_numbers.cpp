@@ -18,7 +18,8 @@ const PackedPart* find_part(const PrimitiveNumbers& numbers, uint32_t order) {
 }  // namespace
 
 PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order) {
-  // The last object that begins at or before the number: an object without primitives begins where the next one does.
+  // Returns the last object that begins at or before the number. An object without primitives begins at the same number
+  // as the next one.
   const auto next = std::upper_bound(numbers.first_order.begin(), numbers.first_order.end(), order);
   assert(next != numbers.first_order.begin() && next != numbers.first_order.end());
   const auto further_parts = [&](uint32_t number) {

@@ -20,7 +20,7 @@ namespace {
 constexpr uint32_t kChunkSize = 8192;
 constexpr uint32_t kSubtreeSize = 16384;
 
-/// Records [begin, end), still to become node `node` in depth `depth` (the root's is 1).
+/// Records [begin, end), from which node `node` at depth `depth` (1 for the root) will be made.
 struct Range {
   uint32_t begin = 0;
   uint32_t end = 0;
@@ -42,8 +42,7 @@ std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const
           Range{middle, range.end, child + 1, range.depth + 1, above}};
 }
 
-/// Moves the records below the plane to the front and returns how many there are. The boxes of both sides' centres come
-/// along.
+/// Moves the records below the plane to the front. Returns their number and the boxes of both sides' centres.
 uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, LaneBox& centers_below,
                            LaneBox& centers_above) {
   LaneBox below;
@@ -146,8 +145,8 @@ struct Halving {
   void scatter(Chunk& chunk, const Record* from, Record* to) const;
 };
 
-/// After all chunks are binned: picks the plane and gives each chunk its places on both sides, so that records keep
-/// their order.
+/// Called after all chunks are binned: chooses the plane and assigns each chunk its positions on both sides, so that
+/// records keep their order.
 void Halving::choose_split() {
   Bins all(grid);
   for (const Chunk& chunk : chunks) all.add(chunk.bins, grid);
@@ -217,7 +216,7 @@ class SahBuild {
   unsigned thread_count_;
   /// Counted in records times levels.
   SharedProgress progress_;
-  /// The records of the current level, and where its chunks scatter them to.
+  /// The records of the current level, and the buffer to which its chunks scatter them.
   UnsetVector<Record> records_;
   UnsetVector<Record> scattered_;
   std::vector<Subtree> subtrees_;
@@ -287,7 +286,7 @@ void SahBuild::build_subtrees() {
     for (uint32_t k = range.begin; k < range.end; ++k) bvh_.references[k] = records[k].index();
     progress_.add(count_levels(range.count()));
   });
-  // A subtree's root takes its place in the top; its other nodes follow those that are there.
+  // A subtree's root replaces its placeholder in the top; its other nodes are appended.
   std::vector<size_t> starts = {bvh_.nodes.size()};
   for (const UnsetVector<BvhNode>& nodes : built) starts.push_back(starts.back() + nodes.size() - 1);
   bvh_.nodes.resize(starts.back());

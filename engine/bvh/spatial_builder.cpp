@@ -19,12 +19,12 @@ namespace {
 constexpr size_t kChunkSize = 4096;
 constexpr size_t kSubtreeSize = 16384;
 
-/// Where the children of the best object split have less than this of the root's area in common, planes through
-/// primitives are not looked at (Stich et al., section 4.2; there 1e-5).
+/// If the children of the best object split overlap by less than this part of the root's area, planes through
+/// primitives are not considered (Stich et al., section 4.2; there 1e-5).
 constexpr double kLeastOverlap = 1e-4;
 
-/// A cut that costs up to this much more than the best object split is taken: the heuristic takes the sides for leaves,
-/// but sides that do not overlap are also split better further down. Measured, docs/performance_log.md.
+/// A cut is used even if it costs up to this factor more than the best object split: the heuristic treats the sides as
+/// leaves, but sides that do not overlap can also be split better further down. Measured in docs/performance_log.md.
 constexpr double kCutAdvantage = 1.1;
 
 /// The box of a record's primitive below or above a plane.
@@ -81,7 +81,7 @@ class PlaneGrid {
   double scale_[3];
 };
 
-/// A plane between slabs that cuts what it meets.
+/// A plane between slabs that cuts primitives.
 struct Cut {
   int axis = -1;
   float plane = 0.0F;
@@ -173,7 +173,7 @@ LaneBox unite(LaneBox a, const LaneBox& b) {
   return a;
 }
 
-/// References and what is known of them.
+/// References and their bounds.
 struct Side {
   std::vector<Record> records;
   Extent extent;
@@ -195,8 +195,8 @@ struct Sides {
   bool are_filled() const { return !below.records.empty() && !above.records.empty(); }
 };
 
-/// Puts a record on its side of the plane. One that the plane meets goes to both sides or, where that costs less, whole
-/// to one (Stich et al., section 4.4).
+/// Puts a record on its side of the plane. A record that the plane cuts goes to both sides or, if that costs less,
+/// completely to one (Stich et al., section 4.4).
 void cut_record(const Record& record, const Cut& cut, const BuildInput& input, Sides& sides) {
   const float lo = record.lo[cut.axis];
   const float hi = record.hi[cut.axis];
@@ -216,7 +216,7 @@ void cut_record(const Record& record, const Cut& cut, const BuildInput& input, S
   if (!part_above.is_empty()) sides.above.add(Record(part_above.bounds(), record.index()));
 }
 
-/// References that are still to become node `node` in depth `depth` (the root's is 1).
+/// References from which node `node` at depth `depth` (1 for the root) will be made.
 struct Task {
   Side side;
   uint32_t node = 0;
@@ -261,7 +261,7 @@ class SpatialBuild {
  private:
   /// Builds everything below one task on `thread_count` threads. Small sets go to `subtrees`, unless it is null.
   void build(Task root, unsigned thread_count, Bvh& bvh, std::vector<Task>* subtrees) const;
-  /// Splits the references in two, or not where a leaf is cheaper.
+  /// Splits the references in two, unless a leaf is cheaper.
   std::optional<Sides> split(const Task& task, unsigned thread_count) const;
   Sides halve(const Side& side) const;
   static void append(const Bvh& subtree, uint32_t root, Bvh& bvh);
@@ -349,7 +349,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
       subtrees->push_back(std::move(task));
       continue;
     }
-    // Nothing is done yet, but the callback may end the build.
+    // The progress is still 0, but the callback may cancel the build.
     if (subtrees != nullptr && progress_) progress_(0.0);
     std::optional<Sides> sides = split(task, thread_count);
     const Bounds bounds = task.side.extent.box.bounds();
@@ -372,7 +372,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
   }
 }
 
-/// Puts a subtree's root at node `root` and the rest behind what there is.
+/// Puts a subtree's root at node `root` and appends its other nodes.
 void SpatialBuild::append(const Bvh& subtree, uint32_t root, Bvh& bvh) {
   const auto node_shift = static_cast<uint32_t>(bvh.nodes.size()) - 1;
   const auto reference_shift = static_cast<uint32_t>(bvh.references.size());

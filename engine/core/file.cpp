@@ -88,11 +88,11 @@ namespace {
 constexpr const char* kOldMark = "old-";
 constexpr mode_t kModeBits = 07777;
 
-/// The temporary files that this process is at: another of its threads may write the same file, and what is left by a
-/// process that had this one's id is told from them.
+/// The temporary files that this process is writing. Another of its threads may write the same file, and files left by
+/// an earlier process with the same id must be distinguished from them.
 class LiveFiles {
  public:
-  /// False where there is one of this name.
+  /// Returns false if a file of this name exists.
   bool add(const fs::path& file) {
     const std::lock_guard lock(mutex_);
     return files_.insert(spell(file)).second;
@@ -128,7 +128,7 @@ fs::path follow_links(const fs::path& file) {
   std::error_code error;
   const fs::path resolved = fs::canonical(file, error);
   if (!error) return resolved;
-  // The C library follows so many.
+  // The limit of the C library.
   constexpr int kMostLinks = 40;
   fs::path target = file;
   for (int link = 0; fs::is_symlink(target, error); ++link) {
@@ -161,7 +161,7 @@ fs::path name_temporary(const fs::path& folder, const fs::path& target, int writ
   mark += target.extension().string().substr(0, kLongestEnding);
   const long told = pathconf(folder.c_str(), _PC_NAME_MAX);
   const size_t most = told > 0 ? static_cast<size_t>(told) : kUsualMost;
-  // Room for what commit_together puts before it.
+  // Leaves room for the prefix of commit_together.
   const size_t taken = mark.size() + std::string_view(kOldMark).size();
   return folder / (cut_utf8(target.stem().string(), most > taken ? most - taken : 0) + mark);
 }
@@ -215,7 +215,7 @@ void AtomicFile::fail() const {
 void AtomicFile::flush() const {
   // rename() alone may reach the disk before the data does; a crash would leave an empty file.
   const int descriptor = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  // Where the file system has no modes it is the same without.
+  // On a file system without modes this has no effect.
   if (descriptor >= 0 && mode_) fchmod(descriptor, *mode_);
   const bool is_flushed = descriptor >= 0 && fsync(descriptor) == 0;
   if (descriptor >= 0) close(descriptor);
@@ -234,7 +234,7 @@ void AtomicFile::commit() {
 
 namespace {
 
-/// Gives an old file another name, or a copy of that name where the file system has no names to spare. False where
+/// Creates another name for an old file, or a copy if the file system does not support hard links. Returns false if
 /// there is no old file. Throws RunError.
 bool keep_old(const fs::path& file, const fs::path& name) {
   std::error_code error;
@@ -251,8 +251,8 @@ bool keep_old(const fs::path& file, const fs::path& name) {
 
 void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
   for (const AtomicFile* file : files) file->flush();
-  // Another name of each old file, which the renaming leaves alone; empty where there is none. Its form is that of a
-  // temporary file, so that what a kill leaves is cleared.
+  // A second name for each old file, which renaming does not affect; empty if there is none. It has the form of a
+  // temporary file, so that it is removed after a kill.
   std::vector<fs::path> old_files(files.size());
   const auto name_old = [&](size_t i) {
     fs::path name = files[i]->temporary_.parent_path() / kOldMark;
@@ -266,8 +266,7 @@ void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
     }
   };
   try {
-    // Of all but the first nothing is there while files are renamed: whoever is killed meanwhile leaves no new file
-    // beside an old one.
+    // While files are renamed, all but the first are absent, so that a kill never leaves a new file beside an old one.
     for (size_t i = files.size(); i-- > 0;) {
       name_old(i);
       if (i > 0 && !old_files[i].empty() && unlink(files[i]->target_.c_str()) != 0) files[i]->fail();

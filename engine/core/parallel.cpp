@@ -74,7 +74,7 @@ void for_each_index(size_t count, unsigned thread_count, const std::function<voi
     try {
       while (helpers.size() < helper_count) helpers.emplace_back(work);
     } catch (const std::system_error&) {
-      // The system refuses another thread, so the threads that run do the work.
+      // The system refuses another thread, so the running threads do the work.
     }
     work();
   }

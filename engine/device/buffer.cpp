@@ -22,8 +22,8 @@ namespace {
 using Memory = vk::MemoryPropertyFlagBits;
 constexpr vk::MemoryPropertyFlags kMappable = Memory::eHostVisible | Memory::eHostCoherent;
 
-// Cached matters for reading pictures back; memory that is device-local and mappable is not cached on discrete GPUs,
-// and there its window may be small, so they take the staging way.
+// Caching matters for reading pictures back. On discrete GPUs device-local mappable memory is not cached and may be
+// small, so they use staging buffers.
 const std::array kDevicePreferences{Memory::eDeviceLocal | kMappable | Memory::eHostCached,
                                     vk::MemoryPropertyFlags(Memory::eDeviceLocal), vk::MemoryPropertyFlags()};
 const std::array kStagingPreferences{kMappable | Memory::eHostCached, kMappable};
@@ -35,9 +35,9 @@ std::optional<rlim_t> file_size_limit() {
   return limit.rlim_cur;
 }
 
-/// Some drivers of CPUs keep device memory in a file (lavapipe from Mesa 24.3 on), and do not notice where the file
-/// size limit keeps it from growing: the first touch would end the program by SIGBUS. When the kernel is asked to read
-/// from there it fails instead. `last_byte` is that of the memory. Throws RunError.
+/// Some CPU drivers keep device memory in a file (lavapipe from Mesa 24.3 on) and do not notice if the file size limit
+/// prevents it from growing: the first access would end the program by SIGBUS. A read by the kernel fails instead.
+/// `last_byte` is that of the memory. Throws RunError.
 void check_memory_is_there(const std::byte* last_byte) {
   const std::optional<rlim_t> limit = file_size_limit();
   std::array<int, 2> pipe_ends{};
@@ -84,7 +84,7 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
 }
 
 void check_file_size_limit(const Device& device) {
-  // More than a driver needs beside buffers; what it gets then lies where this one lay.
+  // More than a driver needs apart from buffers; its later allocations reuse this space.
   constexpr vk::DeviceSize kDriverBytes = 1U << 20;
   if (file_size_limit()) Buffer(device, kDriverBytes, vk::BufferUsageFlagBits::eTransferDst);
 }

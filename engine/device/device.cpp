@@ -44,7 +44,7 @@ std::string version_text(uint32_t version) {
          std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-/// A family that computes and, where there is a surface, draws and presents to it as well.
+/// A queue family for compute and, if there is a surface, for drawing and presenting to it.
 std::optional<uint32_t> find_family(const vk::raii::PhysicalDevice& device, vk::SurfaceKHR surface) {
   using Flag = vk::QueueFlagBits;
   const vk::QueueFlags wanted = surface ? Flag::eCompute | Flag::eGraphics : vk::QueueFlags(Flag::eCompute);
@@ -62,7 +62,7 @@ bool has_device_extension(const vk::raii::PhysicalDevice& device, std::string_vi
                      [&](const auto& e) { return name == e.extensionName.data(); });
 }
 
-/// None where the driver does not tell.
+/// Empty if the driver reports none.
 std::optional<vk::PhysicalDeviceDriverProperties> driver_properties(const vk::raii::PhysicalDevice& device,
                                                                     const vk::PhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2 &&
@@ -162,8 +162,7 @@ std::string list_names(const std::vector<DeviceInfo>& infos) {
 
 constexpr std::string_view kByUuid = "uuid:";
 
-/// Index into `infos`; by exact index where the selection is a number, by a UUID where it says so, else by a part of
-/// the name.
+/// Returns the index into `infos`: the selection is a number, a UUID with its prefix, or a part of the name.
 size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<std::string>& selection) {
   if (infos.empty()) throw NoDriverError();
   for (size_t i = 0; i < infos.size(); ++i) {
@@ -178,7 +177,7 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   const auto parsed = std::from_chars(selection->data(), end, number);
   const bool is_number = !selection->empty() && parsed.ec == std::errc() && parsed.ptr == end;
   for (size_t i = 0; i < infos.size(); ++i) {
-    // An empty text is a part of any name, and no choice.
+    // An empty text is part of every name, so it is not a selection.
     const bool is_part =
         !selection->empty() && lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
     const bool is_uuid = lower_case(*selection) == std::string(kByUuid) + infos[i].uuid;
@@ -200,8 +199,8 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   throw DeviceError(problem);
 }
 
-/// Drivers of CPUs start their threads here. Where the system refuses some, a driver fails without a reason, or it
-/// reports nothing and the first dispatch waits forever. In both cases the system refuses one more thread right after.
+/// CPU drivers start their threads here. If the system refuses some, a driver fails without a reason, or reports
+/// nothing and the first dispatch waits forever. In both cases the system also refuses a further thread afterwards.
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, const vk::DeviceCreateInfo& info,
                              const std::string& name) {
   try {
@@ -263,7 +262,7 @@ Device::Device(const DeviceOptions& options)
     }
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    // A layered driver must be told that its extension is known of.
+    // A layered driver requires that its extension is enabled.
     if (has_device_extension(physical_, "VK_KHR_portability_subset")) {
       enabled_extensions_.push_back("VK_KHR_portability_subset");
     }

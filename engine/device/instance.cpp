@@ -69,7 +69,7 @@ vk::raii::Instance try_make_instance(const vk::raii::Context& context, std::vect
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
-  // Layered drivers such as MoltenVK are listed only to those who ask.
+  // Layered drivers such as MoltenVK are listed only on request.
   if (has_extension(context, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
     extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     flags |= vk::InstanceCreateFlagBits::eEnumeratePortabilityKHR;
@@ -90,7 +90,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<c
   } catch (const vk::IncompatibleDriverError&) {
     throw NoDriverError();
   } catch (const vk::SystemError& error) {
-    // A manifest that is no JSON is OutOfHostMemory to the loader.
+    // The loader reports a manifest that is not JSON as OutOfHostMemory.
     if (find_manifest_fault()) throw NoDriverError();
     throw DeviceError({std::string("Vulkan cannot start (") + error.what() + ")", "on this machine",
                        "install a Vulkan 1.1 driver such as mesa-vulkan-drivers"});

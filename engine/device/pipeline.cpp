@@ -14,11 +14,11 @@
 namespace promin::gpu {
 namespace {
 
-/// Address space for a driver's compiler, for as long as this lives. LLVM crashes where it meets the limit of address
-/// space, so the compiler starts only where enough is free. Costs nothing where address space is not limited.
+/// Reserves address space for a driver's compiler during its lifetime. LLVM crashes at the limit of address space, so
+/// the compiler starts only if enough is free. Costs nothing if address space is not limited.
 class CompilerSpace {
  public:
-  /// Waits for other compilers where there is too little for all. Throws RunError where there is too little for one.
+  /// Waits for other compilers if there is too little for all. Throws RunError if there is too little for one.
   explicit CompilerSpace(uint64_t code_bytes) {
     if (!address_space_limit()) return;
     bytes_ = estimate(code_bytes);
@@ -53,7 +53,7 @@ class CompilerSpace {
   static inline std::mutex mutex_;
   static inline std::condition_variable has_ended_;
   static inline uint64_t taken_ = 0;
-  /// The most that one took: the process keeps that memory, and the next one uses it.
+  /// The largest amount of one compilation: the process keeps that memory, and the next compilation uses it.
   static inline uint64_t most_ = 0;
   uint64_t bytes_ = 0;
 };
@@ -89,7 +89,7 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
       device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));
   made.layout = vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo({}, *made.set_layout));
   made.pipeline = vk::raii::Pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *made.layout));
-  // Where two threads have compiled the same, one's is kept.
+  // If two threads have compiled the same, one result is kept.
   const std::lock_guard lock(mutex_);
   return compiled_.emplace(std::move(key), std::move(made)).first->second;
 }
@@ -122,7 +122,7 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
 
 void ComputePipeline::bind(const BoundBuffer& buffer) {
   vk::WriteDescriptorSet write(*set_, buffer.binding, 0, 1, buffer.type);
-  // What lies beyond the range of a storage buffer, the shader reads as texels.
+  // The shader reads data beyond the range of a storage buffer as texels.
   const vk::DeviceSize range =
       std::min<vk::DeviceSize>(buffer.buffer->size_bytes(), device_->limits().maxStorageBufferRange);
   const vk::DescriptorBufferInfo info(*buffer.buffer->handle(), 0, range);

@@ -12,14 +12,14 @@
 namespace promin::gpu {
 namespace {
 
-/// What is different on any CPU device, be its driver known or not.
+/// The differences for every CPU device, whether its driver is known or not.
 void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
   // Threads that Mesa's CPU driver has unless it is told otherwise (LP_MAX_THREADS).
   constexpr uint32_t kMostThreads = 32;
   profile.fetches_film_texels = true;
   profile.target_dispatch_ms = 100.0;
-  // It compiles kernels with their first dispatch, and where others take the cores that may last minutes. No reset ends
-  // it: its threads would go on with what has been freed.
+  // It compiles kernels at their first dispatch, which may take minutes if other processes use the cores. Nothing can
+  // interrupt it: its threads would continue with freed memory.
   profile.most_silence_s = 3600.0;
   profile.most_group_rows = std::min(traits.core_count, kMostThreads);
   // Fewer paths make more dispatches, more do not fit in the caches (docs/performance_log.md).
@@ -50,8 +50,8 @@ void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/)
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
 }
 
-/// The first number of the version in what Mesa's drivers tell of themselves; 0 in what others tell. Lavapipe's
-/// driverVersion is 1 whatever its version.
+/// Returns the first number of Mesa's version in a driver's description; 0 for other drivers. Lavapipe's driverVersion
+/// is 1 whatever its version.
 uint32_t mesa_version(std::string_view driver_info) {
   constexpr std::string_view kName = "Mesa ";
   uint32_t version = 0;
@@ -62,7 +62,7 @@ uint32_t mesa_version(std::string_view driver_info) {
   return version;
 }
 
-/// What is different with one driver, from a version of Mesa on.
+/// The differences for a driver from a version of Mesa on.
 struct DriverRow {
   VkDriverId driver;
   uint32_t first_mesa_version;

@@ -75,7 +75,7 @@ struct Function {
   uint32_t id() const { return head.front()[2]; }
 };
 
-/// What is known of ids whose values are bools (0 and 1) or integers of 32 bits.
+/// The known values of ids of bools (0 and 1) or 32-bit integers.
 class KnownValues {
  public:
   KnownValues(uint32_t id_bound, std::span<const SpecializationConstant> constants)
@@ -142,7 +142,7 @@ class KnownValues {
   }
 
  private:
-  /// The value of an operation, if it is one of those that conditions are made of and enough is known.
+  /// Returns the value of an operation, if it is one that conditions use and its operands are known.
   std::optional<uint32_t> evaluate(Op op, Words operands) const {
     const auto operand = [&](size_t i) {
       return i < operands.size() && operands[i] < values_.size() ? values_[operands[i]] : std::nullopt;
@@ -210,7 +210,7 @@ struct Module {
     });
   }
 
-  /// What comes before the first function.
+  /// The instructions before the first function.
   std::vector<Words> head;
   std::vector<Function> functions;
 
@@ -230,7 +230,7 @@ struct Module {
   }
 };
 
-/// Finds what a function cannot reach, and writes what is left of it.
+/// Finds unreachable code of a function, and writes the remainder.
 class FunctionPruner {
  public:
   FunctionPruner(Function& function, KnownValues& values) : function_(function), values_(values) {
@@ -239,8 +239,8 @@ class FunctionPruner {
       has_loop_with_phi_ = has_loop_with_phi_ || (!block.merge(Op::OpLoopMerge).empty() && block.begins_with_phi());
     }
     std::ranges::sort(block_of_);
-    // Each round knows more values, as fewer blocks lead to others, and fewer blocks are live, as more is known. None
-    // takes for dead what is not.
+    // Each round finds more known values, because fewer blocks lead to others, and thus fewer live blocks. No round
+    // marks live code as dead.
     if (has_loop_with_phi_) return;
     size_t before = function_.blocks.size();
     for (size_t now = mark_live_blocks(); now != before; now = mark_live_blocks()) before = now;
@@ -309,7 +309,7 @@ class FunctionPruner {
     return from.is_live && std::ranges::count(successors(from), label) > 0;
   }
 
-  /// Where every value with which the block may be entered is known, and it is one.
+  /// If every value with which the block may be entered is known and all are equal.
   std::optional<uint32_t> phi_value(Words phi, uint32_t label) const {
     std::optional<uint32_t> common;
     for (size_t i = 3; i + 1 < phi.size(); i += 2) {
@@ -321,7 +321,7 @@ class FunctionPruner {
     return common;
   }
 
-  /// Blocks come before those that they dominate, so a value is learnt before it is used, but for those of phis.
+  /// Blocks come before those that they dominate, so a value is found before its use, except for phis.
   size_t mark_live_blocks() {
     for (const Block& block : function_.blocks) {
       for (const Words instruction : block.instructions) {
@@ -378,7 +378,7 @@ class FunctionPruner {
     out[first] = word(Op::OpPhi, static_cast<uint32_t>(out.size() - first));
   }
 
-  /// Where a live block names it as the end of its selection or loop, or as where its loop continues, it must be there.
+  /// A block must stay if a live block names it as the end of its selection or loop, or as its continue target.
   void write_dead(const Block& block, std::vector<uint32_t>& out) const {
     bool is_merge = false;
     std::optional<uint32_t> loop;
@@ -407,7 +407,7 @@ class FunctionPruner {
   bool has_loop_with_phi_ = false;
 };
 
-/// Marks those that the entry points reach, and returns what is left of them.
+/// Marks functions that the entry points reach, and returns their remaining code.
 std::vector<uint32_t> prune_functions(Module& module, KnownValues& values) {
   std::vector<uint32_t> open;
   for (const Words instruction : module.head) {

@@ -134,7 +134,7 @@ class Collector {
     return mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[triangle];
   }
 
-  /// Adds the triangles of a mesh, none of which is in parts: the place of each is known beforehand.
+  /// Adds the triangles of a mesh of which none has several parts: the position of each is known in advance.
   void add_whole(const Mesh& mesh, uint32_t flags) {
     const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
     result_.degenerate_count += degenerate.size();
@@ -188,8 +188,8 @@ class Collector {
     }
   }
 
-  /// The index of the vertex at a part's corner, counted from the mesh's first. Where a triangle was cut, the mesh has
-  /// no such vertex, so it is added with interpolated values.
+  /// Returns the index of the vertex at a part's corner, relative to the mesh's first. At a cut the mesh has no such
+  /// vertex, so it is added with interpolated values.
   uint32_t vertex_of(const Mesh& mesh, const uvec3& corners, const PartCorner& corner) {
     if (corner.weights == dvec2(0, 0)) return corners.x;
     if (corner.weights == dvec2(1, 0)) return corners.y;

@@ -23,7 +23,7 @@ std::array<Point, 2> edge_of(const vec3& a, const vec3& b) {
   return p < q ? std::array{p, q} : std::array{q, p};
 }
 
-/// A side of a part, with the points strictly inside it from the lesser end to the greater.
+/// A side of a part, with the points strictly inside it, from the smaller end to the larger.
 using Points = std::span<const Point>;
 
 /// `corners` with the points inside the sides 01, 12 and 20.
@@ -103,7 +103,7 @@ CutTriangles::CutTriangles(const world::Scene& scene) {
     for (const uint32_t i : degenerate_.back()) {
       const uvec3& corners = mesh->triangles[i];
       const std::array p{mesh->positions[corners.x], mesh->positions[corners.y], mesh->positions[corners.z]};
-      // Where two corners of the triangle are in one place, its neighbours share a whole edge.
+      // If two corners of the triangle coincide, its neighbours share a whole edge.
       if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
       const uint32_t group = groups.add();
       for (size_t side = 0; side < 3; ++side) {

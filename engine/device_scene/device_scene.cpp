@@ -40,7 +40,7 @@ Placed place(const Records& records, uint64_t offset) {
   return {std::as_bytes(std::span(records)), first * kStride, static_cast<uint32_t>(first)};
 }
 
-/// Whether these are the same bytes in host memory, which are not changed once they are packed, in the same place.
+/// Returns whether these are the same bytes in host memory at the same place; packed data never changes.
 bool is_same(const Placed& a, const Placed& b) {
   return a.bytes.data() == b.bytes.data() && a.bytes.size() == b.bytes.size() && a.offset == b.offset;
 }
@@ -49,7 +49,7 @@ void write(gpu::Buffer& buffer, const Placed& placed) {
   if (!placed.bytes.empty()) buffer.write(placed.bytes, placed.offset);
 }
 
-/// What these materials look up.
+/// The tables that these materials use.
 std::vector<uvec4> make_tables(std::span<const Material> materials) {
   const auto looks_up_lobes = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
   const auto looks_up_sheens = [](const Material& m) {
@@ -69,7 +69,7 @@ bool are_skies_equal(const Environment& a, const Environment& b) {
   return a.sky == b.sky && a.rotation == b.rotation && a.intensity == b.intensity;
 }
 
-/// At least what Vulkan lets a device ask of where a view of texels begins.
+/// At least the largest alignment that Vulkan allows a device to require for a texel view.
 constexpr uint64_t kTexelViewAlignment = 256;
 
 constexpr uint64_t align(uint64_t offset, uint64_t alignment) {
@@ -169,7 +169,7 @@ void DeviceScene::set_environment(const Environment& environment) {
 
 std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_tables_for(std::span<const Material> materials) const {
   std::vector<uvec4> tables = make_tables(materials);
-  // They are the same for all scenes, so what is there already is not written anew.
+  // They are the same for all scenes, so existing data is not written again.
   if (tables == *tail_.lobe_tables) return tail_.lobe_tables;
   return std::make_shared<const std::vector<uvec4>>(std::move(tables));
 }
@@ -224,7 +224,7 @@ gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
 
 void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
   vk::raii::BufferView texels = buffer.make_texel_view();
-  // Where there are no images it is of words that nothing reads.
+  // Without images it contains words that nothing reads.
   vk::raii::BufferView image_texels =
       buffer.make_word_view(image_words_bytes_ == 0 ? 0 : image_words_offset_,
                             std::max<vk::DeviceSize>(image_words_bytes_, sizeof(uint32_t)));

@@ -41,7 +41,7 @@ class CornerCounts {
   std::vector<uint32_t> counts_ = std::vector<uint32_t>(size_t{1} << kBits);
 };
 
-/// What a primitive and its copies have in common.
+/// The data that a primitive and its copies share.
 struct Shown {
   std::array<uint32_t, 10> words;
   uint32_t material;
@@ -93,7 +93,7 @@ void keep_others(Elements& elements, const std::vector<size_t>& dropped) {
 
 }  // namespace
 
-// Textures do not count, so that scenes for casts, which lack them, have the same trees.
+// Textures are ignored, so that scenes for casts, which lack them, have the same trees.
 bool hides_copies(const Material& material) {
   return !has_holes(material) &&
          std::visit([](const auto& model) { return transmission_of(model); }, material.model) == 0.0F;

@@ -27,8 +27,7 @@
 namespace promin {
 namespace {
 
-/// From which alpha of its texels on each image is there (pack_images): of several masks with one image the first
-/// holds.
+/// Returns the alpha cutoff of each image (pack_images). If several masks share an image, the first one counts.
 std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
   std::vector<float> cutoffs(scene.images.size(), 0.0F);
   for (const Material& material : scene.materials) {
@@ -39,7 +38,7 @@ std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
     float& cutoff = cutoffs[scene.textures[slot.texture].image];
     if (cutoff == 0.0F) cutoff = material.alpha_cutoff / material.alpha;
   }
-  // What blends somewhere is left as it is.
+  // Materials that blend somewhere are not changed.
   for (const Material& material : scene.materials) {
     const TextureSlot& slot = base_slot(material);
     const bool blends_texels = material.alpha_mode == AlphaMode::kBlend && slot.texture < scene.textures.size();
@@ -53,7 +52,7 @@ using namespace layout;
 /// The number of triangles or references that a thread takes at a time.
 constexpr size_t kChunkSize = 16384;
 
-/// So long whoever needs a shared tree waits for another who builds it, who may hang.
+/// Time that a process waits for a shared tree that another process is building and that may hang.
 constexpr std::chrono::minutes kMostWait{10};
 
 /// Clips a primitive for builders that split primitives: triangles exactly, other shapes by their boxes.
@@ -84,7 +83,7 @@ vec4 center_and_radius(const Bounds& box) {
   return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
 }
 
-/// A hash of the geometry, without what tells which object a primitive belongs to.
+/// Returns a hash of the geometry, without the assignment of primitives to objects.
 uint64_t hash_geometry(std::span<const Primitive> bounded) {
   Hash64 hash;
   hash.add(bounded.size());
@@ -96,7 +95,7 @@ uint64_t hash_geometry(std::span<const Primitive> bounded) {
   return hash.value();
 }
 
-/// Tells of which kinds the primitives are, and how many are no triangles.
+/// Sets the kinds of the primitives, and the number that are not triangles.
 void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
   std::array<uint32_t, 32> counts{};  // one for each bit of the kinds
   for (const Primitive& p : bounded) ++counts[p.c.z];
@@ -104,7 +103,7 @@ void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
   packed.solid_count = static_cast<uint32_t>(bounded.size()) - counts[KIND_TRIANGLE];
 }
 
-/// Packs what a scene has beside its tree, whose references are there already.
+/// Packs the parts of a scene other than its tree, whose references exist already.
 void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected, uint64_t texture_bytes) {
   packed.numbers = std::move(collected.numbers);
   packed.features = geometry_features(scene.objects);
@@ -132,7 +131,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.tree_bounds = center_and_radius(tree_bounds);
 }
 
-/// Builds the tree of what a scene has collected.
+/// Builds the tree over the collected primitives.
 void build_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options) {
   const Stopwatch building;
@@ -153,7 +152,7 @@ void build_tree(PackedScene& packed, const world::Scene& scene, const Collected&
   packed.references = sort_leaves_by_kind(bvh, collected.bounded);
 }
 
-/// Takes the tree of a file. Throws InputError where it is bad or not that of the geometry.
+/// Uses the tree of a file. Throws InputError if it is damaged or belongs to other geometry.
 void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   const Stopwatch reading;
   const auto file = std::make_shared<const BvhFile>(bvh_file);
@@ -166,7 +165,7 @@ void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   packed.file = file;
 }
 
-/// Whether the file has the tree. The warnings tell what is wrong with one that is there, and no more what was before.
+/// Returns whether the file contains the tree. Replaces the warnings by the faults of an existing file.
 bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   packed.warnings.clear();
   std::error_code error;
@@ -181,11 +180,11 @@ bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file
   }
 }
 
-/// Takes the tree of the file, or builds it and writes the file, which others wait for.
+/// Uses the tree of the file, or builds it and writes the file for waiting processes.
 void share_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options, const std::filesystem::path& bvh_file) {
   const Stopwatch sharing;
-  // Files appear whole, so what is there needs no lock.
+  // Files appear complete, so reading needs no lock.
   if (find_shared_tree(packed, bvh_file)) return;
   const std::filesystem::path folder = bvh_file.parent_path();
   std::error_code error;

@@ -70,7 +70,7 @@ class MaterialPacker {
   }
 
   vec4 pack_cover(const Material& material) {
-    // Of what blends, what has no alpha at all is not there.
+    // A material that blends with an alpha of 0 is absent.
     const float least = material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : kLeastAlpha;
     return {is_absent(material) ? 0.0F : material.alpha, least, add(base_slot(material)),
             add(material.emissive_texture)};
@@ -149,7 +149,7 @@ class MaterialPacker {
     if (!is_clear) return 0;
     dvec3 absorption(0.0);
     for (int i = 0; i < 3; ++i) {
-      // Of what absorbs all, a little is left over a 2^-24th of the distance.
+      // A medium that absorbs everything still transmits a little over 2^-24 of the distance.
       const double left = std::max(static_cast<double>(m.attenuation_color[i]), 0x1p-24);
       absorption[i] = std::max(0.0, -std::log2(left)) / static_cast<double>(m.attenuation_distance);
     }
@@ -166,8 +166,8 @@ class MaterialPacker {
     return std::bit_cast<float>(number_of(slot));
   }
 
-  /// The slot's number, from 1 on; 0 where there is no texture or no image. Slots of a material that show the same, as
-  /// those of occlusion, roughness and metal often do, have one number, and are looked up once.
+  /// Returns the slot's number, from 1 on; 0 if there is no texture or no image. Equal slots of a material, as those of
+  /// occlusion, roughness and metal often are, share a number and are looked up once.
   uint number_of(const TextureSlot& slot) {
     if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0;
     const Texture& texture = tables_.textures[slot.texture];

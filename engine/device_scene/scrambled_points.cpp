@@ -18,8 +18,8 @@ uint32_t reverse_bits(uint32_t x) {
   return (x & 0x55555555U) << 1 | (x & 0xAAAAAAAAU) >> 1;
 }
 
-/// Each bit of the result hangs on those of x that are lower alone (Laine and Karras, "Stratified Sampling for
-/// Stochastic Transparency", 2011, with Burley's constants).
+/// Each bit of the result depends only on lower bits of x (Laine and Karras, "Stratified Sampling for Stochastic
+/// Transparency", 2011, with Burley's constants).
 uint32_t permute_upwards(uint32_t x, uint32_t seed) {
   x += seed;
   x ^= x * 0x6C50B47CU;

@@ -32,8 +32,8 @@ constexpr Level kLevels[] = {
 };
 constexpr uint32_t kLevelCount = std::size(kLevels);
 
-/// Directions of a lobe for a texel of each level but the sharpest. They are few, because the sky between them is
-/// blurred beforehand; of a panorama, which may have a sun in it, twice as many.
+/// Number of directions of a lobe for a texel of each level except the sharpest. Few are enough, because the sky is
+/// blurred beforehand; a panorama, which may contain a sun, gets twice as many.
 constexpr uint32_t kLobeSamples[kLevelCount] = {0, 16, 32, 64, 192, 512};
 
 /// The sharpest side of studio and gradient: their edges are some degrees wide. Against an integration with 20,000
@@ -47,7 +47,7 @@ uint32_t side_of(const Environment& environment) {
     uint32_t operator()(const Studio&) const { return kSmoothSide; }
     uint32_t operator()(const GradientSky&) const { return kSmoothSide; }
     uint32_t operator()(const Panorama& panorama) const {
-      // The horizon is as long as two sides.
+      // The horizon, which is the panorama's width, is as long as two sides.
       return std::clamp(std::bit_ceil((panorama.image->size.x + 1) / 2), kLeastPanoramaSide, kMostSide);
     }
   };
@@ -106,7 +106,7 @@ std::array<vec4, 9> project_irradiance(const SkyMap& map) {
   return result;
 }
 
-/// A direction of a lobe around +Z, and from which map the radiance around it is taken.
+/// A direction of a lobe around +Z, and the map that provides the radiance around it.
 struct LobeSample {
   vec3 direction;
   float weight;
@@ -122,8 +122,8 @@ double radical_inverse(uint32_t i) {
   return inverse;
 }
 
-/// Half vectors as GGX has them by Hammersley's points; a sample stands for the solid angle 4 / (n D) and is taken from
-/// the map whose texels are as large (Colbert and Krivanek, GPU Gems 3, ch. 20). The weights' sum is 1.
+/// Half vectors distributed by GGX at Hammersley points. A sample stands for the solid angle 4 / (n D) and is read from
+/// the map whose texels have that size (Colbert and Krivanek, GPU Gems 3, ch. 20). The weights' sum is 1.
 std::vector<LobeSample> sample_lobe(double roughness, uint32_t count, const std::vector<SkyMap>& maps) {
   const double alpha = roughness * roughness;
   std::vector<LobeSample> samples;
@@ -209,7 +209,7 @@ PackedSky pack_sky(const Environment& environment, unsigned thread_count) {
   PackedSky packed;
   packed.side = side_of(environment);
   if (packed.side == 0) return packed;
-  // Panoramas may have anything in them, and get more lookups than what is smooth.
+  // Panoramas may have any detail, and get more lookups than smooth skies.
   Environment looked_up = environment;
   auto* panorama = std::get_if<Panorama>(&looked_up.sky);
   const uint32_t factor = panorama == nullptr ? 1 : 2;

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// What a new pixel covers of the old ones along an axis: [first, end) of them, the first and the last in part.
+/// The old pixels that a new pixel covers along an axis: [first, end), the first and the last partly.
 struct Covered {
   uint32_t first;
   uint32_t end;
@@ -36,13 +36,13 @@ Covered covered_by(uint32_t i, uint32_t new_count, uint32_t old_count) {
   return {first, beyond, first + 1 - begin, end - (beyond - 1)};
 }
 
-/// Gives each of a row's pixels the mean of those up to `reach` to both sides, around the sphere.
+/// Sets each of a row's pixels to the mean of those up to `reach` on both sides, around the sphere.
 void blur_row(vec3* row, uint32_t width, uint32_t reach) {
   if (reach == 0) return;
   const std::vector<dvec3> old(row, row + width);
   const uint32_t count = 2 * reach + 1;
   for (uint32_t x = 0; x < width; ++x) {
-    // Summed anew, not with what enters and leaves: the rest of a sun that has left would stay.
+    // Summed again for each pixel and not incrementally, because a rounding error of a sun that has left would remain.
     dvec3 sum(0.0);
     for (uint32_t i = 0; i < count; ++i) sum += old[(x + width - reach + i) % width];
     row[x] = vec3(sum / static_cast<double>(count));

@@ -37,7 +37,7 @@ vec4 SkyMap::look_up(const vec3& direction) const {
 }
 
 double solid_angle_density(const dvec2& place) {
-  // A face of the octahedron lies 1 / sqrt(3) from the middle, and is sqrt(3) times as large as what is seen of it.
+  // A face of the octahedron lies 1 / sqrt(3) from the middle, and is sqrt(3) times as large as its projection.
   const dvec3 point = octahedral_point(place);
   const double squared = glm::dot(point, point);
   return 4.0 / (squared * std::sqrt(squared));

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// The direction before the world was turned by an angle about +Y, from +Z towards +X.
+/// Returns the direction before the rotation of the world by an angle about +Y, from +Z towards +X.
 dvec3 turn_back(const dvec3& v, double angle) {
   if (angle == 0.0) return v;
   const double sine = std::sin(angle);

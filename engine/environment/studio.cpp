@@ -22,7 +22,7 @@ constexpr double kCeiling = 0.16;
 /// -y and y from which on floor and ceiling are all that there is.
 constexpr double kFloorDepth = 0.2;
 constexpr double kCeilingHeight = 0.6;
-/// The part of a lamp's half size within which its edge falls from all to nothing, to both sides of it.
+/// The part of a lamp's half size, on both sides of its edge, over which its radiance falls from full to 0.
 constexpr double kEdge = 0.15;
 
 /// A soft rectangle in the sky, in degrees. The azimuth is counted from the viewer to the right; the size as seen from
@@ -48,7 +48,7 @@ dvec3 direction_of(double azimuth, double elevation) {
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
 
-/// A lamp as directions are held against it.
+/// A lamp in the form for testing directions.
 class HungLamp {
  public:
   explicit HungLamp(const Lamp& lamp)

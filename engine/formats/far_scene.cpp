@@ -18,7 +18,7 @@ double greatest_of(const dvec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-/// From a finite number to the next that is greater in fp32.
+/// Returns the distance from a finite number to the next larger one in fp32.
 double step_at(double magnitude) {
   const auto rounded = static_cast<float>(magnitude);
   return static_cast<double>(std::nextafter(rounded, std::numeric_limits<float>::infinity())) - double{rounded};
@@ -42,7 +42,7 @@ std::vector<Bounds> bounds_of_meshes(const Scene& scene) {
   return all;
 }
 
-/// The length that the longest of a transform's axes makes of 1.
+/// Returns the largest scale of a transform's axes.
 double scale_of(const dmat4& transform) {
   return greatest_of(
       {glm::length(dvec3(transform[0])), glm::length(dvec3(transform[1])), glm::length(dvec3(transform[2]))});

@@ -29,7 +29,7 @@ struct Magic {
   size_t offset = 0;
 };
 
-/// What files are packed in, by bytes that each such file has.
+/// Archive formats, by bytes that each such file has.
 constexpr Magic kArchives[] = {
     {"PK\x03\x04"sv, "a zip archive", kUnpack},
     {"PK\x05\x06"sv, "a zip archive", kUnpack},
@@ -42,7 +42,7 @@ constexpr Magic kArchives[] = {
     {"ustar"sv, "a tar archive", kUnpack, 257},
 };
 
-/// What promin does not read, by such bytes.
+/// Formats that promin does not read, by such bytes.
 constexpr Magic kMagics[] = {
     {"Kaydara FBX Binary"sv, "FBX", kBlender},
     {"; FBX "sv, "FBX", kBlender},
@@ -61,12 +61,12 @@ constexpr Magic kMagics[] = {
     {"# vtk DataFile"sv, "VTK", "open it in ParaView and export glTF or PLY"},
 };
 
-/// Scenes that other programs keep in archives.
+/// File name endings of other programs' scenes that are archives.
 constexpr Magic kEndings[] = {{".usdz", "USD", kBlender},
                               {".blend", "a compressed Blender file", kBlender},
                               {".3mf", "3MF", "export STL by the program that wrote it"}};
 
-/// What the root of an XML file says.
+/// Kinds by the root element of an XML file.
 constexpr Magic kRoots[] = {{"<COLLADA", "COLLADA", kBlender}, {"<X3D", "X3D", kMeshLab}};
 
 constexpr Magic kOffWords[] = {
@@ -123,7 +123,7 @@ FileKind kind_of_text(std::string_view text) {
     if (keyword == "mtllib" || ((keyword == "v" || keyword == "vn") && has_numbers))
       return readable_kind("OBJ", ".obj");
     if (keyword == "b" && has_numbers) return readable_kind("NFF", ".nff");
-    // A group or object of OBJ is no sign by itself.
+    // A group or object statement of OBJ alone is not enough.
     if (keyword == "o" || keyword == "g" || keyword == "s") keyword = {};
   }
   if (keyword != "v" || !lines.advance()) return {};

@@ -9,7 +9,7 @@
 namespace promin {
 namespace {
 
-/// A broken exporter breaks every vertex alike: nobody reads more of them than this.
+/// A broken exporter repeats a fault for every vertex; this is the largest number of problems to print.
 constexpr size_t kMaxProblems = 50;
 constexpr size_t kMaxWord = 80;
 

@@ -34,7 +34,7 @@ struct SceneFormat {
   std::string_view ending;
   Scene (*load)(const LoadOptions&, LoadReport&);
   bool has_variants = false;
-  /// Whether a file is a mesh and nothing else.
+  /// Returns whether the format only stores a mesh.
   bool is_mesh = false;
 };
 
@@ -57,7 +57,7 @@ void warn_of_tiny_meshes(const VertexBounds& bounds, Scene& scene) {
   }
 }
 
-/// Warns of triangles that scene/turned_normals.h shades on the side which their vertex normals face.
+/// Warns of triangles whose normals scene/turned_normals.h reverses.
 void warn_of_turned_normals(Scene& scene) {
   std::vector<bool> is_shown(scene.geometries.size(), false);
   for (const Object& object : scene.objects) {
@@ -120,7 +120,7 @@ void warn_of_rough_glass(Scene& scene) {
                            " rough glass: only a sky is blurred through it, and objects look sharp");
 }
 
-/// Warns of geometry that a camera which frames the scene leaves out.
+/// Warns of geometry outside the view of a camera that frames the scene.
 void warn_of_stray_geometry(Scene& scene) {
   if (!scene.cameras.empty()) return;
   const uint64_t count = find_main_part(scene).stray_count;
@@ -130,7 +130,7 @@ void warn_of_stray_geometry(Scene& scene) {
                            (count == 1 ? "it" : "them") + " out");
 }
 
-/// What else goes into JSON, EXR files and Python.
+/// Converts other texts for JSON, EXR files and Python.
 void show_names_in_utf8(Scene& scene) {
   const auto show = [](auto& parts) {
     for (auto& part : parts) part.name = to_utf8(part.name);
@@ -195,8 +195,8 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
   throw InputError({"the file is " + kind.name, file.string(), kind.cure});
 }
 
-/// A picture of nothing is taken for one of the scene: throws InputError where a mesh has nothing to draw, or a scene
-/// nothing of what it shows. A scene that shows nothing gets a warning.
+/// An empty picture could be mistaken for one of the scene. Throws InputError if a mesh has nothing to draw, or if a
+/// scene cannot draw any of its visible parts. A scene without visible parts gets a warning.
 void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
   if (has_anything_to_draw(scene)) return;
   refuse_wrong_ending(report.file(), format);
@@ -219,7 +219,7 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
     throw UsageError({"files that end in " + std::string(format.ending) + " have no material variants", file.string(),
                       "leave the variant out"});
   }
-  // A pipe might be waited for without end.
+  // Reading a pipe could wait forever.
   if (!is_regular_file(find_input(file))) {
     throw InputError({"the scene is not a regular file", file.string(), "name the scene's file"});
   }
@@ -234,10 +234,12 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   }
 }
 
-/// Each time that a file is read again, fp32 resolves what lies around its center 2^24 times as finely.
+/// The largest number of times that a file is read again. Each time, fp32 coordinates near the new center are up to
+/// 2^24 times as fine.
 constexpr int kMostMoves = 3;
 
-/// Reads a file, and again around a center where its coordinates are too coarse in fp32. Warns of what bounds say.
+/// Reads a file, and reads it again around a center if its coordinates are too coarse in fp32. Gives the warnings that
+/// depend on bounds.
 Scene load_near_center(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   Scene scene = load_by_format(file, options, report);
   VertexBounds bounds = bounds_of_vertices(scene);

@@ -15,7 +15,7 @@
 namespace promin {
 namespace {
 
-/// Pictures of light hold numbers where colours of textures are codes of sRGB.
+/// Pictures of light store linear values, while colours of textures are sRGB values.
 void encode_light(std::span<uint32_t> texels) {
   std::array<uint32_t, 256> codes{};
   for (size_t i = 0; i < codes.size(); ++i) {
@@ -27,7 +27,7 @@ void encode_light(std::span<uint32_t> texels) {
   }
 }
 
-/// Of most files far more than what comes before the size, and little to read.
+/// In most files far more than the part before the size, and still fast to read.
 constexpr uint64_t kHeadBytes = uint64_t{1} << 16;
 
 void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureBytes& read, uint64_t most_bytes) {
@@ -55,7 +55,7 @@ bool tells_size(std::span<const std::byte> head) {
   }
 }
 
-/// What is decoded, though libraries complain; empty where they do not.
+/// The libraries' warning about a picture that could be decoded; empty if there is none.
 std::string decode(PictureSource& source) {
   TextureImage& image = *source.image;
   if (!source.takes_texels) {

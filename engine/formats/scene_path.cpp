@@ -75,7 +75,7 @@ std::string suggest_path(const fs::path& folder, const fs::path& missing) {
 constexpr const char* kStayInside =
     "keep the file in the scene's folder, or name a folder that holds it as the root (--root DIR)";
 
-/// Why a name is the path of no file that a scene may name; empty where it may be one.
+/// Returns the reason why a name cannot be the path of a scene's file; empty if it can.
 std::string find_fault(const std::string& name, const fs::path& path, const fs::path& folder, const fs::path& root) {
   if (has_scheme(name)) return "a file's name is not a relative path";
   if (path.is_absolute() && root.empty()) return "a file's name is an absolute path";

@@ -19,7 +19,7 @@ constexpr bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n');
 }
 
-/// Words are looked through more often than anything else of a text.
+/// Splitting into words is the most frequent operation on a text.
 template <bool kHasComments>
 std::string_view take_part(std::string_view& line) {
   size_t begin = 0;
@@ -55,7 +55,7 @@ bool TextLines::advance() {
   if (rest_.empty()) return false;
   const char* const begin = rest_.data();
   const char* const end = begin + rest_.size();
-  // Kept from line to line, so that a file whose lines end in \r alone is not searched to its end for each.
+  // Kept between lines, so that a file whose lines end in \r is not searched to its end for each line.
   if (line_feed_ == nullptr || line_feed_ < begin) {
     const void* const found = std::memchr(begin, '\n', rest_.size());
     line_feed_ = found == nullptr ? end : static_cast<const char*>(found);

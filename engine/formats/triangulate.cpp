@@ -58,7 +58,7 @@ class EarClipper {
         i = (i + 1) % ring_.size();
         ++tries;
       }
-      // A polygon that crosses itself may have no ear; then any corner will do.
+      // A polygon that crosses itself may have no ear; then any corner is used.
       triangles.emplace_back(at(i, -1), at(i, 0), at(i, 1));
       ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(i));
       i %= ring_.size();

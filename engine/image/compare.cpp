@@ -33,7 +33,7 @@ void check_sizes(const Image& reference, const Image& test) {
   }
 }
 
-/// Of a row, so that sums do not hang on the number of threads.
+/// Sums of a row, so that the total does not depend on the number of threads.
 struct RowDifference {
   double sum = 0.0;
   double squares = 0.0;

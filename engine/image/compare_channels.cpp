@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of all parts of a file together, unless so many rows take more.
+/// Memory for the rows of all parts of a file together, unless the smallest number of rows needs more.
 constexpr uint64_t kMostBandBytes = uint64_t{4} << 20;
 constexpr uint32_t kLeastRows = 32;
 /// Channels that a message names, of each file.
@@ -34,7 +34,8 @@ std::vector<const FileChannel*> sort_by_name(const ChannelFile& file) {
   return sorted;
 }
 
-/// Those without a fellow of the same name, both lists by name: "only b.exr has Z", or nothing where there is none.
+/// Describes channels that only one file has; both lists are sorted by name: "only b.exr has Z", or nothing where there
+/// is none.
 std::string name_missing(const fs::path& file, const std::vector<const FileChannel*>& channels,
                          const std::vector<const FileChannel*>& others) {
   std::vector<const FileChannel*> missing;
@@ -51,7 +52,7 @@ std::string name_size(const uvec2& size) {
   return std::to_string(size.x) + "x" + std::to_string(size.y);
 }
 
-/// In the order of the first file.
+/// Pairs of channels in the order of the first file.
 std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const ChannelFile& test) {
   const std::vector<const FileChannel*> of_reference = sort_by_name(reference);
   const std::vector<const FileChannel*> of_test = sort_by_name(test);

@@ -44,7 +44,7 @@ std::string hex(uint32_t number) {
   return text;
 }
 
-/// A layer of mattes: its names by index, and what is told of each pixel.
+/// A layer of mattes: its names by index, and the coverage of each pixel.
 void add_layer(const std::string& layer, const std::vector<std::string>& names,
                const std::vector<CoverageRanks>& coverage, Cryptomatte& result) {
   std::vector<uint32_t> ids;

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// More is shown as this: beyond it the curves are flat, and their products overflow nowhere.
+/// Larger values are clamped to this: beyond it the curves are flat, and products cannot overflow.
 constexpr double kMostRadiance = 1e9;
 
 /// As shaders/tone_mapping.glsl has it.
@@ -76,12 +76,12 @@ dvec3 map_tones(ToneMapping mapping, const dvec3& c) {
   return c;
 }
 
-/// How much of a pixel shows what is not unlit.
+/// The part of a pixel that is not unlit.
 double lit_share(const vec4& unlit) {
   return std::max(1.0 - static_cast<double>(unlit.w), 0.0);
 }
 
-/// And how much light that sends where it fills the pixel.
+/// The radiance of that part if it filled the pixel.
 dvec3 lit_radiance(const vec3& radiance, const vec4& unlit) {
   return (dvec3(radiance) - dvec3(unlit)) / lit_share(unlit);
 }

@@ -34,7 +34,7 @@ namespace {
 
 constexpr size_t kWordBytes = sizeof(uint32_t);
 
-/// Hands what is encoded to the file.
+/// Passes encoded bytes to the file.
 class ByteStream final : public Imf::OStream {
  public:
   explicit ByteStream(PictureBytes& bytes) : OStream("the picture"), bytes_(bytes) {}
@@ -61,7 +61,8 @@ size_t bytes_of(Imf::PixelType type) {
   return type == Imf::HALF ? sizeof(half) : kWordBytes;
 }
 
-/// Whether halves keep a channel well enough: colours, normals and shares, no distances, places or numbers of things.
+/// Returns whether 16-bit floats are precise enough for a channel: for colours, normals and coverage, but not for
+/// distances, positions or ids.
 bool takes_half(const Channel& channel) {
   if (channel.is_integer || channel.name.starts_with("Crypto")) return false;
   const std::string group = channel.name.substr(0, channel.name.find('.'));
@@ -118,7 +119,7 @@ size_t rows_of_block(Imf::Compression compression) {
   return compression == Imf::ZIP_COMPRESSION ? 16 : compression == Imf::PIZ_COMPRESSION ? 32 : 1;
 }
 
-/// The bytes of a block of rows of all parts: none gives its blocks back before the file is whole.
+/// The bytes of a block of rows of all parts: no part frees its blocks before the file is complete.
 size_t count_block_bytes(const PictureHeader& header, const std::vector<Part>& parts, Imf::Compression compression) {
   size_t row_bytes = 0;
   for (const Part& part : parts) row_bytes += part.pixel_bytes() * header.size.x;
@@ -144,9 +145,9 @@ unsigned count_threads(size_t block_bytes) {
   return static_cast<unsigned>(std::min<size_t>(kMostBytes / (kCopies * block_bytes), core_count()));
 }
 
-/// Has OpenEXR's pool grow to so many threads, or to those that the system starts, and returns how many. It adds one
-/// thread at a time: OpenEXR's pool survives where it cannot start one, and does not where it cannot start the second
-/// of two.
+/// Grows OpenEXR's pool to this number of threads, or to as many as the system starts, and returns the number. It adds
+/// one thread at a time, because OpenEXR's pool survives a failure to start one thread, but not a failure to start the
+/// second of two.
 int grow_pool(unsigned count) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
@@ -250,7 +251,7 @@ class ExrEncoder::Impl {
 
   void finish() {
     for (const Part& part : std::span(parts_).subspan(1)) encode_waiting(part);
-    // Places of rows are written at the end, where OpenEXR keeps failures to itself.
+    // Offsets of rows are written at the end, where OpenEXR does not report failures.
     single_.reset();
     several_.reset();
     bytes_.check();
@@ -300,7 +301,7 @@ class ExrEncoder::Impl {
     });
   }
 
-  /// Encodes a part whose rows wait, some at a time.
+  /// Encodes a part whose rows were kept until the end, in groups of rows.
   void encode_waiting(const Part& part) {
     constexpr size_t kMostBytes = size_t{16} << 20;
     // A multiple of those by which EXRs are compressed.

@@ -64,7 +64,7 @@ void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
   png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
   png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
   png_set_oFFs(png_, info_, 0, 0, PNG_OFFSET_PIXEL);
-  // As OpenImageIO wrote it, so that equal pictures stay equal files.
+  // The key that OpenImageIO wrote, so that equal pictures still give equal files.
   std::array<char, 16> key{"oiio:ColorSpace"};
   std::array<char, 5> text{"sRGB"};
   std::array<png_text, 2> notes{};

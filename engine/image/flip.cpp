@@ -14,7 +14,7 @@
 namespace promin {
 namespace {
 
-// Sections and equations are those of the paper. All is in double.
+// Sections and equations refer to the paper. All computations are in double.
 
 constexpr double kPi = std::numbers::pi;
 
@@ -241,7 +241,7 @@ constexpr double kFeatureExponent = 0.5;  // q_f
 constexpr double kColorKnee = 0.4;        // p_c
 constexpr double kKneeError = 0.95;       // p_t
 
-/// Section 4.1.3: the exponent, and the error as a share of the largest that there is.
+/// Section 4.1.3: the exponent, and the error relative to the largest possible one.
 double color_error(const dvec3& a, const dvec3& b) {
   static const double largest =
       std::pow(hyab(to_hunt_lab({0.0, 1.0, 0.0}), to_hunt_lab({0.0, 0.0, 1.0})), kColorExponent);

@@ -70,8 +70,7 @@ std::vector<fs::path> list_folders() {
     std::error_code error;
     const fs::path folder = fs::canonical(file, error).parent_path();
     if (error) continue;
-    // These folders lie beside a program: as built, and as installed where each machine type has its own folder for
-    // libraries.
+    // These folders lie beside a program: as built, and as installed with a library folder for each machine type.
     add(folder / "../lib/promin");
     add(folder / PROMIN_PLUGIN_FOLDER);
     // This one lies beside a library, and in Python's package the plugin lies beside the module itself.

@@ -29,7 +29,7 @@ const Channel* find_channel(std::span<const Channel> channels, std::string_view 
   return found == channels.end() ? nullptr : &*found;
 }
 
-/// The channels that say how a picture of 8 bits is made of light; without those that are not there.
+/// The channels from which an 8-bit picture is made; missing ones are null.
 struct ShowingChannels {
   const Channel* alpha;
   /// Aovs::unlit.
@@ -75,7 +75,7 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
   return words;
 }
 
-/// The colour of light that covers so much of its pixel, as PNG stores it.
+/// Returns the unmultiplied colour of light that covers a part of its pixel, for a PNG.
 template <typename Light>
 Light unassociated(const Light& light, float alpha) {
   return alpha > 0.0F ? light / alpha : Light(0.0F);
@@ -199,7 +199,7 @@ class PictureWriter::Impl {
       plugin_->write_rows(std::as_bytes(std::span(rows.pixels)));
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
-      // A JPEG holds what is covered before black.
+      // A JPEG stores the covered part in front of black.
       const ShowingChannels showing = jpeg_ ? ShowingChannels(channels).without_alpha() : ShowingChannels(channels);
       const std::vector<uint8_t> pixels = encode_pixels(rows, showing, header_.display, lo);
       encode([&] {

@@ -59,7 +59,7 @@ Manifest manifest_of(const Json& json) {
   return manifest;
 }
 
-/// Names of pieces become those of files, so what a folder of somebody else says must not lead out of it.
+/// Names of pieces become file names, so names in an untrusted folder must not lead out of it.
 bool has_names_of_pieces(const Manifest& manifest) {
   constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
   return !manifest.pieces.empty() && std::ranges::all_of(manifest.pieces, [&](const std::string& name) {
@@ -89,7 +89,7 @@ Manifest read_manifest(const fs::path& folder) {
     if (json.at("promin_job") != kFormat)
       throw InputError({"the job was made by another version of promin", file.string(), cure});
     Manifest manifest = manifest_of(json);
-    // What was changed by hand is no longer what its pieces are of.
+    // A manifest that was edited no longer matches its pieces.
     if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
   } catch (const nlohmann::json::exception&) {
   }
@@ -100,10 +100,10 @@ std::string shown(const std::string& value) {
   return value.empty() ? "nothing" : "\"" + value + "\"";
 }
 
-/// What is true of an option that a manifest lacks, as manifests leave out those that have their defaults.
+/// The description of an option that a manifest lacks; manifests omit options with their default values.
 constexpr std::string_view kLeftOut = "is not given or has its default value";
 
-/// What is different about two jobs, in a sentence about the wanted one.
+/// Returns the first difference of two jobs, as a sentence.
 std::string find_difference(const Manifest& there, const Manifest& wanted) {
   if (there.kind != wanted.kind) return "its kind is " + shown(there.kind);
   const auto value_of = [](const Manifest& manifest, const std::string& name) -> std::optional<std::string> {
@@ -146,7 +146,7 @@ void make_folder(const fs::path& folder) {
       {"the folder cannot be created (" + error.message() + ")", folder.string(), "check the disk and permissions"});
 }
 
-/// Whether the folder has what no job brings, which begins with its manifest, by a temporary file.
+/// Returns whether the folder contains files that no job creates.
 bool has_strangers(const fs::path& folder) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
@@ -156,7 +156,7 @@ bool has_strangers(const fs::path& folder) {
   return false;
 }
 
-/// The folder's entry of a new file reaches the disk too.
+/// Flushes the folder's entry of a new file to the disk.
 void flush_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -184,7 +184,7 @@ std::string hash_of(std::span<const std::byte> bytes) {
   return Sha256().add(bytes).finish();
 }
 
-/// A piece's content, or what is bad about it.
+/// A piece's content, or its fault.
 struct Reading {
   std::optional<Content> content;
   std::string why;
@@ -214,9 +214,9 @@ Reading read_piece(const fs::path& file, const std::string& job, const std::stri
   }
 }
 
-/// A line at the end of a file that no other process writes, whole or not at all.
+/// Appends a line, completely or not at all, to a file that no other process writes.
 void append_line(const fs::path& file, const std::string& line, bool reaches_disk) {
-  // Its threads take turns: one that fails takes back what it has written.
+  // Threads take turns: a thread that fails removes what it has written.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -236,7 +236,7 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// What every line of the ledger has.
+/// Starts a line of the ledger with its common members.
 Json begin_line(const char* event, size_t piece, const Manifest& manifest, const Maker& maker) {
   Json line = {{"event", event}, {"number", piece}, {"piece", manifest.pieces[piece]}, {"time_s", now_s()}};
   line["made_on"] = maker.made_on;
@@ -274,7 +274,7 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
   make_folder(folder);
   promin::clear_leftovers(folder);
   std::error_code error;
-  // Others may begin the same job at this moment: what they write is the same.
+  // Others may create the same job at the same time; they write the same bytes.
   if (has_strangers(folder) && !fs::exists(manifest_file(folder), error)) {
     throw UsageError({"the folder has files but no job", folder.string(), "name a new or an empty folder"});
   }
@@ -407,7 +407,7 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
   for (size_t i = 0; i < missing.size(); ++i) {
     const size_t piece = missing[i];
     std::string why;
-    // Another may have made it by now.
+    // Another process may have made it meanwhile.
     if (job.state_of(piece, &why) == PieceState::kDone) continue;
     if (!before({piece, i, missing.size(), why})) return made;
     make_piece(job, piece, maker, make);

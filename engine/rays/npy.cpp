@@ -126,8 +126,8 @@ RayArray parse_header(std::string_view header, const fs::path& file) {
   return {*count, 8 * (is_double ? sizeof(double) : sizeof(float))};
 }
 
-/// All that comes before the data of an array of so many rows, at least so many bytes. `type` as numpy.dtype.descr is
-/// written, `columns` as what follows the number of rows in its shape.
+/// Returns the header of an array with this number of rows and at least this number of bytes. `type` is written like
+/// numpy.dtype.descr, `columns` like the part of the shape after the number of rows.
 std::string make_header(std::string_view type, uint64_t rows, std::string_view columns, size_t least_bytes = 0) {
   std::string dictionary("{'descr': ");
   dictionary.append(type).append(", 'fortran_order': False, 'shape': (");

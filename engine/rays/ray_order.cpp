@@ -31,7 +31,7 @@ constexpr uint32_t kDigitBits = 10;
 constexpr uint32_t kBuckets = 1U << kDigitBits;
 static_assert(kKeyBits % kDigitBits == 0);
 
-/// A thread is worth its cost from this many rays on.
+/// The smallest number of rays for which a thread is worth its cost.
 constexpr size_t kLeastPart = 16384;
 
 // Keys are computed for this many rays at a time, loop by loop over arrays and without branches, which compilers turn
@@ -113,7 +113,7 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
       point_cells[i] = cell_of(point);
       direction_cells[i] = cell_of(direction[i]);
     }
-    // This is a loop of its own, because the compiler takes rounding next to a comparison for a branch.
+    // This is a separate loop, because the compiler would turn rounding next to a comparison into a branch.
     for (size_t i = 0; i < kBlock; ++i) {
       keys[i] |= (spread_bits(point_cells[i]) << axis) | (spread_bits(direction_cells[i]) << (axis + 3));
     }

@@ -26,8 +26,8 @@ constexpr float kFarSteps = 32.0F;
 constexpr float kLeastJump = 8.0F;
 /// Rays of neighbouring rows count as neighbours if they are at most this many steps apart.
 constexpr float kMostNeighbourSteps = 16.0F;
-/// Rows whose columns differ by less than this are not shifted: fours that are askew by a ray trace as well as rays
-/// that make no four.
+/// Rows whose columns differ by less than this are not shifted: groups of four that are shifted by a ray trace as fast
+/// as rays outside of groups.
 constexpr float kLeastLag = 1.5F;
 /// A thread takes this many bands at a time; the rays that it leaves over are put behind them.
 constexpr size_t kChunkBands = 16;
@@ -68,7 +68,7 @@ class Rows {
 
   Place place_of(size_t ray) const { return {rays_[ray].origin * unit_, scaled_direction(rays_[ray])}; }
 
-  /// Fetches a ray that is looked at soon: waiting for memory would take most of the time.
+  /// Prefetches a ray that is read soon, because waiting for memory would take most of the time.
   void expect(size_t ray) const { __builtin_prefetch(&rays_[std::min(ray, rays_.size() - 1)]); }
 
   bool are_neighbours(const Place& a, const Place& b) const {
@@ -130,7 +130,7 @@ class Rows {
     return a;
   }
 
-  /// Whether these rays may be one row rather than two: the middle one is about halfway.
+  /// Returns whether these rays may be one row and not two: the middle one is about halfway.
   bool is_one_row(const Place& start, size_t begin, size_t last) const {
     const float half_square = square_distance(start, place_of((begin + last) / 2));
     const float square = square_distance(start, place_of(last));
@@ -203,7 +203,7 @@ class Sink {
   std::vector<uint32_t> rest_;
 };
 
-/// Goes along the rows of a band.
+/// Iterates along the rows of a band.
 class BandWalk {
  public:
   BandWalk(const Rows& rows, Band band) : rows_(rows) {
@@ -281,7 +281,7 @@ class BandWalk {
     return true;
   }
 
-  /// Puts rays of two rows that lie next to each other; the one behind first comes up with the other.
+  /// Puts rays of two neighbouring rows; the row that is behind first catches up with the other.
   void put_pair(Head& a, Head& b, Sink& sink) const {
     if (a.taken == 0 || b.taken == 0 || !rows_.are_neighbours(a.place, b.place)) {
       sink.put(a.next, a.taken);

@@ -30,21 +30,20 @@ namespace {
 using layout::HitRecord;
 using layout::RayRecord;
 
-/// A thread is worth its cost from so many rays on.
+/// The smallest number of rays for which a thread is worth its cost.
 constexpr size_t kRaysOfThread = 16384;
-/// How many rays ahead what is needed of one that lies anywhere is fetched: in scattered order waiting for memory takes
-/// longer than all else.
+/// Number of rays to prefetch ahead: in scattered order waiting for memory takes longer than everything else.
 constexpr size_t kFetchedAhead = 32;
 
 /// Rays in the order in which they are traced.
 struct OrderedRays {
   std::span<const Ray> rays;
-  /// Empty where they are traced as they come.
+  /// Empty if they are traced in the given order.
   std::span<const uint32_t> permutation;
 
-  /// Which of the rays is the i-th that is traced.
+  /// Returns the index of the i-th ray to trace.
   size_t place_of(size_t i) const { return permutation.empty() ? i : permutation[i]; }
-  /// Calls fetch(place) for what comes some rays after the i-th.
+  /// Calls fetch(place) for a ray some places after the i-th.
   template <typename Fetch>
   void fetch_ahead(size_t i, const Fetch& fetch) const {
     if (i + kFetchedAhead < permutation.size()) fetch(permutation[i + kFetchedAhead]);
@@ -55,7 +54,7 @@ bool asks_for_crossings(HitQuery query) {
   return query == HitQuery::kCount || query == HitQuery::kAll;
 }
 
-/// What tells of `count` rays from the first on as of a part of all.
+/// Returns a callback for the progress of `count` rays from the first on as a part of all.
 ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t count, size_t all) {
   if (!progress) return {};
   return [&progress, first, count, all](double fraction) {
@@ -63,7 +62,7 @@ ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t 
   };
 }
 
-/// A power of two that brings the direction to where the shader takes it (shaders/make_ray.glsl); mostly 1.
+/// Returns a power of two that scales the direction into the shader's range (shaders/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
   // Neither max_abs_component nor glm::abs is used: the calls of std::fmax in the one took a seventh of the time of
   // `promin cast`, and the other is compiled to a branch for each sign, which nothing foretells.
@@ -78,7 +77,7 @@ RayRecord record_of(const Ray& ray, float scale) {
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
 }
 
-/// Fills what is asked, in the order of tracing, on all cores. Returns whether the direction of any ray is scaled.
+/// Fills the ray records, in the order of tracing, on all cores. Returns whether the direction of any ray is scaled.
 bool fill_requests(const OrderedRays& ordered, std::span<RayRecord> requests) {
   std::atomic<bool> is_any_scaled = false;
   for_each_chunk(requests.size(), kRaysOfThread, 0, [&](size_t begin, size_t end) {
@@ -126,8 +125,8 @@ Hit hit_of(const HitRecord& record, const Ray* scaled, HitQuery query, const Pri
   return hit_at(t, record, numbers);
 }
 
-/// Brings a ray's crossings, as they come from the device, into the order of hits. Returns how many are left, at the
-/// beginning: a primitive that the tree refers to twice is there twice, and some have no t in the given units.
+/// Sorts a ray's crossings from the device into the order of hits. Returns the number that remain, at the front: a
+/// primitive that the tree references twice occurs twice, and some crossings have no t in the given units.
 size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
   const float scale = scale_of(ray.direction);
   const auto t_of = [](const HitRecord& crossing) { return std::bit_cast<float>(crossing.a.x); };
@@ -139,7 +138,7 @@ size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
     });
     count = static_cast<size_t>(end - crossings.begin());
   }
-  // Of the ends of the way through a solid, which may have the same t, the first is where it is entered.
+  // Of the two ends inside a solid, which may have the same t, the entry comes first.
   const auto key_of = [&](const HitRecord& crossing) { return std::tuple(t_of(crossing), crossing.a.y, crossing.b.w); };
   const auto end = crossings.begin() + static_cast<ptrdiff_t>(count);
   std::sort(crossings.begin(), end, [&](const HitRecord& a, const HitRecord& b) { return key_of(a) < key_of(b); });
@@ -172,8 +171,8 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   }
 
   enum class Order { kAsGiven, kInPackets, kSorted };
-  /// Where a tree refers to a primitive twice a packet meets it as often as any of its rays does: of rays alone each
-  /// has the same number of crossings in any company, so that a list has what was counted.
+  /// With a tree that references primitives more than once, a packet can see a primitive more often than each of its
+  /// rays would alone, so the counts of the first pass would not match. Such trees are traced ray by ray.
   Order order_for(HitQuery query, std::span<const Ray> rays) const {
     const bool takes_packets = device.profile().ray_packet_size > 1;
     const bool sorts_rays = device.profile().sorts_rays;
@@ -241,7 +240,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     return time_ms;
   }
 
-  /// Whether counts are told by lists alone: where the device counts crossings that sort_crossings drops.
+  /// Returns whether counts must be computed from lists, because the device counts crossings that sort_crossings drops.
   bool counts_by_lists(std::span<const Ray> rays) const {
     if (repeats_primitives || !copies.empty()) return true;
     std::atomic<bool> is_any_scaled = false;
@@ -258,7 +257,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   double list(std::span<const Ray> rays, std::span<const uint32_t> counts, Order order,
               const ProgressCallback& progress) {
     const Stopwatch ordering;
-    // Those that cross nothing are not asked again.
+    // Rays without crossings are not traced again.
     asked_rays.clear();
     asked_places.clear();
     uint64_t total = 0;
@@ -415,10 +414,10 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
     std::vector<uint32_t>& counts = impl_->chunk_counts;
     counts.resize(chunk.size());
     const Impl::Order order = impl_->order_for(HitQuery::kAll, chunk);
-    // Between dispatches nothing new is told: only whether to go on is asked.
+    // Between dispatches no new progress is reported; the callback only decides whether to continue.
     time_ms += impl_->trace(chunk, std::span(counts), HitQuery::kCount, order, part_of(progress, first, 0, rays.size()),
                             [](const HitRecord& record, const Ray*) { return record.a.x; });
-    // How many are listed together, whole rays, hangs on the device too.
+    // The number of whole rays that are listed together also depends on the device.
     const uint64_t most_listed = impl_->kernel_for(HitQuery::kAll, order).most_listed(chunk.size());
     const uint64_t most = std::min(budget_bytes / sizeof(Hit), most_listed);
     for (size_t begin = 0; begin < chunk.size();) {

@@ -20,7 +20,7 @@ constexpr size_t kMostPiecesAtOnce = 64;
 /// A lane's counters have 32 bits, so they are read before they can have overflowed.
 constexpr double kMaxRaysALane = 2e9;
 
-/// Takes a window's pixels out of those of a larger one.
+/// Extracts a window's pixels from those of a larger one.
 template <typename Value>
 void cut_out(std::vector<Value>& values, const PixelWindow& from, const PixelWindow& window) {
   if (values.size() == area_of(window) || values.empty()) return;
@@ -66,7 +66,7 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
 
 void PictureTracer::prepare_film(const RenderMode& mode) {
   FeatureMask features = features_of_scene(mode) | features_of_samples(mode);
-  // With steps trace_middle tells of surfaces.
+  // With steps, trace_middle provides the AOVs of surfaces.
   if (wanted_.has_any(AovSource::kSurface) && !wanted_.steps) features |= layout::FEATURE_AOVS;
   if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
   prepare_film(features);
@@ -215,7 +215,7 @@ ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
 }
 
 RenderMode PictureTracer::mode_of_middle(RenderMode mode) const {
-  // Nothing is lit that way.
+  // These views compute no light.
   mode.debug_view = wanted_.steps ? DebugView::kSteps : DebugView::kNormals;
   return mode;
 }
@@ -261,7 +261,7 @@ RenderResult PictureTracer::make_result(const View& view) const {
 RenderResult PictureTracer::render(const View& view, const ProgressCallback& progress) {
   if (view.error_target) return render_to_error(view, progress);
   if (!estimates_errors(view.mode)) return render_samples(view, progress);
-  // Pixels tell of the errors of those around them.
+  // Errors are estimated from neighbouring pixels.
   const PixelWindow window = picture_window(view);
   View wider = view;
   wider.crop = with_neighbors(window, view.size);

@@ -11,17 +11,17 @@
 namespace promin {
 namespace {
 
-/// Refining to an error takes up to this factor of the foretold time.
+/// Refining to an error may take up to this factor of the estimated time.
 constexpr double kCaution = 1.2;
 /// Samples of a list take up to this factor of the time of a whole picture's samples.
 constexpr double kListedCost = 1.5;
-/// A picture is refined where its first error leaves at least half of the time.
+/// A picture is refined if reaching its first error leaves at least half of the time.
 constexpr double kTimesFirstError = 2.0;
-/// The share of the remaining time that a picture of fixed samples is planned to take.
+/// The part of the remaining time planned for a picture of fixed samples.
 constexpr double kPlannedShare = 0.85;
-/// A picture that takes longer than this factor of the limit, or is foretold to, is abandoned.
+/// A picture that takes longer than this factor of the limit, or is estimated to, is abandoned.
 constexpr double kLongest = 1.15;
-/// A picture of which this share is traced foretells how long it takes.
+/// The traced part of a picture from which its total time is estimated.
 constexpr double kForetells = 0.1;
 
 }  // namespace
@@ -110,7 +110,7 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
 
 RenderResult PictureTracer::render_to_error(const View& view, const ProgressCallback& progress) {
   RenderResult result = begin_refined(view, progress);
-  // All parts take what those before have taken, as far as is known.
+  // All parts are assumed to take as long as the earlier ones, as far as known.
   double taken = 0.0;
   double pixels_done = 0.0;
   double told = 0.0;
@@ -124,7 +124,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
       const double left_of_part = std::max(refinement.foretell_total() - of_part, 0.0);
       const double a_pixel = (taken + of_part + left_of_part) / (pixels_done + part_pixels);
       const double left = left_of_part + a_pixel * (pixels - pixels_done - part_pixels);
-      // Where more is left than was foretold, it stands still.
+      // If more work remains than was estimated, the progress stops.
       told = std::max(told, (taken + of_part) / (taken + of_part + left));
       return progress(told);
     });

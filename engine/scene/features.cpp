@@ -19,7 +19,7 @@ namespace {
 
 using namespace layout;
 
-/// The name of the feature of each bit that a scene may bring; empty for all other bits.
+/// The name of the feature of each bit that a scene may use; empty for other bits.
 constexpr auto kSceneFeatures = [] {
   std::array<std::string_view, 32 * FEATURE_WORDS> names{};
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;
@@ -88,7 +88,7 @@ struct ShapeFeatures {
   }
 };
 
-/// What a model of material brings, and what its numbers need beside.
+/// Returns the features of a material model and of its values.
 struct MaterialFeatures {
   FeatureMask operator()(const Phong& phong) const {
     FeatureMask features = FEATURE_PHONG;
@@ -151,7 +151,7 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
     });
     if (has_holes(materials[i])) features |= FEATURE_HOLES;
     if (blends(materials[i])) features |= FEATURE_BLENDING;
-    // Glass mirrors where it reflects totally.
+    // Glass acts as a mirror on total reflection.
     if (is_clear(materials[i])) features |= FEATURE_GLASS | FEATURE_MIRRORS;
     if (parts_colors(materials[i])) features |= FEATURE_DISPERSION;
     if (!shows_backs(materials[i])) features |= FEATURE_ONE_SIDED;
@@ -203,7 +203,7 @@ FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, Featur
                              uint64_t primitive_count) {
   FeatureMask features = geometry | materials | lights | environment;
   if (lights.is_empty()) return features.without(FEATURE_SPECULAR);
-  // A flat primitive alone shadows nothing; a solid shadows its own inside.
+  // A single flat primitive casts no shadow; a solid shadows its own inside.
   FeatureMask solids;
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) solids |= FEATURE_##FEATURE;
 #include "promin/kinds/primitives.def"

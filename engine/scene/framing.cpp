@@ -20,7 +20,8 @@ constexpr float kFramedYfov = 0.698131701F;
 /// The field of view of a camera within a scene, 60 degrees.
 constexpr float kInsideYfov = 1.04719755F;
 
-/// From where a scene is seen, degrees: about its up axis from its front to the right, and above the horizon.
+/// The direction from which a scene is seen, in degrees: about its up axis from its front to the right, and above the
+/// horizon.
 struct Viewpoint {
   double azimuth;
   double elevation;
@@ -122,7 +123,7 @@ Axes axes_of(const Camera& camera) {
 struct Opening {
   /// The eye's place along the look, from the center.
   double depth;
-  /// How far from the eye the planes are as far apart as the scene is wide.
+  /// The distance from the eye at which the planes are as far apart as the scene's width.
   double distance;
 };
 
@@ -154,7 +155,7 @@ double find_middle(const SceneHull& hull, const dvec3& side, const dvec3& look, 
   return right + slope * depth;
 }
 
-/// What a camera that looks along `axes` needs to see the hull.
+/// The position from which a camera with `axes` sees the hull.
 struct Fitted {
   dvec3 eye;
   double half_height = 1.0;
@@ -183,15 +184,15 @@ Fitted fit_perspective(const SceneHull& hull, const Axes& axes, double aspect_ra
   const double slope_y = fit * tan_y;
   const Opening x = touch(hull, axes.right, axes.look, slope_x);
   const Opening y = touch(hull, axes.up, axes.look, slope_y);
-  // What points at the eye could lie between the planes though the eye were in it.
+  // An object that points at the eye could lie between the planes even if the eye were inside it.
   constexpr double kClearance = 0x1p-8;
   const double nearest = depths_of(hull, axes.look).x;
   double depth = std::min({x.depth, y.depth, nearest - kClearance * std::min(x.distance, y.distance)});
   // What has neither width nor height lies along the look.
   if (x.distance == 0.0 && y.distance == 0.0) depth = 2.0 * nearest;
-  // A lone point has no size to go by.
+  // A single point has no size.
   if (depth == 0.0) depth = -1.0;
-  // Far from the origin the eye must still be another fp32 number than what it looks at.
+  // Far from the origin the eye must still differ in fp32 from the point that it looks at.
   const dvec3 magnitude = glm::abs(hull.center());
   depth = std::min(depth, -0x1p-20 * std::max({magnitude.x, magnitude.y, magnitude.z}));
   const double right = find_middle(hull, axes.right, axes.look, slope_x, depth);

@@ -99,7 +99,7 @@ struct Contains {
   }
 };
 
-/// That of the first triangle; a mesh is taken for one solid.
+/// Returns the material of an object, for a mesh that of its first triangle: a mesh counts as one solid.
 uint32_t material_of(const world::Object& object) {
   const auto* mesh = std::get_if<Mesh>(&object.shape);
   return mesh == nullptr || mesh->triangle_materials.empty() ? object.material : mesh->triangle_materials.front();
@@ -114,7 +114,7 @@ struct IsOpen {
   }
 };
 
-/// Largest first; unbounded ones have infinite ones.
+/// Returns the volume of a box, infinite if it is unbounded, by which solids are sorted.
 double volume_of(const Bounds& bounds) {
   const dvec3 size = dvec3(bounds.hi) - dvec3(bounds.lo);
   return size.x * size.y * size.z;

@@ -11,22 +11,22 @@
 #include "scene/facets.h"
 #include "scene/stray_geometry.h"
 
-// Whether one stands in a scene.
+// Detects scenes that surround the viewer.
 namespace promin {
 namespace {
 
-/// The least share of backs in what is seen from outside.
+/// The smallest part of backs in views from outside.
 constexpr double kLeastBacks = 0.75;
-/// The largest share of backs in what is seen through an open side of a room: the thickness of its walls.
+/// The largest part of backs in the view through an open side of a room: the thickness of its walls.
 constexpr double kMostBacksOfOpenSide = 0.1;
 /// The largest share of backs in what lies within the hull.
 constexpr double kMostBacksWithin = 0.5;
-/// What is within lies deeper than this share of the size.
+/// Objects inside lie deeper than this part of the size.
 constexpr double kLeastDepth = 0.02;
 /// Pixels on a side of the pictures from outside.
 constexpr int kSide = 64;
 
-/// What is seen of a scene along an axis, from both of its ends.
+/// The views of a scene along an axis, from both ends.
 struct Silhouette {
   struct Pixel {
     double depth;
@@ -41,7 +41,8 @@ struct Silhouette {
   }
 };
 
-/// Parallel pictures of facets within a box from its six sides, of the depths of what is nearest and of its backs.
+/// Orthographic pictures of the facets within a box, seen from its six sides: the depth of the nearest facet, and
+/// whether its back is visible.
 class SixPictures {
  public:
   explicit SixPictures(const Bounds& bounds) : lo_(bounds.lo), size_(dvec3(bounds.hi) - dvec3(bounds.lo)) {
@@ -67,7 +68,7 @@ class SixPictures {
     size_t end;
   };
 
-  /// The horizontal side through which one sees in, if any: next to no backs are seen from there.
+  /// Returns the open horizontal side, if any: almost no backs are visible from there.
   std::optional<Side> find_open_side() const {
     for (const Side side : {Side{2, 1}, Side{2, 0}, Side{0, 1}, Side{0, 0}}) {
       if (share_of_backs(pictures_of(side.axis)[side.end]) <= kMostBacksOfOpenSide) return side;
@@ -181,7 +182,7 @@ double signed_volume(const Scene& scene, const MainPart& part) {
 
 Framing framing_of(const Scene& scene, const MainPart& part) {
   constexpr Framing kOutside = Framing::kThreeQuarter;
-  // What most scenes are needs no picture.
+  // Most scenes can be classified without pictures.
   if (part.bounds.is_empty() || signed_volume(scene, part) >= 0.0) return kOutside;
   SixPictures outside(part.bounds);
   for_each_facet(scene, part, [&](const Facet& facet) { outside.draw(facet); });

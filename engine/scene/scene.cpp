@@ -157,7 +157,7 @@ bool shows_same(const View& a, const View& b) {
 }
 
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment) {
-  // A sky is light enough.
+  // A scene with a sky needs no default lights.
   if (!lights.empty() || environment.has_sky()) return {};
   lights.push_back(make_headlight());
   AddedLights added{.has_headlight = true, .has_ambient = environment.ambient == vec3(0.0F)};

@@ -21,9 +21,9 @@ namespace {
 
 /// A transform whose determinant is less, relative to its columns' lengths, flattens what it moves.
 constexpr double kLeastVolume = 1e-12;
-/// The most by which the length of a light's direction may be off. A spot's cosines are taken with it as it is.
+/// The largest error of the length of a light's direction. A spot's cosines are computed with the direction as given.
 constexpr float kDirectionTolerance = 1e-5F;
-/// The most by which the lengths and the product of a camera's look and up may be off.
+/// The largest error of the lengths of a camera's look and up, and of their dot product.
 constexpr float kBasisTolerance = 1e-3F;
 /// Powers and colours beyond this are refused, because their products overflow in fp32.
 constexpr float kMaxPower = 1e15F;
@@ -41,7 +41,7 @@ class Place {
   Place(const char* name) : name_(name) {}  // NOLINT(google-explicit-constructor): a name is a place.
   Place(const char* array, size_t index) : name_(array), index_(index) {}
 
-  /// A part of this part. The name must outlive the place.
+  /// Returns the place of a member of this one. The name must outlive the place.
   Place operator+(const char* member) const {
     Place part = *this;
     part.members_.at(part.member_count_++) = member;
@@ -80,7 +80,7 @@ std::string describe_wrong_pixel(const vec3& pixel, const uvec2& place) {
   return sentence.str();
 }
 
-/// Gathers what is wrong.
+/// Collects problems.
 class Validation {
  public:
   explicit Validation(std::vector<Problem>& problems) : problems_(problems) {}
@@ -218,7 +218,7 @@ class Validation {
     }
   }
 
-  /// How many textures there are is known where there is a scene.
+  /// The number of textures is known only for a whole scene.
   void check_slot(const TextureSlot& slot, size_t texture_count, const Place& place) {
     if (!slot.exists()) return;
     check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "use one that exists");
@@ -395,7 +395,7 @@ class Validation {
     }
   }
 
-  /// Checks an object's references. False where it names what is not there.
+  /// Checks an object's references. Returns false if one does not exist.
   bool check_references(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
     const Place place("objects", index);
@@ -430,7 +430,7 @@ class Validation {
           "use non-zero scales and axes that differ");
   }
 
-  /// Checks an object whose references are there.
+  /// Checks an object whose references all exist.
   void check_placed(const Scene& scene, size_t index) {
     const Object& object = scene.objects[index];
     const Place place("objects", index);
@@ -472,7 +472,7 @@ class Validation {
     }
   }
 
-  /// The first element that is wrong, if any is.
+  /// Returns the first wrong element, if any.
   template <class Elements, class IsRight>
   void check_each(const Elements& elements, const IsRight& is_right, const char* what, const Place& place,
                   const char* cure) {

@@ -45,7 +45,7 @@ vec4 place_tangent(const vec4& t, const Placement& placement) {
   return {length > 0.0 ? vec3(tangent / length) : vec3(0.0F), placement.is_mirroring() ? -t.w : t.w};
 }
 
-/// Gives each of the values what `change` makes of it.
+/// Replaces each value by change(value).
 template <typename Value, typename Change>
 void change_all(std::vector<Value>& values, const Change& change) {
   for_each_pixel(values.size(), [&](size_t i) { values[i] = change(values[i]); });
@@ -153,9 +153,9 @@ Camera look_from_front(const Scene& scene, float aspect_ratio) {
     distance = std::max(distance, across - glm::dot(offset, look));
   }
   distance *= kFrontMargin;
-  // A lone point has no size to go by.
+  // A single point has no size.
   if (distance == 0.0) distance = 1.0;
-  // Far from the origin the eye must still be another fp32 number than what it looks at.
+  // Far from the origin the eye must still differ in fp32 from the point that it looks at.
   const dvec3 magnitude = glm::abs(center);
   distance = std::max(distance, 0x1p-20 * std::max({magnitude.x, magnitude.y, magnitude.z}));
 

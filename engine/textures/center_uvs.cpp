@@ -8,9 +8,9 @@
 namespace promin {
 namespace {
 
-/// Transforms by fractions, 1/2 or 3/4, repeat after some widths. More are not sought.
+/// Transforms by fractions such as 1/2 or 3/4 repeat after some widths. Larger numbers are not tried.
 constexpr int kMostWidths = 16;
-/// A picture that moves by less than 1/256 of the smallest texel there is stands still: angles and scales are rounded.
+/// A movement of less than 1/256 of the smallest possible texel counts as none, because angles and scales are rounded.
 constexpr double kLeastMove = 0x1p-22;
 
 /// Whether coordinates beyond `moved` show what they show here.

@@ -141,7 +141,7 @@ class PluginReader {
       : plugin_(open_plugin()), reader_(nullptr, plugin_.close), file_(file), format_(format) {}
 
   uvec2 read_header() {
-    // What the header says comes first: libraries take memory for the picture when they open it.
+    // The header is checked first, because libraries allocate memory for the picture when they open it.
     if (const std::optional<uvec2> size = read_told_size(file_, format_)) check_size(size->x, size->y);
     ProminPicturesInfo info{};
     ProminPicturesReader* opened = nullptr;
@@ -176,7 +176,7 @@ class PluginReader {
   ProminPicturesMessage message_{};
 };
 
-/// Calls task with the reader that the file's first bytes ask for.
+/// Calls task with the reader for the format that the file's first bytes show.
 template <typename Task>
 auto with_reader(std::span<const std::byte> file, const Task& task) {
   const PictureFormat* format = find_picture_format(file);

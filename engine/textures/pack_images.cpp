@@ -180,7 +180,7 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
   most_bytes = std::min(most_bytes, kMostBytes);
   const ImageSizes sizes(images, textures, true);
   TextureFit fit{std::vector<uint32_t>(images.size(), 0)};
-  // The largest is on top, of equal ones the first.
+  // The largest image is on top; among equally large ones, the first.
   const auto is_after = [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second > b.second;
   };

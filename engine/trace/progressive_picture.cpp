@@ -146,7 +146,7 @@ std::optional<View> ProgressivePicture::next_view() const {
 
 uvec2 ProgressivePicture::first_size() const {
   if (fixed_scale_) return scale_size(full_size_, *fixed_scale_);
-  // Blocks at the right and lower edge are not full: a picture of fewer pixels may have as many.
+  // Counts blocks, not pixels: those at the right and lower edge are not full, so a smaller picture may have as many.
   const double affordable = std::max<double>(pacer_.units(), TileScheduler::kMinBlocks);
   double scale = 1.0;
   while (scale > kMinScale && count_blocks(scale_size(full_size_, scale)) > affordable) {
@@ -200,7 +200,7 @@ std::shared_ptr<const gpu::Device> ProgressivePicture::refining_device() {
 }
 
 double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& commands, double most_units) {
-  // Frames go on meanwhile.
+  // Frames are drawn meanwhile, so a list that is still being traced is not waited for.
   if (!refining_device() || is_list_under_way_ || !prepare_refined()) return 0.0;
   is_prepared_ = false;
   has_recorded_list_ = is_list_under_way_ = refined_->has_samples();

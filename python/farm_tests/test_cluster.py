@@ -201,7 +201,7 @@ def test_workers_of_a_cluster_with_one_that_gives_other_bits_and_one_without_a_d
 
 
 class Gone:
-    """What a client of a scheduler that has gone does."""
+    """A client whose scheduler has disappeared."""
 
     def nthreads(self) -> dict[str, int]:
         raise OSError("Timed out trying to connect")
@@ -257,10 +257,10 @@ def test_fewer_pieces_than_workers_are_told(farm: Farm) -> None:
     farm.write_scene(1)
     said = farm.render("--workers", 2)
     assert "1 of 1 piece to make, by 2 workers on this machine" in said
-    assert "1 piece for 2 workers: some have no work; " in said and said.startswith("1 piece: ")
+    assert "1 piece for 2 workers: some get no work; " in said and said.startswith("1 piece: ")
     farm.write_scene(2)
     farm.job = farm.job.with_name("other")
-    assert "some have no work" not in farm.render("--workers", 2)
+    assert "some get no work" not in farm.render("--workers", 2)
 
 
 def test_workers_tell_what_they_are_at(farm: Farm) -> None:

@@ -100,7 +100,7 @@ def test_another_job_in_the_folder_is_refused(farm: Farm) -> None:
     farm.write_scene(4)
     farm.create()
     farm.write_scene(4, seed=2)
-    assert "the folder has another job" in farm.render(code=2)
+    assert "the folder belongs to another job" in farm.render(code=2)
 
 
 def test_folders_of_other_versions_are_refused(farm: Farm) -> None:

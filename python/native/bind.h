@@ -6,9 +6,9 @@
 
 namespace promin::python {
 
-// The parts of the module, each a class or two with what belongs to them. It is private to the package promin, which
-// checks and converts what it passes on: arrays have the right type, shape and order here, records are dicts
-// (records.h).
+// Each function adds a part of the module: one or two classes and what belongs to them. The module is private to the
+// package promin, which checks and converts all arguments: here arrays have the right type, shape and order, and
+// records are dicts (records.h).
 
 /// Adds Scene and what a scene is loaded, filled, lit and framed by.
 void bind_scene(nanobind::module_& module);

@@ -21,7 +21,7 @@
 
 namespace promin::python {
 
-/// What options of `promin render` and their values come to, read as the command line reads them. Throws UsageError.
+/// Returns the options of `promin render` that these words give, read as on the command line. Throws UsageError.
 app::RenderOptions read_options(const std::vector<std::string>& words);
 
 /// The sentence with Python's keywords in place of the options of `promin render`: look_at for --look-at.

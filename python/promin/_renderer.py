@@ -191,7 +191,7 @@ class Renderer:
 
     @property
     def device(self) -> Device:
-        """What it runs on."""
+        """The device that the renderer runs on."""
         return self._open().device
 
     @property

@@ -76,7 +76,7 @@ class _Process:
             start_new_session=True,
         )
         self.name = f"{socket.gethostname()}-{self._popen.pid}"
-        """As its ledger is named."""
+        """The name of its ledger."""
         threading.Thread(target=self._read, name="promin-farm answers", daemon=True).start()
 
     def is_alive(self) -> bool:

@@ -58,7 +58,7 @@ def main() -> None:
     if options.library is not None:
         settings += ["cmake.source-dir=python", f"cmake.define.PROMIN_BUILD={options.library}"]
     words = [f"--config-settings={setting}" for setting in settings]
-    # Named as in the project's own build, so that ccache knows what it has compiled.
+    # The compiler has the same name as in the project's own build, so that ccache finds what it has compiled.
     environment = {**os.environ, **({"CXX": options.compiler} if options.compiler else {})}
     run([*pip, "install", "--no-build-isolation", "--no-deps", *words, str(REPOSITORY)], environment)
     run([str(python), "-c", "import promin; print('promin', promin.__version__)"])

@@ -184,7 +184,7 @@ def test_the_root_widens_what_a_scene_may_name(tmp_path: Path) -> None:
     loaded = promin.Scene.load(scene, root=tmp_path)
     for each in (loaded, pickle.loads(pickle.dumps(loaded))):
         assert [material.name for material in each.materials] == ["red"]
-    with pytest.raises(promin.UsageError, match="is no folder"):
+    with pytest.raises(promin.UsageError, match="is not a folder"):
         promin.Scene.load(scene, root=tmp_path / "none")
 
 

@@ -238,7 +238,7 @@ def test_rays_have_many_forms(box_caster: promin.Caster) -> None:
     for wrong in (origins, (0, 0, 1), np.float32(origins)):
         with pytest.raises(promin.UsageError, match=r"points without directions; .* cast\(origins, directions\)"):
             box_caster.cast(wrong)
-    with pytest.raises(promin.UsageError, match="tmin and tmax go with origins and directions"):
+    with pytest.raises(promin.UsageError, match="tmin and tmax need origins and directions"):
         box_caster.cast(whole, tmax=1)
 
 
@@ -360,7 +360,7 @@ def test_files_stand_for_scenes(scenes: Path) -> None:
     assert bounds is not None
     hits = promin.Caster(scenes / "sphere.gltf").cast(bounds.mean(axis=0), [(0, 0, -1), (0, 1, 0)])
     assert (hits["object"] >= 0).all()
-    with pytest.raises(promin.UsageError, match="is no promin.Scene"):
+    with pytest.raises(promin.UsageError, match="is not a promin.Scene"):
         promin.Renderer(3)  # type: ignore[arg-type]
     with pytest.raises(promin.InputError, match="the file does not exist"):
         promin.render("none.glb")

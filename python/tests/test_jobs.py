@@ -86,7 +86,7 @@ def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) ->
     assert (tmp_path / "early.01.png").read_bytes() == (tmp_path / "whole.01.png").read_bytes()
     with pytest.raises(promin.RunError, match="1 of 4 pieces is missing or bad: frame000000_"):
         job.merge([tmp_path / "early.##.png"], frames=[0, 1])
-    with pytest.raises(promin.UsageError, match="there is no frame 2"):
+    with pytest.raises(promin.UsageError, match="the job has no frame 2"):
         job.merge([tmp_path / "early.##.png"], frames=[1, 2])
     with pytest.raises(promin.UsageError, match="frames has -1"):
         job.merge([tmp_path / "early.##.png"], frames=[-1])
@@ -406,7 +406,12 @@ def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
     files[2].write_bytes(whole[2][:-3] + bytes([whole[2][-3] ^ 1]) + whole[2][-2:])
     files[3].write_bytes(whole[1])
     assert [job.state(number) for number in range(4)] == ["bad"] * 4
-    assert [job.why(number) for number in range(4)] == ["is cut", "the file is empty", "is damaged", "the file holds another piece"]
+    assert [job.why(number) for number in range(4)] == [
+        "the piece is cut short",
+        "the file is empty",
+        "the piece is damaged",
+        "the file holds another piece",
+    ]
     with pytest.raises(promin.RunError, match="4 of 4 pieces are missing or bad"):
         job.merge([tmp_path / "none.png"])
     assert not (tmp_path / "none.png").exists()
@@ -441,7 +446,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     with pytest.raises(promin.InputError, match="the file does not exist, .*box.gltf"):
         jobs.open(tmp_path / "job").runner()
     (tmp_path / "job/command.json").write_text("{}")
-    with pytest.raises(promin.InputError, match="does not say by what command .* or is damaged, .*command.json"):
+    with pytest.raises(promin.InputError, match="does not name the command .* or it is damaged, .*command.json"):
         jobs.open(tmp_path / "job").runner()
 
 
@@ -451,7 +456,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         ("render", [], promin.UsageError, "SCENE is required"),
         ("render", ["box.gltf", "--sp", "2"], promin.UsageError, "unknown option --sp, .*did you mean --spp"),
         ("render", ["box.gltf", "--spp", "x"], promin.UsageError, "--spp takes a whole number"),
-        ("render", ["box.gltf", "--help"], promin.UsageError, "--help makes no job"),
+        ("render", ["box.gltf", "--help"], promin.UsageError, "--help cannot run as a job"),
         ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "--output is not an argument of a job"),
         ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "--piece is not an argument of a job"),
         ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "it is chosen when pieces are made"),
@@ -459,7 +464,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         ("render", ["none.gltf"], promin.InputError, "the file does not exist, none.gltf"),
         ("cast", ["box.gltf"], promin.UsageError, "RAYS.npy is required"),
         ("cast", ["box.gltf", "none.npy"], promin.InputError, "the file does not exist, none.npy"),
-        ("paint", ["box.gltf"], promin.UsageError, 'no command "paint" makes jobs'),
+        ("paint", ["box.gltf"], promin.UsageError, 'the command "paint" cannot run as a job'),
     ],
 )
 def test_wrong_arguments(
@@ -520,7 +525,7 @@ def test_pieces_of_a_function(tmp_path: Path) -> None:
         create("8")
     with pytest.raises(promin.UsageError, match="made by a function"):
         jobs.open(tmp_path / "job").runner()
-    with pytest.raises(promin.InputError, match='the job is one of "bytes"'):
+    with pytest.raises(promin.InputError, match="the job's kind is \"bytes\""):
         job.merge([tmp_path / "a.npy"])
     with pytest.raises(promin.UsageError, match="the job has no piece 3 of 3"):
         job.state(3)
@@ -585,9 +590,9 @@ def test_files_are_checked_before_the_work(scene: Path, rays: Path, tmp_path: Pa
     casts.check_outputs([tmp_path / "hits.npy"])
     for job, files, sentence in (
         (casts, [rays], "the output would overwrite an input"),
-        (casts, ["a.npy", "b.npy"], "the job's answers go to one file, not to 2"),
+        (casts, ["a.npy", "b.npy"], "the job's results are written to one file, not to 2"),
         (casts, ["a.exr"], ".npy"),
-        (lists, ["a.npy"], "the job's answers go to two files"),
+        (lists, ["a.npy"], "the job's results are written to two files"),
         (pictures, ["a.bmp"], "unknown output ending"),
     ):
         with pytest.raises(promin.UsageError, match=sentence):

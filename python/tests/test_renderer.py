@@ -121,7 +121,7 @@ def test_a_renderer_has_a_view_of_its_own(box: promin.Scene) -> None:
     assert own.size == (16, 12)
     other = promin.Renderer(box)
     assert (other.render(view).rgb == own.rgb).all() and (renderer.render(debug_view="uv").rgb != own.rgb).any()
-    with pytest.raises(promin.UsageError, match="is no promin.View"):
+    with pytest.raises(promin.UsageError, match="is not a promin.View"):
         promin.Renderer(box, view=(16, 12))  # type: ignore[arg-type]
 
 
@@ -292,10 +292,10 @@ def test_what_a_renderer_tells_is_a_copy(box: promin.Scene) -> None:
 @pytest.mark.parametrize(
     "view, sentence",
     [
-        (promin.View(min_spp=8), "min_spp needs an error to aim at; give target_error as well"),
-        (promin.View(max_spp=8), "max_spp needs an error to aim at; give target_error as well"),
+        (promin.View(min_spp=8), "min_spp needs a target error; give target_error as well"),
+        (promin.View(max_spp=8), "max_spp needs a target error; give target_error as well"),
         (promin.View(spp=2, target_error=0.5), "target_error and spp=2 contradict each other"),
-        (promin.View(error_in="display"), "error_in needs an error to aim at; give target_error as well"),
+        (promin.View(error_in="display"), "error_in needs a target error; give target_error as well"),
         (promin.View(target_error=0.5, error_in="log"), 'error_in is \'log\'; give "linear" or "display"'),
         (promin.View(spp=2, time_limit=0.5), "time_limit and spp=2 contradict each other"),
     ],
@@ -311,7 +311,7 @@ def test_few_expected_samples_take_other_kernels_and_give_the_same_bits(box: pro
     few = promin.Renderer(box, expected_samples=np.uint32(1000)).render(size=(24, 16))
     assert (few.rgb == promin.Renderer(box).render(size=(24, 16)).rgb).all()
     for wrong in (-1, 1.5, 2**64, "many"):
-        with pytest.raises(promin.UsageError, match="expected_samples is .*; give a whole number from 0 on"):
+        with pytest.raises(promin.UsageError, match="expected_samples is .*; give a whole number of 0 or more"):
             promin.Renderer(box, expected_samples=wrong)  # type: ignore[arg-type]
     # Kernels that have been compiled lie in a cache of the driver's.
     code = """if True:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What Python says of defaults, choices and options, for readers and type checkers, is what the library's tables have."""
+"""Defaults, choices and options in Python's docstrings and types agree with the library's tables."""
 
 from __future__ import annotations
 

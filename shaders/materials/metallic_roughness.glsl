@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The metallic-roughness model of glTF 2.0, appendix B (docs/model.md, "Metallic-roughness"). Of its record a = base
-// colour, w of it the share of metal; b = the dielectric's reflectance at normal incidence, w of it at grazing
-// incidence; x of c = roughness.
+// The metallic-roughness model of glTF 2.0, appendix B (docs/model.md, "Metallic-roughness"). In its MaterialRecord, a
+// holds the base colour and in w the weight of metal; b the dielectric's reflectance at normal incidence and in w at
+// grazing incidence; c.x the roughness.
 
 const float LEAST_COSINE = 0.0009765625;        // 2^-10, to the eye
 const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12: the light comes from behind, as seen from the eye
@@ -13,14 +13,14 @@ const float INVERSE_PI = 0.318309886;
 #include "thin_film.glsl"
 #include "anisotropy.glsl"
 
-// Between these roughnesses reflected objects fade into the environment alone.
+// Between these roughnesses reflected objects fade until only the environment remains.
 const float SHARPEST_BLUR = 0.1;
 // A mirror ray of less weight is not traced.
 const float LEAST_MIRROR_WEIGHT = 1.0 / 256.0;
 
-// What the lobe does with light: K gives back what microfacets reflect more than once, R is the share of light from
-// all around that is sent to the eye (Fdez-Aguera, "A Multiple-Scattering Microfacet Model for Real-Time Image Based
-// Lighting", JCGT 8(1)).
+// Reflection by the lobe: K compensates for light that microfacets reflect more than once, and R is the part of the
+// light from all directions that is reflected to the eye (Fdez-Aguera, "A Multiple-Scattering Microfacet Model for
+// Real-Time Image Based Lighting", JCGT 8(1)).
 struct Lobe {
   vec3 f0;  // Fresnel's reflectance at normal incidence, and at grazing incidence
   float f90;
@@ -47,8 +47,8 @@ Lobe metal_lobe(ShadingPoint point) {
   return make_lobe(has(FEATURE_IRIDESCENCE) ? point.thin_film.metal : base_color_of(point), 1.0, point.lobe_shares);
 }
 
-// Puts the film's colours into what dielectric and metal reflect, as seen at the angle of this cosine. What reflects
-// everything, as glass does beyond the critical angle, reflects everything under a film too.
+// Applies the film's colours to the reflectances of dielectric and metal, seen at the angle of this cosine. A surface
+// that reflects everything, such as glass beyond the critical angle, does so under a film too.
 void put_film(inout ShadingPoint point, float cosine) {
   ThinFilm film = point.thin_film;
   vec3 metal = base_color_of(point);
@@ -67,13 +67,13 @@ void put_film(inout ShadingPoint point, float cosine) {
   point.thin_film = film;
 }
 
-// What a sheen of which this share is sent leaves for what is below it.
+// Returns the part of the light that a sheen with this reflected part leaves for the layers below it.
 float left_below_sheen(Sheen sheen, float share) {
   precise float left = 1.0 - max_abs(sheen.color) * min(share, 1.0);
   return left;
 }
 
-// The share of light from all around that is sent to the eye by reflection below the sheen.
+// Returns the part of the light from all directions that is reflected to the eye below the sheen.
 vec3 reflectance_of(ShadingPoint point) {
   float metallic = point.material.a.w;
   precise vec3 sum = (1.0 - metallic) * dielectric_lobe(point).r + metallic * metal_lobe(point).r;
@@ -83,12 +83,13 @@ vec3 reflectance_of(ShadingPoint point) {
 
 bool scatters_through(ShadingPoint point) { return point.scattering.w > 0.0; }
 
-// Whether a source in this direction lights the surface from its other side, through which it scatters light.
+// Returns whether a light source in this direction lights the surface from its other side, through which it scatters
+// light.
 bool lies_behind(ShadingPoint point, vec3 to_light) {
   return scatters_through(point) && dot3(point.geometric_normal, to_light) < 0.0;
 }
 
-// The diffuse share: what the dielectric does not reflect.
+// Returns the diffuse albedo: the part that the dielectric does not reflect.
 vec3 albedo_of(ShadingPoint point) {
   Lobe lobe = dielectric_lobe(point);
   precise vec3 albedo =
@@ -98,7 +99,7 @@ vec3 albedo_of(ShadingPoint point) {
   return albedo;
 }
 
-// The same of light from the other side (KHR_materials_diffuse_transmission).
+// Returns the same for light from the other side (KHR_materials_diffuse_transmission).
 vec3 albedo_from_behind(ShadingPoint point) {
   Lobe lobe = dielectric_lobe(point);
   precise vec3 albedo = (1.0 - point.material.a.w) * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z))) *
@@ -107,7 +108,8 @@ vec3 albedo_from_behind(ShadingPoint point) {
   return albedo;
 }
 
-// The part of what a surface of this roughness reflects that a mirror ray brings; the environment brings the rest.
+// Returns the part of the reflection of a surface of this roughness that comes from a mirror ray; the remainder comes
+// from the environment.
 float sharpness_of(float roughness) {
   precise float x = clamp((roughness - SHARPEST_BLUR) * (1.0 / (ROUGHEST_MIRROR - SHARPEST_BLUR)), 0.0, 1.0);
   precise float sharpness = 1.0 - x * x * (3.0 - 2.0 * x);
@@ -116,8 +118,8 @@ float sharpness_of(float roughness) {
 
 bool is_coated(ShadingPoint point) { return has(FEATURE_COATS) && point.coat.weight > 0.0; }
 
-// The same of the material itself. A hit has one mirror ray, of the coat where there is one: under it what has another
-// normal sees the environment alone.
+// Returns the same for the material itself. A hit has one mirror ray, that of the coat if there is one; layers under
+// the coat with another normal see only the environment.
 float sharpness_of(ShadingPoint point) {
   if (is_coated(point) && any(notEqual(point.normal, point.coat.normal))) return 0.0;
   return sharpness_of(point.material.c.x);
@@ -132,7 +134,7 @@ vec3 mirror_weight_metallic_roughness(ShadingPoint point) {
   return max_abs(weight) < LEAST_MIRROR_WEIGHT ? vec3(0.0) : weight;
 }
 
-// Of coat and material the smoother one's; the coat's where it alone is mirrored in.
+// Returns the roughness of the smoother one of coat and material, or that of the coat if only the coat mirrors.
 float mirror_roughness_metallic_roughness(ShadingPoint point) {
   if (!is_coated(point)) return point.material.c.x;
   bool is_one_normal = all(equal(point.normal, point.coat.normal));
@@ -143,7 +145,7 @@ vec3 mirror_normal_metallic_roughness(ShadingPoint point) {
   return is_coated(point) ? point.coat.normal : point.normal;
 }
 
-// The direction from which a lobe takes most of its light: rough ones lean towards the normal.
+// Returns the direction from which a lobe receives most of its light; rough lobes lean towards the normal.
 vec3 direction_of_lobe(vec3 normal, vec3 geometric_normal, float roughness, vec3 direction) {
   vec3 mirrored = reflect_direction(direction, normal, geometric_normal);
   float alpha2 = roughness * roughness * roughness * roughness;
@@ -151,7 +153,7 @@ vec3 direction_of_lobe(vec3 normal, vec3 geometric_normal, float roughness, vec3
   return normalize3(leaning);
 }
 
-// What the coat reflects of the environment, but for what its mirror ray brings.
+// Returns the environment that the coat reflects, without the part of its mirror ray.
 vec3 environment_in_coat(ShadingPoint point, vec3 direction, bool follows_mirror) {
   Coat coat = point.coat;
   vec3 around = environment_radiance(
@@ -194,7 +196,7 @@ vec3 emitted_light_metallic_roughness(ShadingPoint point) {
   return emitted;
 }
 
-// The microfacets' density D, where h is the half vector: as k^2 / pi, because 1 - (N.H)^2 loses all its digits in a
+// Returns the microfacets' density D for the half vector h, as k^2 / pi, because 1 - (N.H)^2 loses all digits in a
 // highlight, while |H - N| keeps them.
 float density_of(vec3 normal, vec3 h, float alpha) {
   precise vec3 apart = h - normal;
@@ -215,8 +217,8 @@ float visibility_of(float v, float l, float alpha) {
   return visibility;
 }
 
-// The share of a source's light that facets of this roughness send to the eye, before Fresnel's factor: D, V and N.L.
-// h is the half vector.
+// Returns the part of a source's light that facets of this roughness reflect to the eye, without Fresnel's factor: D, V
+// and N.L. h is the half vector.
 float facet_scale(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosine) {
   float alpha = max(roughness * roughness, LEAST_ALPHA);
   float v = max(dot3(normal, to_eye), LEAST_COSINE);
@@ -224,9 +226,9 @@ float facet_scale(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosin
   return scale;
 }
 
-// What a source adds where there is a sheen: its light, and what it leaves of the rest both on the way in and on the way
-// out. Where its curves would send more than arrives, as they do at grazing angles, all of it is less by that. h is the
-// half vector.
+// Returns a source's contribution with a sheen: the sheen's own light, and the light of the layers below, reduced by
+// the sheen on the way in and on the way out. At grazing angles, where the sheen's curves would reflect more than
+// arrives, everything is scaled down by that excess. h is the half vector.
 vec3 contribution_with_sheen(ShadingPoint point, vec3 h, vec3 to_eye, float cosine, LightRecord light, vec3 rest) {
   Sheen sheen = point.sheen;
   if (max_abs(sheen.color) == 0.0 || !(cosine > 0.0)) return rest;
@@ -236,7 +238,7 @@ vec3 contribution_with_sheen(ShadingPoint point, vec3 h, vec3 to_eye, float cosi
   return all;
 }
 
-// What a source adds to what is under the coat, or without one to all.
+// Returns a source's contribution to the layers under the coat, or to all without a coat.
 vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
   precise vec3 sum = to_eye + to_light;
@@ -263,7 +265,7 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
   return contribution;
 }
 
-// What the coat reflects of a source.
+// Returns the light of a source that the coat reflects.
 vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightRecord light) {
   Coat coat = point.coat;
   float cosine = dot3(coat.normal, to_light);
@@ -275,7 +277,8 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   return reflected;
 }
 
-// What a source behind the surface adds under the coat: the light that comes through is scattered, without a highlight.
+// Returns the contribution of a source behind the surface, under the coat: transmitted light is scattered, without a
+// highlight.
 vec3 contribution_from_behind(ShadingPoint point, vec3 to_light, LightRecord light) {
   precise float cosine = -dot3(point.normal, to_light);
   precise vec3 contribution = albedo_from_behind(point) * INVERSE_PI * light.diffuse.xyz * max(cosine, 0.0);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Phong's model (docs/model.md, "Phong"). Of its record a = ambient, b = diffuse, c = specular, w of it the exponent,
-// d = reflection; numbers of texture slots: w of b = of normals, w of d = of specular and reflection.
+// Phong's model (docs/model.md, "Phong"). In its MaterialRecord, a holds ambient, b diffuse, c specular and in w the
+// exponent, d reflection; b.w and d.w hold the numbers of the texture slots of normals, and of specular and reflection.
 
 vec3 own_light_phong(ShadingPoint point, vec3 direction, bool follows_mirror) {
   precise vec3 own = point.material.a.xyz * point.color * ambient_at(point.normal) + point.material.emissive.xyz;
@@ -16,7 +16,7 @@ vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float co
     precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
     precise float highlight = dot3(mirrored, to_eye);
     if (highlight > 0.0) {
-      // 1 is the most that unit vectors give; beyond it is rounding.
+      // Unit vectors give at most 1; more is a rounding error.
       contribution +=
           point.material.c.xyz * light.specular.xyz * power(min(highlight, 1.0), point.material.c.w);
     }
@@ -26,7 +26,7 @@ vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float co
 
 vec3 mirror_weight_phong(ShadingPoint point) { return HAS_FACES ? point.glass.mirror : point.material.d.xyz; }
 
-// Perfect, so its rays see the environment as it is; where there is none, the background.
+// A perfect mirror, whose rays see the unblurred environment, or the background if there is none.
 float mirror_roughness_phong(ShadingPoint point) { return perfect_mirror_roughness(); }
 
 vec3 mirror_normal_phong(ShadingPoint point) { return point.normal; }

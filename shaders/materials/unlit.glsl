@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A colour that no light changes (KHR_materials_unlit). Of its record a = the colour.
+// A colour that does not depend on light (KHR_materials_unlit). MaterialRecord::a holds the colour.
 
 vec3 own_light_unlit(ShadingPoint point, vec3 direction, bool follows_mirror) {
   precise vec3 own = point.material.a.xyz * point.color + point.material.emissive.xyz;
   return own;
 }
 
-// All of it: no light changes it.
+// All of its light is emitted.
 vec3 emitted_light_unlit(ShadingPoint point) { return own_light_unlit(point, vec3(0.0), false); }
 
 vec3 contribution_unlit(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {

@@ -7,8 +7,8 @@ vec3 box_center(Primitive p) { return p.a.xyz; }
 vec3 box_half_size(Primitive p) { return vec3(p.a.w, p.b.xy); }
 vec3 box_turn(Primitive p) { return vec3(p.b.zw, uintBitsToFloat(p.c.x)); }
 
-// v turned by the unit quaternion (turn, w): v + 2 turn x (turn x v + w v). |turn| < 0.53 makes the root good to u, so
-// that a component is off by at most 5 u |v|; without a turn nothing is.
+// v turned by the unit quaternion (turn, w): v + 2 turn x (turn x v + w v). |turn| < 0.53 makes the root accurate to u,
+// so that the error of a component is at most 5 u |v|; without a turn it is 0.
 vec3 turned(vec3 v, vec3 turn, float w) {
   precise vec3 inner = cross3(turn, v) + w * v;
   precise vec3 result = v + 2.0 * cross3(turn, inner);
@@ -22,12 +22,12 @@ float scalar_of(vec3 turn) {
 
 float component(vec3 v, uint axis) { return axis == 0u ? v.x : (axis == 1u ? v.y : v.z); }
 
-// Of a face: twice its axis, and 1 more for the one on the positive side.
+// Returns the number of a face: twice its axis, plus 1 on the positive side.
 uint face_of(uint axis, bool is_positive) { return 2u * axis + (is_positive ? 1u : 0u); }
 
 // Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986, from the closest approach to the centre, where rounding
-// is small beside the box. The rotation is the same for the origin and all three slabs: what it rounds turns and moves
-// the box as a whole.
+// is small beside the box. The rotation is the same for the origin and all three slabs, so its rounding only rotates
+// and moves the box as a whole.
 Inside ends_of_box(Ray ray, Primitive p) {
   vec3 given_size = box_half_size(p);
   float largest = max_abs(given_size);
@@ -40,7 +40,7 @@ Inside ends_of_box(Ray ray, Primitive p) {
   vec3 offset = turned(scaled, turn, -w);
   vec3 direction = turned(ray.direction, turn, -w);
 
-  // Across a slab its planes are met at +-infinity, or nowhere.
+  // A ray parallel to a slab hits its planes at +-infinity, or nowhere.
   vec3 signs = signs_of(direction);
   precise vec3 inverse = 1.0 / (signs * max(abs(direction), vec3(TWO_POW_MINUS_80)));
   precise vec3 entries = (-signs * half_size - offset) * inverse;

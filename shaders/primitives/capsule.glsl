@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The convex hull of two spheres: both, and between the circles where a cone touches them the frustum of that cone. It
-// is convex as each of the three is, so a ray is inside from the first entry to the last exit, and no seam can leak.
+// The convex hull of two spheres: both spheres, and the frustum of the cone that touches them, between its circles of
+// contact. The hull and each of the three parts are convex, so a ray is inside from the first entry to the last exit,
+// and no seam can leak.
 #include "primitives/frustum.glsl"
 
 struct Capsule {
@@ -26,8 +27,8 @@ Capsule capsule_of(Primitive p) {
 }
 
 // Its generators make an angle with the axis whose sine is s = (bottom - top) / height. It touches the spheres at s
-// times their radii along the axis, where its radii are theirs times the cosine. The square of the cosine has its
-// factors apart: where one sphere nearly holds the other, what is left of the height is small beside it.
+// times their radii along the axis, where its radii are theirs times the cosine. The square of the cosine is computed
+// from its factors, because if one sphere almost contains the other, the remaining height is small.
 Frustum side_of(Capsule c, vec3 center) {
   precise float difference = c.radius_bottom - c.radius_top;
   precise float height = 2.0 * c.half_height;
@@ -49,7 +50,7 @@ Inside hull_of(Inside a, Inside b) {
                 takes_exit ? b.exit : a.exit, takes_exit ? b.exit_part : a.exit_part);
 }
 
-// The approach to a point that lies `from_point` before the ray's origin.
+// Returns the approach to the point from which `from_point` leads to the ray's origin.
 Approach approach_from(Ray ray, vec3 from_point) {
   ray.origin = from_point;
   return approach(ray, vec3(0.0));
@@ -67,8 +68,8 @@ Inside inside_end(Ray ray, vec3 from_center, float radius, uint part) {
   return Inside(entry, part, exit, part);
 }
 
-// The centres of the parts are never rounded in the world, but seen from the ray's origin: a capsule far from the
-// world's origin is as exact as one near it.
+// The centres of the parts are never rounded in the world, but only relative to the ray's origin: a capsule far from
+// the world's origin is as exact as one near it.
 Inside ends_of_capsule(Ray ray, Primitive p) {
   Capsule c = capsule_of(p);
   precise vec3 from_center = ray.origin - c.center;
@@ -86,9 +87,10 @@ Inside ends_of_capsule(Ray ray, Primitive p) {
 
 Crossing intersect_capsule(Ray ray, Primitive p) { return nearest_crossing(ray, ends_of_capsule(ray, p)); }
 
-// Which part a point of the surface belongs to. Not the one that the ray met: where two parts meet they touch, rounding
-// picks either in a strip as wide as the root of it, and their normals part faster than their surfaces. The sphere of
-// the hull that touches the surface there has its centre at `foot` on the axis.
+// Returns the part to which a point of the surface belongs. This may differ from the part that the ray hit: where two
+// parts touch, rounding selects either of them in a strip as wide as the square root of the rounding error, and their
+// normals diverge faster than their surfaces. The sphere of the hull that touches the surface there has its centre at
+// `foot` on the axis.
 uint capsule_part(Capsule c, Frustum side, vec3 from_center) {
   if (!c.has_side) return c.radius_bottom >= c.radius_top ? PART_BOTTOM : PART_TOP;
   precise float z = dot3(from_center, c.axis);

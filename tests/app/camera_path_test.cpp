@@ -169,7 +169,7 @@ TEST_F(CameraPathTest, AFrameOfVersion2MayLookAtAPoint) {
   EXPECT_THAT(refusal(text(1, look_at)), HasSubstr("\"look\" is missing"));
   EXPECT_THAT(refusal(text(2, "")), HasSubstr("a frame has both look and look_at"));
   EXPECT_THAT(refusal(text(2, look + look_at)), HasSubstr("a frame has both look and look_at"));
-  EXPECT_THAT(refusal(text(2, R"(, "look_at": [1000000.1, 0, 5])")), HasSubstr("look_at is the place of the eye"));
+  EXPECT_THAT(refusal(text(2, R"(, "look_at": [1000000.1, 0, 5])")), HasSubstr("look_at is the position of the eye"));
   EXPECT_THAT(refusal(text(3, look)), HasSubstr("version"));
 }
 
@@ -180,18 +180,18 @@ TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
       {"", "the path has no frames"},
       {good + ", " + good, "frames[1]; sort the frames by time"},
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, 0], "up": [0, 1, 0], "fov_deg": 40})", "zero or parallel"},
-      {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0]})", "one of fov_deg and ymag"},
+      {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0]})", "a frame has both fov_deg and ymag"},
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 4, "ymag": 1})", "one of"},
       {R"({"time_s": 0, "eye": [0, 0, 0], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 180})", "out of range"},
       {R"({"time_s": -1, "eye": [0, 0], "look": [0, 0, -1], "up": "y", "fov_deg": 40})", "1 of 3 problems"},
       {R"({"eye": [0, 0, 1e99], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 40})", "\"time_s\" is missing"},
-      {"7", "7 stands where an object belongs"},
+      {"7", "7 is given where an object is expected"},
   };
   for (const auto& [frames, part] : cases) EXPECT_THAT(refusal_of_frames(frames), HasSubstr(part)) << frames;
   EXPECT_THAT(refusal(R"({"format": "promin camera path", "version": 1, "fps": 0, "frames": []})"),
               HasSubstr("path.json: fps; use a number from 0.001 to 1000"));
   EXPECT_THAT(refusal("{"), HasSubstr("the JSON cannot be read"));
-  EXPECT_THAT(refusal("[]"), HasSubstr("a JSON array stands where an object belongs"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("a JSON array is given where an object is expected"));
   EXPECT_THAT(refusal(std::string(1000, '[')), HasSubstr("nests 1000 deep"));
   EXPECT_THAT(refusal(R"({"format": "other", "version": 2, "frames": []})"), HasSubstr("is not one of promin camera"));
   EXPECT_THROW(read_camera_path(folder_ / "none.json"), InputError);

@@ -129,8 +129,9 @@ TEST_F(CastTest, RaysThatCannotHitAreCounted) {
   const ProcessResult result = run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err,
-            "promin: warning: 5 of 9 rays cannot hit anything, the first is 3: a ray needs a direction that is not 0, "
-            "tmin < tmax, and no NaN\n");
+            "promin: warning: 5 of 9 rays cannot hit anything, the first of them is number 3: a ray needs a direction "
+            "that is not 0, "
+            "tmin < tmax and no NaN\n");
   const std::vector<Hit> hits = read_hits("hits.npy");
   for (size_t i = 3; i < 8; ++i) EXPECT_EQ(hits[i].object, -1) << i;
   EXPECT_EQ(hits[8].object, 0);

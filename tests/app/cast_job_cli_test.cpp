@@ -62,7 +62,7 @@ TEST_F(CastJobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
       }
     }
   }
-  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the job's answers go to two files"));
+  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the job's results are written to two files"));
   expect_done(run({"merge", "job", "-o", "merged.npy", "--offsets", "merged_offsets.npy"}));
   EXPECT_TRUE(read("merged.npy") == read("whole.npy") && read("merged_offsets.npy") == read("whole_offsets.npy"));
 }
@@ -112,9 +112,9 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   EXPECT_THAT(run({"merge", "job", "-o", "cut.npy"}).err, HasSubstr("3 of 4 pieces are missing or bad"));
   const ProcessResult result =
       run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + " is cut; it is made anew"));
-  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + " is damaged; it is made anew"));
-  EXPECT_THAT(result.out, HasSubstr("3 of 4 pieces made now: cut.npy"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
+  EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now: cut.npy"));
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
 
   expect_failure(
@@ -139,11 +139,11 @@ TEST_F(CastJobCliTest, WhatTheJobIsMadeOfIsNotOverwritten) {
 TEST_F(CastJobCliTest, WrongUseIsRefused) {
   const std::pair<OptionValues, std::string> cases[] = {
       {{}, "--output is required"},
-      {{"-o", "a.npy", "--pieces", "4"}, "--pieces has no job to cut"},
-      {{"--piece", "0/2"}, "--piece has no job to cut"},
+      {{"-o", "a.npy", "--pieces", "4"}, "--pieces needs a job to divide"},
+      {{"--piece", "0/2"}, "--piece needs a job to divide"},
       {{"--job", "job"}, "--output is required"},
       {{"--job", "job", "--all", "-o", "a.npy"}, "--all is given without --offsets"},
-      {{"-o", "a.npy", "--job", "job", "--pieces", "1001"}, "1001 pieces are more than the 1000 rays"},
+      {{"-o", "a.npy", "--job", "job", "--pieces", "1001"}, "1001 pieces are more than 1000 rays"},
       {{"-o", "a.npy", "--job", "job", "--piece", "0/4"}, "--piece and --output contradict each other"},
       {{"-o", "a.npy", "--job", "job", "--repeat", "2"}, "--job and --repeat contradict each other"},
       {{"-o", "a.npy", "--job", "job", "--stats", "s.json"}, "--job and --stats contradict each other"}};
@@ -178,7 +178,7 @@ TEST_F(CastJobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   const ProcessResult result = signal_when(
       is_begun, SIGTERM, {"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "2000", "-o", "cut.npy"});
   EXPECT_EQ(result.signal, SIGTERM);
-  EXPECT_THAT(result.err, HasSubstr("of 2000; the same command goes on"));
+  EXPECT_THAT(result.err, HasSubstr("of 2000; the same command continues the job"));
   EXPECT_LT(pieces().size(), 2000U);
   EXPECT_FALSE(std::filesystem::exists(folder() / "cut.npy"));
 }

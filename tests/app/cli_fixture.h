@@ -110,11 +110,11 @@ class CliTest : public testing::Test {
     return names;
   }
 
-  /// The disk is full for any file beyond so many bytes.
+  /// Simulates a full disk for any file beyond a number of bytes.
   void fill_disk(size_t most_bytes) {
     options_.max_file_bytes = most_bytes;
     options_.environment["LD_PRELOAD"] = PROMIN_FULL_DISK_LIBRARY;
-    // A sanitizer wants to be loaded first, which matters only where libraries take the place of what it watches.
+    // A sanitizer must be loaded first. This matters only if libraries replace functions that it intercepts.
     options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
   }
 

@@ -141,7 +141,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"diff", "a.png", "b.png"}, "unknown command diff, on the command line; did you mean compare?"},
       {{"render", "square.gltf", "--denoise"}, "unknown option --denoise, on the command line; see promin render"},
       {{"render", "square.gltf", "--seed", "1"}, "unknown option --seed, on the command line; see promin render"},
-      {{"square.gltf", "x.png"}, "unexpected argument x.png, on the command line; say -o x.png"},
+      {{"square.gltf", "x.png"}, "unexpected argument x.png, on the command line; write -o x.png"},
       {{"--spp", "3"}, "unknown option --spp"},
       {{"render"}, "SCENE is required, on the command line; see promin render --help"},
       {{"info"}, "SCENE is required, on the command line; see promin info --help"},
@@ -164,15 +164,15 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
        "--time-limit and --shading contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--time-limit", "1", "--repeat", "2"},
        "--time-limit and --repeat contradict each other"},
-      {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs an error to aim at"},
-      {{"render", "square.gltf", "-o", "a.exr", "--error-in", "linear"}, "--error-in needs an error to aim at"},
+      {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "--min-spp needs a target error"},
+      {{"render", "square.gltf", "-o", "a.exr", "--error-in", "linear"}, "--error-in needs a target error"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--error-in", "log"},
        "--error-in takes linear or display, not \"log\""},
       {{"render", "square.gltf", "-o", "a.png", "--target-error", "0.1", "--error-in", "display", "--exposure",
         "average"},
        "--error-in display and --exposure average contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "error", "--shading", "uv"},
-       "--aov error and --shading contradict each other"},
+       "--shading and --aov error contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "12"},
        "--min-spp takes a power of two, not 12"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "16", "--max-spp", "8"},
@@ -191,13 +191,13 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "the same output file is named twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}, "overwrite an input"},
       {{"render", "square.gltf", "-o", "a.exr", "--stats", "a.exr"}, "the same output file is named twice"},
-      {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "too few values for --spp"},
+      {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "too few values are given for --spp"},
       {{"render", "square.gltf", "-o", "a.exr", "--spp", "0"}, "--spp takes a whole number from 1 to "},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "65537"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "4294967297"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "-1"}, "--spp takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "-s", "2x"}, "--spp takes a whole number"},
-      {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values for --size WxH|hd|fullhd|4k, on"},
+      {{"render", "square.gltf", "-o", "a.exr", "--size"}, "too few values are given for --size WxH|hd|fullhd|4k, on"},
       {{"render", "square.gltf", "--size", "large", "-o", "a.exr"},
        "--size takes a size as 640x480, a width or hd or fullhd or 4k, not \"large\""},
       {{"render", "square.gltf", "--size", "640:480", "-o", "a.exr"},
@@ -206,7 +206,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "--size", "64x48x32"}, "not \"48x32\" in \"64x48x32\""},
       {{"square.gltf", "--gpu", "0"}, "unknown option --gpu, on the command line; did you mean --device?"},
       {{"square.gltf", "--threads", "0"}, "--threads takes a whole number from 1 to 1024, not \"0\""},
-      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values for --eye"},
+      {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "0", "--spp", "4"}, "too few values are given for --eye"},
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-inf"}, "--near takes a number from 0"},
       {{"render", "square.gltf", "-o", "a.exr", "--exposure", "foo"},
        "--exposure takes a number from -64 to 64, auto or average, not \"foo\""},
@@ -216,10 +216,10 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--max-depth", "1001"}, "--max-depth takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}, "--repeat takes a whole number"},
       {{"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}, "--crop is empty"},
-      {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop reaches beyond"},
+      {{"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}, "--crop extends beyond"},
       {{"render", "square.gltf", "-o", "a.exr", "--camera", "back"}, "choose one of: 0 (main), 1 (side)"},
       {{"render", "square.gltf", "-o", "a.exr", "--camera", "2"}, "no camera \"2\", square.gltf"},
-      {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "no cameras to choose from"},
+      {{"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}, "the scene has no cameras"},
       {{"render", "square.gltf", "-o", "a.exr", "--fov", "180"}, "--fov takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--near", "-1"}, "--near takes a number"},
       {{"render", "square.gltf", "-o", "a.exr", "--eye", "0", "nan", "0"}, "--eye takes a number"},
@@ -236,7 +236,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--from", "left", "--camera", "0"},
        "--from and --camera contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--from", "lefty"}, "did you mean left?"},
-      {{"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}, "--fit has nothing to frame"},
+      {{"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}, "--fit has no effect on the scene's own camera"},
       {{"render", "square.gltf", "-o", "a.exr", "--fit", "1.5"}, "--fit takes a number from 0.05 to 1, not"},
       {{"render", "square.gltf", "-o", "a.exr", "--zoom", "0"}, "--zoom takes a number from 0.001 to 1000, not"},
       {{"render", "square.gltf", "-o", "a.exr", "--up", "north"}, "--up "},
@@ -274,12 +274,12 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render", "square.gltf", "-o", "a.exr", "--dither"},
        "--dither needs a PNG, on the command line; add -o square.png"},
       {{"render", "square.gltf", "-o", "a.exr", "--aov", "direct", "--shading", "normals"},
-       "--aov of light and --shading"},
+       "--shading and an --aov of light contradict each other"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/0"}, "not \"0\" in \"1/0\""},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "1/65537"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--target-error", "3/2"}, "--target-error takes 1/65536 to 1"},
       {{"render", "square.gltf", "-o", "a.exr", "--background", "0", "0"},
-       "too few values for --background R G B|COLOR|environment"},
+       "too few values are given for --background R G B|COLOR|environment"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet", "-v"}, "contradict"},
       {{"render", "square.gltf", "-o", "a.exr", "--quiet=perhaps"}, "--quiet"},
   };
@@ -340,7 +340,7 @@ TEST_F(CliTest, BadPanoramasAreRefused) {
 
 TEST_F(CliTest, NegativeNumbersOfPanoramasAreWarnedOf) {
   write_image(folder() / "negative.exr", {{4, 2}, std::vector<vec3>(8, vec3(-1.0F))});
-  const std::string warning = "24 numbers of negative.exr are negative, the first -1 in pixel 0, 0; they count as 0";
+  const std::string warning = "24 numbers of negative.exr are negative, the first -1 in pixel 0, 0; they are read as 0";
   EXPECT_THAT(run({"info", "square.gltf", "--environment", "negative.exr"}).out, HasSubstr(warning));
   const ProcessResult render =
       run({"render", "square.gltf", "--environment", "negative.exr", "-o", "a.exr", "--size", "4", "4"});
@@ -411,7 +411,7 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   // It waits on disk until it is whole, and before it is traced there is no room for that.
   const OptionValues large = {"render",         "square.gltf", "--size", "30000",   "20000",
                               "--target-error", "0.5",         "-o",     "old.exr", "--quiet"};
-  expect_failure(run(large), 1, "cannot keep 7201 MB beside the output file until it can be written");
+  expect_failure(run(large), 1, "there is no room for 7201 MB beside the output file until it can be written");
   EXPECT_EQ(read("old.exr"), "old");
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
 }
@@ -430,7 +430,8 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
       OptionValues words = {"render", "square.gltf", "-o", "old.exr", "--quiet", "--light", "none"};
       words.insert(words.end(), {"--background", "0", "0", "0", "--lights-off", "0"});
       words.insert(words.end(), how.begin(), how.end());
-      expect_failure(run(words), 1, how == whole ? "cannot keep 13 MB beside" : "cannot keep 2 MB beside");
+      expect_failure(run(words), 1,
+                     how == whole ? "there is no room for 13 MB beside" : "there is no room for 2 MB beside");
       EXPECT_EQ(read("old.exr"), "old");
       EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
     }
@@ -542,7 +543,7 @@ TEST_F(CliTest, StrictRefusesWhatIsRequiredAndNotKnown) {
         square_with("\"extensionsUsed\":", R"("extensionsRequired": ["KHR_materials_foo"], "extensionsUsed":)"));
   const ProcessResult info = run({"info", "foo.gltf"});
   EXPECT_EQ(info.exit_code, 0) << info.err;
-  EXPECT_THAT(info.out, HasSubstr("the file requires KHR_materials_foo, which is not known"));
+  EXPECT_THAT(info.out, HasSubstr("the file requires KHR_materials_foo, which is unknown"));
   EXPECT_THAT(info.out, ContainsRegex("extensions +used: KHR_lights_punctual\n"));
   EXPECT_THAT(info.out, ContainsRegex(" +ignored: KHR_materials_foo \\(required\\)\n"));
   const std::string refusal = "the required extension KHR_materials_foo is not implemented";
@@ -571,7 +572,7 @@ TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
   write("models/square.gltf", text);
   EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leaves the scene's folder"));
   EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a file does not exist"));
-  expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "is no folder, none");
+  expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "is not a folder, none");
   expect_failure(run({"info", "models/square.gltf", "--strict"}), 3, "--root DIR");
 }
 
@@ -658,7 +659,7 @@ TEST_F(InfoJsonTest, SaysWhatASceneHolds) {
   EXPECT_EQ(scene["cameras"].at(0)["name"], "main");
   EXPECT_EQ(scene["environment"]["sky"]["kind"], "studio");
   EXPECT_EQ(scene["display"]["tone_mapping"], "neutral");
-  EXPECT_THAT(scene["assumed"].dump(), HasSubstr("a studio's weaker light"));
+  EXPECT_THAT(scene["assumed"].dump(), HasSubstr("weak studio light"));
   EXPECT_EQ(scene["extensions"], json({{{"is_required", false}, {"is_used", true}, {"name", "KHR_lights_punctual"}}}));
   EXPECT_THAT(scene["warnings"], IsEmpty());
   // The shortest decimal of the fp32 number.
@@ -935,7 +936,7 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
             std::string(" exists already and promin did not make it from square.gltf; name the file to write by -o"));
     EXPECT_EQ(read(name), other);
     write(name, "my notes");
-    expect_failure(run({"render", "square.gltf"}), 2, "exists and promin did not make it");
+    expect_failure(run({"render", "square.gltf"}), 2, "exists already and promin did not make it");
     EXPECT_EQ(run({"render", "square.gltf", "-o", name, "--size", "8", "8"}).exit_code, 0) << "-o replaces";
   }
   EXPECT_EQ(read("square.png"), before);

@@ -73,8 +73,9 @@ TEST_F(CompareCliTest, LimitsOfCodesAreFractions) {
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "2.99/8"}).exit_code, 5);
   const ProcessResult whole = compare({"a.png", "b.png", "--fail", "2"});
   EXPECT_EQ(whole.exit_code, 0);
-  EXPECT_THAT(whole.err, HasSubstr("promin: warning: --fail 2 never fails: numbers of these files are 0 to 1; 2 of 255 "
-                                   "is --fail 2/255"));
+  EXPECT_THAT(whole.err,
+              HasSubstr("promin: warning: --fail 2 never fails: the values of these files are 0 to 1; 2 of 255 "
+                        "is --fail 2/255"));
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "2"}).err, "") << "light has no most";
   EXPECT_EQ(compare({"a.png", "a.png", "--fail", "2/255"}).err, "");
   expect_failure(compare({"a.png", "b.png", "--fail", "2/0"}), 2, "not \"0\" in \"2/0\"");
@@ -104,7 +105,7 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   write_image(folder() / "deep.exr", read_image(folder() / "a.exr"), {}, std::nullopt, {&depth, 1});
   expect_failure(compare({"a.exr", "deep.exr"}), 3, "the pictures have different channels, only deep.exr has Z");
   write("text.exr", "no picture");
-  expect_failure(compare({"a.exr", "text.exr"}), 3, "cannot read the picture");
+  expect_failure(compare({"a.exr", "text.exr"}), 3, "the picture cannot be read");
   expect_failure(compare({"a.exr", "b.exr", "--fail-percent", "3"}), 2, "--fail-percent needs the limit of --fail");
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
@@ -142,7 +143,7 @@ TEST_F(ComparePartsCliTest, OnePartEqualsSeveral) {
     for (const char* second : {"one.exr", "parts.exr"}) {
       const ProcessResult same = compare({first, second, "--fail", "0"});
       EXPECT_EQ(same.exit_code, 0) << same.err;
-      EXPECT_THAT(same.out, HasSubstr("channels    11 beside R, G and B are equal\n"));
+      EXPECT_THAT(same.out, HasSubstr("channels    11 in addition to R, G and B are equal\n"));
     }
   }
 }
@@ -160,7 +161,7 @@ TEST_F(ComparePartsCliTest, EveryPartIsCompared) {
       EXPECT_THAT(other.out, HasSubstr("mean        0\n"));
       EXPECT_THAT(other.out, HasSubstr("Z: largest 0.25, at pixel 597 199; "));
       EXPECT_THAT(other.out, HasSubstr("object: largest 2, at pixel 5 0; "));
-      EXPECT_THAT(other.out, HasSubstr("9 beside R, G and B are equal\n"));
+      EXPECT_THAT(other.out, HasSubstr("9 in addition to R, G and B are equal\n"));
     }
   }
   EXPECT_EQ(compare({"one.exr", "other.exr", "--fail", "2"}).exit_code, 0);

@@ -55,9 +55,9 @@ TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
 
 TEST_F(CliTest, ExplainGoesAloneAndStaysInThePicture) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{"--explain", "64", "0"}, "--explain is beyond the picture of 64x36"},
-      {{"--explain", "0", "36"}, "--explain is beyond"},
-      {{"--explain", "1"}, "too few values for --explain"},
+      {{"--explain", "64", "0"}, "the pixel of --explain lies outside the picture of 64x36"},
+      {{"--explain", "0", "36"}, "the pixel of --explain lies outside"},
+      {{"--explain", "1"}, "too few values are given for --explain"},
       {{"--explain", "-1", "0"}, "--explain takes a whole number"},
       {{"--explain", "1", "1", "-o", "a.exr"}, "--explain and --output contradict"},
       {{"--explain", "1", "1", "--path", "p.json"}, "--explain and --path contradict"},

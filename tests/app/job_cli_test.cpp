@@ -116,11 +116,11 @@ TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
   expect_done(render({"--job", "job"}));
   const ProcessResult again = run({"render", "square.gltf", "--size", "61", "47", "--job", "job"});
   expect_done(again);
-  EXPECT_THAT(again.out, testing::StartsWith("nothing was left to make of 5 pieces: "));
+  EXPECT_THAT(again.out, testing::StartsWith("all 5 pieces were made before: "));
   EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
   // Nothing is said to be written by who is refused.
   const ProcessResult refused = run({"render", "square.gltf", "--job", "job", "--aov", "normal"});
-  expect_failure(refused, 2, "the folder has another job");
+  expect_failure(refused, 2, "the folder belongs to another job");
   EXPECT_THAT(refused.err, testing::Not(HasSubstr("writing")));
 }
 
@@ -228,9 +228,9 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   const ProcessResult result =
       run({"render", "square.gltf", "--size", "61", "47", "--job", "job", "--pieces", "4", "-o", "cut.exr"});
   expect_done(result);
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + " is cut; it is made anew"));
-  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + " is damaged; it is made anew"));
-  EXPECT_THAT(result.out, HasSubstr("3 of 4 pieces made now"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
+  EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now"));
   EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
 }
 
@@ -272,9 +272,10 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
 
 TEST_F(JobCliTest, WrongUseIsRefused) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{"-o", "a.exr", "--pieces", "4"}, "--pieces has no job to cut"},
+      {{"-o", "a.exr", "--pieces", "4"}, "--pieces needs a job to divide"},
       {{"-o", "a.exr", "--job", "job", "--pieces", "4", "--tiles", "2", "2"}, "--pieces and --tiles contradict"},
-      {{"-o", "a.exr", "--job", "job", "--pieces", "48"}, "1 columns and 48 rows of pieces are more than the 61x47"},
+      {{"-o", "a.exr", "--job", "job", "--pieces", "48"},
+       "1 columns and 48 rows of pieces are more than the picture of 61x47"},
       {{"-o", "a.exr", "--job", "job", "--piece", "0/4"}, "--piece and --output contradict each other"},
       {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\" in \"4/4\""},
       {{"--job", "job", "--piece", "4"}, "--piece takes I/N, as 0/4, not \"4\""},
@@ -302,7 +303,7 @@ TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
                                              {"render", "square.gltf", "--size", "400", "300", "--spp", "256", "--job",
                                               "job", "--tiles", "10", "10", "-o", "cut.exr"});
     EXPECT_EQ(result.signal, signal);
-    EXPECT_THAT(result.err, HasSubstr("of 100; the same command goes on"));
+    EXPECT_THAT(result.err, HasSubstr("of 100; the same command continues the job"));
     EXPECT_GT(pieces().size(), 0U);
     EXPECT_LT(pieces().size(), 100U);
     for (const auto& piece : pieces()) EXPECT_EQ(piece.string().find(".tmp"), std::string::npos);

@@ -108,7 +108,7 @@ class JobFixture : public CliTest {
     EXPECT_GT(ended, kills / 4);
     expect_done(run(command));
     EXPECT_TRUE(read(file) == read(whole));
-    // Nothing is left lying about.
+    // No other files are left.
     EXPECT_EQ(pieces().size(), piece_count);
   }
 };

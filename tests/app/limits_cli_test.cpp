@@ -159,7 +159,8 @@ TEST_F(LimitsCliTest, AManifestThatIsNoneIsNamed) {
     for (const std::string other : {"", ":none.json"}) {
       options_.environment[variable] = "bad.json" + other;
       const std::string said =
-          std::string("there is no Vulkan device: the manifest of a driver is no JSON, bad.json, named by ") + variable;
+          std::string("there is no Vulkan device: the manifest of a driver is not JSON, bad.json, named by ") +
+          variable;
       expect_failure(run({"render", "square.gltf", "-o", "a.png"}), 4, said);
       expect_failure(run({"devices"}), 4, said);
     }

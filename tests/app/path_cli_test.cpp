@@ -82,7 +82,7 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   std::filesystem::remove(folder() / "a1.exr");
   const ProcessResult again = render_path(options);
   EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_THAT(again.err, HasSubstr("skipped 2 of 3 frames, whose pictures are there"));
+  EXPECT_THAT(again.err, HasSubstr("skipped 2 of 3 frames, whose pictures exist already"));
   EXPECT_THAT(again.out, HasSubstr("1 frame, "));
   EXPECT_EQ(read("a0.png"), "kept");
   EXPECT_THAT(files(), testing::Contains("a1.exr"));
@@ -95,7 +95,7 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   with_stats.insert(with_stats.end(), {"--stats", "s.json"});
   EXPECT_THAT(render_path(with_stats).err, HasSubstr("skipped 2 of 3 frames"));
   EXPECT_THAT(files(), testing::Contains("s.json"));
-  EXPECT_THAT(render_path(with_stats).err, HasSubstr("s.json is not written, as nothing was traced"));
+  EXPECT_THAT(render_path(with_stats).err, HasSubstr("s.json is not written, because nothing was traced"));
   std::filesystem::remove(folder() / "a2.exr");
   std::filesystem::create_directory(folder() / "a2.exr");
   expect_failure(render_path(options), 1, "is a folder, a2.exr");
@@ -151,7 +151,7 @@ TEST_F(PathCliTest, FpsTakesThePathByTime) {
   path.insert(path.find("\"frames\""), "\"fps\": 10, ");
   write("path.json", path);
   expect_failure(render_path({"-o", "f#.exr", "--frames", "4"}), 2,
-                 "there is no frame 4, path.json; the path has the frames 0-3");
+                 "the path has no frame 4, path.json; choose frames from 0 to 3");
   EXPECT_EQ(render_path({"--fps", "stored", "-o", "f#.exr", "--quiet"}).exit_code, 0);
   EXPECT_EQ(pixels("f2.exr"), pixels("s2.exr"));
 }
@@ -177,11 +177,11 @@ TEST_F(PathCliTest, StatsTellOfEachFrame) {
 
 TEST_F(PathCliTest, WrongUseIsRefused) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{"-o", "a.exr"}, "3 frames would go to one file, a.exr; put ####"},
-      {{"-o", "a#/f.exr"}, "3 frames would go to one file"},
+      {{"-o", "a.exr"}, "3 frames would be written to one file, a.exr; write ####"},
+      {{"-o", "a#/f.exr"}, "3 frames would be written to one file"},
       {{"-o", "f#.exr", "--camera", "main"}, "--path and a camera"},
       {{"-o", "f#.exr", "--near", "1"}, "--path and a camera"},
-      {{"-o", "f#.exr", "--frames", "1-3"}, "there is no frame 3, path.json; the path has the frames 0-2"},
+      {{"-o", "f#.exr", "--frames", "1-3"}, "the path has no frame 3, path.json; choose frames from 0 to 2"},
       {{"-o", "f#.exr", "--frames", "2-1"}, "--frames is empty"},
       {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number from 0 to 9999999, not \"\" in \"1-\""},
       {{"-o", "f#.exr", "--frames", "x"}, "from 0 to 9999999, not \"x\", on the command line"},
@@ -196,8 +196,8 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
     expect_failure(render_path(arguments), 2, part);
     EXPECT_THAT(files(), testing::ElementsAre("path.json"));
   }
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames has no path");
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps has no path");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames needs a camera path");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps needs a camera path");
   write("path.json", "{}");
   const ProcessResult bad = render_path({"-o", "f#.exr"});
   EXPECT_EQ(bad.exit_code, 3);

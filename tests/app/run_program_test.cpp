@@ -32,16 +32,16 @@ std::string message_of_cut_loops() {
 
 TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
   EXPECT_THAT(message_of_cut_loops(),
-              EndsWith(", on this device; take another --device, or leave out surfaces that lie in one another"));
+              EndsWith(", on this device; use another --device, or remove surfaces that coincide"));
   const auto message = [](const char* where, const char* cure, Setting setting) {
     return message_of(RunError({"bad", where, cure, setting}));
   };
   EXPECT_EQ(message("requested as the device", "choose one", Setting::kDevice),
             "bad, requested by --device; choose one");
   EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "bad, x; try again, or another --device");
-  EXPECT_EQ(message("x", "take the builder sah", Setting::kBuilder), "bad, x; take --builder sah");
+  EXPECT_EQ(message("x", "use the builder sah", Setting::kBuilder), "bad, x; use --builder sah");
   EXPECT_EQ(message("x", "raise the memory for textures", Setting::kTextureMemory), "bad, x; raise --texture-memory");
-  EXPECT_EQ(message_of(Problem{"bad", "x", "take the builder sah", Setting::kBuilder}), "bad, x; take --builder sah");
+  EXPECT_EQ(message_of(Problem{"bad", "x", "use the builder sah", Setting::kBuilder}), "bad, x; use --builder sah");
   EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "bad, x; bounce less (--max-depth)") << "other words";
   EXPECT_EQ(message("another device.gltf", "use another device", Setting::kNone),
             "bad, another device.gltf; use another device");
@@ -76,9 +76,10 @@ TEST(RunProgramTest, WhatTheSystemRefusesIsNoBug) {
   EXPECT_EQ(run_work([] {
               throw std::filesystem::filesystem_error("cannot", "there", std::make_error_code(std::errc::io_error));
             }).second,
-            "promin: error: the system refuses what is asked for (Input/output error), there; check its limits and "
+            "promin: error: the system refused a request (Input/output error), there; check its limits and "
             "permissions\n");
-  EXPECT_THAT(run_work([] { throw std::bad_alloc(); }).second, testing::HasSubstr("out of memory, in promin"));
+  EXPECT_THAT(run_work([] { throw std::bad_alloc(); }).second,
+              testing::HasSubstr("there is not enough memory, in promin"));
   EXPECT_THAT(run_work([] { throw std::logic_error("x"); }).second, testing::HasSubstr("report it as a bug"));
 }
 

@@ -213,8 +213,7 @@ TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
   EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, std::array<uint64_t, 5>{~0U, ~0U, ~0U, ~0U, ~0U}))),
             "the BVH file does not name its builder" + cure);
   EXPECT_THAT(refusal(Bytes()), HasSubstr("the file is empty"));
-  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }),
-              HasSubstr("the scene is not a regular file"));
+  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }), HasSubstr("the scene is not a regular file"));
   EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasSubstr("not found"));
 }
 
@@ -280,7 +279,7 @@ const HostileTree kHostileTrees[] = {
      "has two parents"},
     {"no_parent", [](Tree& t) { t.nodes.push_back(t.nodes.back()); }, "has no parent before it"},
     {"no_children", [](Tree& t) { set_child_count(t.nodes.back(), 0); }, "has no children"},
-    {"too_many_children", [](Tree& t) { set_child_count(t.nodes.back(), 5); }, "tells of 5 children"},
+    {"too_many_children", [](Tree& t) { set_child_count(t.nodes.back(), 5); }, "declares 5 children"},
     {"leaf_beyond_the_references",
      [](Tree& t) { t.nodes.back().children.x = leaf_of(static_cast<uint32_t>(t.references.size()) - 1, 16); },
      "has a leaf out of range"},
@@ -288,21 +287,21 @@ const HostileTree kHostileTrees[] = {
      "has a leaf out of range"},
     {"one_leaf_twice", [](Tree& t) { t.nodes.back().children.x = t.nodes.back().children.y; },
      "shares a reference with another leaf"},
-    {"a_reference_in_no_leaf", [](Tree& t) { t.references.push_back(0); }, "has references in no leaf"},
+    {"a_reference_in_no_leaf", [](Tree& t) { t.references.push_back(0); }, "has references that belong to no leaf"},
     {"reference_beyond_the_primitives", [](Tree& t) { t.references[3] = t.view.primitive_count; },
      "refers to primitive "},
     {"reference_far_beyond", [](Tree& t) { t.references[3] = 0xFFFFFFFF; }, "refers to primitive 4294967295"},
     {"missing_primitive", [](Tree& t) { t.references[4] = t.references[3]; }, "'s tree lacks primitive "},
     {"more_primitives_than_references", [](Tree& t) { t.view.primitive_count = 0xFFFFFFFF; },
      "has fewer references than primitives"},
-    {"stack_too_small", [](Tree& t) { --t.view.stack_size; }, "and claims "},
-    {"stack_too_large", [](Tree& t) { ++t.view.stack_size; }, "and claims "},
-    {"another_leaf_count", [](Tree& t) { ++t.view.stats.leaves; }, "tells of another tree"},
-    {"another_node_count", [](Tree& t) { t.view.stats.nodes = 0; }, "tells of another tree"},
-    {"another_leaf_size", [](Tree& t) { ++t.view.stats.max_leaf_size; }, "tells of another tree"},
-    {"too_deep", [](Tree& t) { t.view.stats.depth = kMaxBvhDepth + 1; }, "tells of another tree"},
-    {"cost_is_no_number", [](Tree& t) { t.view.stats.sah_cost = std::nan(""); }, "tells of another tree"},
-    {"stack_of_nothing", [](Tree& t) { t.view.stack_size = 0; }, "and claims 0"},
+    {"stack_too_small", [](Tree& t) { --t.view.stack_size; }, "but declares "},
+    {"stack_too_large", [](Tree& t) { ++t.view.stack_size; }, "but declares "},
+    {"another_leaf_count", [](Tree& t) { ++t.view.stats.leaves; }, "describes another tree"},
+    {"another_node_count", [](Tree& t) { t.view.stats.nodes = 0; }, "describes another tree"},
+    {"another_leaf_size", [](Tree& t) { ++t.view.stats.max_leaf_size; }, "describes another tree"},
+    {"too_deep", [](Tree& t) { t.view.stats.depth = kMaxBvhDepth + 1; }, "describes another tree"},
+    {"cost_is_no_number", [](Tree& t) { t.view.stats.sah_cost = std::nan(""); }, "describes another tree"},
+    {"stack_of_nothing", [](Tree& t) { t.view.stack_size = 0; }, "but declares 0"},
     {"deep_chain", [](Tree& t) { make_chain(t, 100'000); }, "lies deeper than in the tree of any builder"},
     {"no_nodes",
      [](Tree& t) {

@@ -86,7 +86,7 @@ TEST(FindTreeFaults, ShrunkenBoxesAreFound) {
           ++shrunk;
           found += faults.count > 0 ? 1 : 0;
           if (faults.count > 0) {
-            EXPECT_THAT(faults.first, HasSubstr("reaches out of the box"));
+            EXPECT_THAT(faults.first, HasSubstr("extends outside the box"));
           }
         }
       }
@@ -176,7 +176,7 @@ TEST_F(SplitTree, EveryMissingPartIsFound) {
     EXPECT_EQ(found.count, 1U) << i;
     EXPECT_THAT(found.first, i < 3
                                  ? HasSubstr("primitive 0 of object 0 is in 2 leaves, and their boxes do not cover it")
-                                 : HasSubstr("primitive 0 of object 1 reaches out of the box"));
+                                 : HasSubstr("primitive 0 of object 1 extends outside the box"));
     boxes_ = boxes;
     references_ = references;
   }

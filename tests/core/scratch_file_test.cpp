@@ -70,7 +70,8 @@ TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
     const FileSizeLimit limit(1 << 20);
     return failure(folder_ / "a.exr", 3 << 20);
   }();
-  EXPECT_THAT(message, testing::StartsWith("cannot keep 4 MB beside the output file until it can be written ("));
+  EXPECT_THAT(message,
+              testing::StartsWith("there is no room for 4 MB beside the output file until it can be written ("));
   EXPECT_THAT(message, testing::HasSubstr("a.exr; check the disk"));
   EXPECT_EQ(file_count(), 0);
 }
@@ -83,7 +84,8 @@ TEST_F(ScratchFileTest, ADiskThatFillsIsToldByWhoeverWrites) {
     const FileSizeLimit limit(1 << 20);
     return failure_of([&] { file.write(0, bytes); });
   }();
-  EXPECT_THAT(message, testing::StartsWith("cannot keep 1 MB beside the output file until it can be written ("));
+  EXPECT_THAT(message,
+              testing::StartsWith("there is no room for 1 MB beside the output file until it can be written ("));
   // And what was written before is there.
   std::vector<std::byte> read(1 << 20);
   file.read(0, read);

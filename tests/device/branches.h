@@ -25,7 +25,7 @@ inline std::vector<BranchConstants> all_branch_constants() {
   return all;
 }
 
-/// What branches.comp makes of a number.
+/// Returns what branches.comp computes from a number.
 class Branches {
  public:
   explicit Branches(const BranchConstants& constants)

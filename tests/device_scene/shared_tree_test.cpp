@@ -99,7 +99,7 @@ TEST_F(SharedTreeTest, WhatIsDamagedIsBuiltAgain) {
   world::Scene other = scene_;
   std::get<Mesh>(other.objects[0].shape).positions[0].x += 0.01F;
   write_bvh_file(folder_ / "other.pbvh", pack_scene(other, "median").tree());
-  for (const auto& [bytes, why] : {std::pair(std::vector(whole.begin(), whole.end() - 100), "bytes where its header"),
+  for (const auto& [bytes, why] : {std::pair(std::vector(whole.begin(), whole.end() - 100), "bytes, but its header"),
                                    std::pair(std::vector<std::byte>(), "empty"), std::pair(flipped, "damaged"),
                                    std::pair(read_file(folder_ / "other.pbvh"), "stale")}) {
     write(bytes);

@@ -422,9 +422,8 @@ TEST_F(ReadPanoramaTest, NegativeNumbersCountAsZero) {
   const Panorama panorama = read_panorama(folder_ / "sky.exr", warnings_);
   EXPECT_EQ(panorama.image->at(2, 1), vec3(0.0F, 0.5F, 0.0F));
   EXPECT_EQ(panorama.image->at(1, 1), vec3(0.5F));
-  EXPECT_THAT(
-      warnings_,
-      testing::ElementsAre(testing::EndsWith("sky.exr are negative, the first -0.25 in pixel 2, 1; they count as 0")));
+  EXPECT_THAT(warnings_, testing::ElementsAre(testing::EndsWith(
+                             "sky.exr are negative, the first -0.25 in pixel 2, 1; they are read as 0")));
   EXPECT_THAT(warnings_.front(), testing::StartsWith("2 numbers of "));
 }
 

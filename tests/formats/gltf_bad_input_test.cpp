@@ -50,7 +50,7 @@ const BadGltf kBadGltf[] = {
     // The document
     {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "the file is glTF 1.0", "asset.version"},
     {"Version3", [](auto& g) { g.json["asset"]["version"] = "3.0"; }, "\"3.0\" is not 2.x", "asset.version"},
-    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "needs glTF \"2.1\"", "asset.minVersion"},
+    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "requires glTF \"2.1\"", "asset.minVersion"},
     {"RequiredExtension",
      [](auto& g) {
        g.json["extensionsRequired"] = {"EXT_splats"};
@@ -58,8 +58,8 @@ const BadGltf kBadGltf[] = {
      },
      "EXT_splats is not implemented", "meshes[0].primitives[0]"},
     // Types
-    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 stands where an array belongs", "nodes"},
-    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string stands where an object", "nodes[1]"},
+    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 is given where an array is expected", "nodes"},
+    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string is given where an object", "nodes[1]"},
     {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "where an integer belongs", "nodes[0].mesh"},
     {"NoAttributes", [](auto& g) { primitive(g).erase("attributes"); }, "\"attributes\" is missing",
      "meshes[0].primitives[0]"},
@@ -101,7 +101,7 @@ const BadGltf kBadGltf[] = {
      "accessors[0].componentType"},
     {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "\"VEC5\" is not one of",
      "accessors[0].type"},
-    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 stands where an integer",
+    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 is given where an integer",
      "accessors[0].count"},
     // Shapes
     {"ZeroRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 0; }, "0 is out of range",
@@ -277,8 +277,8 @@ const BadUri kBadUris[] = {
     {"Backslash", "..\\secret.bin", "leaves the scene's folder"},
     {"Absolute", "/etc/passwd", "absolute path"},
     {"EscapedAbsolute", "%2Fetc/passwd", "absolute path"},
-    {"FileScheme", "file:///etc/passwd", "no relative path"},
-    {"WebScheme", "http://localhost/a.bin", "no relative path"},
+    {"FileScheme", "file:///etc/passwd", "not a relative path"},
+    {"WebScheme", "http://localhost/a.bin", "not a relative path"},
     {"Link", "link.bin", "through a link"},
     {"LinkedFolder", "up/secret.bin", "through a link"},
     {"ZeroByte", "a%00b", "zero byte"},
@@ -311,7 +311,7 @@ TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
 TEST_F(BadFileTest, BrokenJsonNamesTheLine) {
   EXPECT_THAT(refusal("a.gltf", "{\n\"asset\": ]}"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasSubstr("cannot be read"));
-  EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("not a JSON object"));
 }
 
 TEST_F(BadFileTest, DeepNestingIsRefusedBeforeItIsParsed) {
@@ -338,13 +338,13 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   const size_t json_length = static_cast<unsigned char>(good[12]) + 256 * static_cast<unsigned char>(good[13]);
   const size_t binary = 20 + json_length;
   EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasSubstr("GLB header is cut off"));
-  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasSubstr("chunk promises 44 bytes, 40 are left"));
+  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasSubstr("chunk declares 44 bytes, 40 remain"));
   EXPECT_THAT(spoiled(4, 1), HasSubstr("the file is glTF 1.0"));
   EXPECT_THAT(spoiled(4, 3), HasSubstr("version 3"));
-  EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk promises"));
+  EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk declares"));
   EXPECT_THAT(spoiled(12, json_length + 8), testing::Not(""));
   EXPECT_THAT(spoiled(16, 7), HasSubstr("must be JSON"));
-  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk promises 52 bytes, 44 are left"));
+  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk declares 52 bytes, 44 remain"));
   EXPECT_THAT(spoiled(binary + 4, 7), HasSubstr("has no bytes")) << "a chunk of unknown type is skipped";
 }
 

@@ -286,7 +286,7 @@ TEST_F(GltfCompressionTest, MeshoptOfALaterVersionIsSaidToBe) {
   GltfBuilder gltf = packed_grid(4, "INDICES");
   const size_t offset = gltf.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteOffset"];
   gltf.bytes[offset] = static_cast<char>(0xAF);
-  EXPECT_THAT(refusal("scene.gltf", packed_text(gltf)), HasSubstr("of a version that this libmeshoptimizer does not"));
+  EXPECT_THAT(refusal("scene.gltf", packed_text(gltf)), HasSubstr("their version is unknown to this libmeshoptimizer"));
 }
 
 TEST_F(GltfCompressionTest, BrokenMeshoptLoadsOrIsRefused) {
@@ -367,7 +367,7 @@ TEST_F(GltfCompressionTest, DracoThatLiesIsRefused) {
       {"/accessors/0/type", "VEC2", "is not allowed here"},
       {"/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", 7, "out of range"},
       {"/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/attributes/POSITION", 7, "it has no attribute 7"},
-      {"/bufferViews/0/byteLength", 20, "the stream of Draco cannot be used"},
+      {"/bufferViews/0/byteLength", 20, "the Draco stream cannot be used"},
   };
   for (const int method : kMethods) {
     for (const Lie& lie : lies) {

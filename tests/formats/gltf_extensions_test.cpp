@@ -82,7 +82,7 @@ TEST_F(GltfExtensionsTest, UnknownOnesOfTheFileAreAWarning) {
   gltf.json["extensionsRequired"] = {"EXT_fog"};
   gltf.json["scenes"] = {{{"nodes", {0}}, {"extensions", {{"EXT_fog", json::object()}}}}};
   EXPECT_THAT(load(gltf).warnings,
-              ElementsAre("the file requires EXT_fog, which is not known; it is shown without it"));
+              ElementsAre("the file requires EXT_fog, which is unknown; the scene is shown without it"));
 }
 
 TEST_F(GltfExtensionsTest, UnknownOnesOfGeometryAreRefused) {
@@ -324,7 +324,7 @@ TEST_F(GltfExtensionsTest, OtherFormatsHaveNoVariants) {
     const std::filesystem::path file = write("a" + ending, text);
     EXPECT_EQ(load_scene(file).objects.size(), 1U) << ending;
     EXPECT_THAT([&] { load_scene(file, {.material_variant = "dusk"}); },
-                ThrowsMessage<UsageError>(HasSubstr("files that end in " + ending + " have no variants")));
+                ThrowsMessage<UsageError>(HasSubstr("files that end in " + ending + " have no material variants")));
   }
 }
 

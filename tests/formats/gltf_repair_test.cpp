@@ -90,27 +90,28 @@ const Repair kRepairs[] = {
      "the version is missing, asset.version; it is read as glTF 2.0"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
      "the version is not written as glTF requires (2), asset.version; it is read as glTF 2.0"},
-    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; they are ignored"},
+    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; it is ignored"},
     {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; },
-     "another value stands where a string belongs (7), extensions.KHR_implicit_shapes.shapes[0].name; they are "
+     "another value is given where a string is expected (7), extensions.KHR_implicit_shapes.shapes[0].name; they are "
      "ignored"},
     {"ExtensionsUsed",
      [](auto& g) {
        g.json["extensionsUsed"] = {"KHR_materials_ior", 3};
      },
-     "another value stands where a string belongs (3), extensionsUsed[1]; the object that contains they are ignored"},
+     "another value is given where a string is expected (3), extensionsUsed[1]; the object that contains it is "
+     "ignored"},
     // Materials
     {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; },
-     "an index is out of range (index 1), meshes[0].primitives[0].material; they are ignored"},
+     "an index is out of range (index 1), meshes[0].primitives[0].material; it is ignored"},
     {"MaterialIsNoObject", [](auto& g) { g.json["materials"][0] = "red"; },
-     "another value stands where an object belongs (a JSON string), materials[0]; they are ignored"},
+     "another value is given where an object is expected (a JSON string), materials[0]; it is ignored"},
     {"MaterialsIsNoArray", [](auto& g) { g.json["materials"] = 1; },
-     "another value stands where an array belongs (1), materials; they are ignored"},
+     "another value is given where an array is expected (1), materials; it is ignored"},
     {"Metallic", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 2; },
      PROMIN_CLAMPED("2", "materials[0].pbrMetallicRoughness.metallicFactor", "0 to 1")},
     {"MetallicIsText", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "1"; },
-     "another value stands where a number belongs (a JSON string), "
-     "materials[0].pbrMetallicRoughness.metallicFactor; they are ignored"},
+     "another value is given where a number is expected (a JSON string), "
+     "materials[0].pbrMetallicRoughness.metallicFactor; it is ignored"},
     {"BaseColor",
      [](auto& g) {
        g.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1.5, 1, 1};
@@ -122,17 +123,17 @@ const Repair kRepairs[] = {
      },
      PROMIN_CLAMPED("-1", "materials[0].emissiveFactor[1]", "0 to 1e+15")},
     {"AlphaMode", [](auto& g) { g.json["materials"][0]["alphaMode"] = "CUTOUT"; },
-     "a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; they are ignored"},
+     "a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; it is ignored"},
     {"Ior",
      [](auto& g) {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
      },
-     "a number is out of range (-1), materials[0].extensions.KHR_materials_ior.ior; they are ignored"},
+     "a number is out of range (-1), materials[0].extensions.KHR_materials_ior.ior; it is ignored"},
     {"PhongIor",
      [](auto& g) {
        material_extension(g, "PROMIN_materials_phong") = {{"ior", 0}};
      },
-     "a number is out of range (0), materials[0].extensions.PROMIN_materials_phong.ior; they are ignored"},
+     "a number is out of range (0), materials[0].extensions.PROMIN_materials_phong.ior; it is ignored"},
     {"Transmission",
      [](auto& g) {
        material_extension(g, "KHR_materials_transmission") = {{"transmissionFactor", 2}};
@@ -178,17 +179,17 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["samplers"] = {{{"magFilter", 9987}}};
      },
-     "a value is not one of 9728|9729 (\"9987\"), samplers[0].magFilter; they are ignored"},
+     "a value is not one of 9728|9729 (\"9987\"), samplers[0].magFilter; it is ignored"},
     {"SamplerIndex",
      [](auto& g) {
        g.json["textures"] = {{{"sampler", 4}}};
      },
-     "an index is out of range (index 4), textures[0].sampler; they are ignored"},
+     "an index is out of range (index 4), textures[0].sampler; it is ignored"},
     {"ImageView",
      [](auto& g) {
        g.json["images"] = {{{"bufferView", 99}, {"mimeType", "image/png"}}};
      },
-     "an index is out of range (index 99), images[0].bufferView; they are ignored"},
+     "an index is out of range (index 99), images[0].bufferView; it is ignored"},
     {"ImageViewPastItsBuffer",
      [](auto& g) {
        g.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 52}});
@@ -203,20 +204,20 @@ const Repair kRepairs[] = {
     {"LightType", [](auto& g) { light(g)["type"] = "area"; },
      "a value is not one of point|directional|spot (\"area\"), " PROMIN_LIGHT ".type; the light is left out"},
     {"LightRange", [](auto& g) { light(g)["range"] = 0; },
-     "a number is out of range (0), " PROMIN_LIGHT ".range; they are ignored"},
+     "a number is out of range (0), " PROMIN_LIGHT ".range; it is ignored"},
     {"ConeAngles",
      [](auto& g) {
        light(g)["spot"] = {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}};
      },
      "a spot's inner cone angle is not less than its outer, " PROMIN_LIGHT ".spot; its edge is sharp"},
     {"CameraIndex", [](auto& g) { g.json["nodes"][3]["camera"] = 1; },
-     "an index is out of range (index 1), nodes[3].camera; they are ignored"},
+     "an index is out of range (index 1), nodes[3].camera; it is ignored"},
     {"FieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"]["yfov"] = 3.2; },
      "a number is out of range (3.2), cameras[0].perspective.yfov; the camera is left out"},
     {"NoFieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"] = json::object(); },
      "\"yfov\" is missing, cameras[0].perspective; the camera is left out"},
     {"AspectRatio", [](auto& g) { g.json["cameras"][0]["perspective"]["aspectRatio"] = 0; },
-     "a number is out of range (0), cameras[0].perspective.aspectRatio; they are ignored"},
+     "a number is out of range (0), cameras[0].perspective.aspectRatio; it is ignored"},
     {"CameraType", [](auto& g) { g.json["cameras"][0]["type"] = "fisheye"; },
      "a value is not one of perspective|orthographic (\"fisheye\"), cameras[0].type; the camera is left out"},
     {"CameraWithoutParameters", [](auto& g) { g.json["cameras"][0].erase("perspective"); },
@@ -225,8 +226,9 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["extensions"]["OMI_environment_sky"]["skies"] = {{{"type", 3}}};
      },
-     "another value stands where a string belongs (3), extensions.OMI_environment_sky.skies[0].type; the object that "
-     "contains they are ignored"},
+     "another value is given where a string is expected (3), extensions.OMI_environment_sky.skies[0].type; the object "
+     "that "
+     "contains it is ignored"},
     // Vertices
     {"NegativeColor",
      [](auto& g) {
@@ -245,7 +247,7 @@ const Repair kRepairs[] = {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNan, 0, 1}, "VEC2");
      },
      "a texture coordinate is not finite or beyond 1e15 (nan), meshes[0].primitives[0].attributes.TEXCOORD_0, element "
-     "1; 0 is taken"},
+     "1; 0 is used"},
     {"AttributeCounts",
      [](auto& g) {
        primitive(g)["attributes"]["NORMAL"] = g.template add<float>({0, 0, 1}, "VEC3");
@@ -274,7 +276,7 @@ const Repair kRepairs[] = {
        g.json["nodes"][0]["children"] = {2};
        g.json["nodes"][1]["children"] = {2};
      },
-     "a node has two parents (nodes[2]), nodes[1].children[0]; it is shown below both"},
+     "a node has two parents (nodes[2]), nodes[1].children[0]; it appears below both"},
     {"ChildTwice",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2, 2};
@@ -402,7 +404,7 @@ TEST_F(GltfRepairTest, NodesOfManyParentsEndInARefusal) {
     gltf.add_node({{"children", {below}}});
     gltf.add_node({{"children", {below, below + 1}}});
   }
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("stand in too many places"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("appear in too many places"));
 }
 
 TEST_F(GltfRepairTest, TheMatrixCountsAlone) {
@@ -665,8 +667,8 @@ TEST_F(GltfRepairTest, LengthsInTheHeaderOfAGlbAreRepaired) {
   const std::pair<std::string, const char*> kFiles[] = {
       {good.substr(0, good.size() - 2), "a GLB chunk extends beyond the end of the file (2 bytes)"},
       {with(8, 0xFFFFFFFF), "the GLB header declares another number of bytes than the chunks have"},
-      {with(8, 0), "the GLB header promises another number"},
-      {with(8, good.size() - 4), "the GLB header promises another number"},
+      {with(8, 0), "the GLB header declares another number"},
+      {with(8, good.size() - 4), "the GLB header declares another number"},
       {with(binary, 42), "a GLB chunk header is cut off"},
       {with(12 + 4, 0x4E4F534A) + GltfBuilder::u32(0) + "JSON", "bytes after the end of the GLB"},
   };

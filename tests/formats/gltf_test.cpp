@@ -733,7 +733,7 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
                           "are drawn without it"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
   EXPECT_THAT(message_of([&] { load_scene(folder_ / "scene.gltf", {.is_strict = true}); }),
-              testing::AllOf(HasSubstr("a file does not exist"), HasSubstr("no known format")));
+              testing::AllOf(HasSubstr("a file does not exist"), HasSubstr("format is unknown")));
 }
 
 TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
@@ -870,7 +870,7 @@ TEST_F(GltfTest, GradientSkiesAreRead) {
   skies[0]["gradient"]["sunCurve"] = 4;
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("ambientSkyContribution"), HasSubstr("suns")));
   skies[0]["gradient"]["bottomCurve"] = 0;
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("bottomCurve; they are ignored")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("bottomCurve; it is ignored")));
   skies[0]["gradient"].erase("bottomCurve");
   skies[0]["gradient"].erase("topColor");
   EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("\"topColor\" is missing")));
@@ -907,7 +907,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   gltf.json["images"] = {{{"uri", "my%20sky.exr"}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("does not exist")));
   write("my sky.exr", "no picture");
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("no known format")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("format is unknown")));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(load(gltf).environment.sky));
   // The middle is +Z and the left is +X: of four pixels the first goes from -Z to +X.
   Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.0F))};
@@ -927,7 +927,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
   skies[0]["panorama"] = {{"equirectangular", 2}};
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular; they are ignored")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular; it is ignored")));
 }
 
 // Cameras

@@ -220,10 +220,10 @@ TEST_F(NffTest, PatchesHaveNormals) {
 
   const Scene flat = load(kMaterial + "pp 3 0 0 0 0 0 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
   EXPECT_THAT(shape_of<Mesh>(flat, 0).normals, IsEmpty());
-  EXPECT_THAT(flat.warnings, Contains(HasSubstr("a normal of no length")));
+  EXPECT_THAT(flat.warnings, Contains(HasSubstr("a normal that is 0 or not a number")));
   const Scene unknown = load(kMaterial + "pp 3 0 0 0 nan inf 0 1 0 0 0 1 1 0 1 0 1 0 1\n");
   EXPECT_THAT(shape_of<Mesh>(unknown, 0).normals, IsEmpty());
-  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is drawn flat")));
+  EXPECT_THAT(unknown.warnings, Contains(HasSubstr("the polygon is shaded flat")));
 }
 
 TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
@@ -277,18 +277,18 @@ const Repair kRepairs[] = {
      "\"l\" has a coordinate that is not a number up to 1e15 (\"nan\"), line 1; it is"},
     {"ShortLight", "l 0 0", "\"l\" has a coordinate"},
     {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" lacks from, at, up or angle"},
-    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in one place"},
+    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in the same place"},
     {"ViewOfNan", "v from 1 nan 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
     {"ViewOfTwo", "v from 1 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
-    {"UpAlongView", "v from 0 0 1 at 0 0 0 up 0 0 2 angle 45", "an up that is 0 or along it"},
-    {"NoUp", "v from 0 0 1 at 0 0 0 up 0 0 0 angle 45", "an up that is 0 or along it"},
+    {"UpAlongView", "v from 0 0 1 at 0 0 0 up 0 0 2 angle 45", "an up that is 0 or parallel"},
+    {"NoUp", "v from 0 0 1 at 0 0 0 up 0 0 0 angle 45", "an up that is 0 or parallel"},
     {"AngleZero", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 0", "an angle that is not from 0.001 to 179.9"},
     {"AngleFlat", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 180", "an angle that is not"},
     {"AngleNan", "v from 0 0 1 at 0 0 0 up 0 1 0 angle nan", "an angle that is not"},
     {"NegativeHither", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 hither -1", "not from 0 to 1e15 (\"-1\")"},
-    {"NoPixels", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 512", "a resolution that is not of whole"},
-    {"TooManyPixels", "v resolution 99999 512", "a resolution that is not of whole"},
-    {"HalfAPixel", "v resolution 5.5 512", "a resolution that is not of whole"},
+    {"NoPixels", "v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 512", "a resolution that is not two whole"},
+    {"TooManyPixels", "v resolution 99999 512", "a resolution that is not two whole"},
+    {"HalfAPixel", "v resolution 5.5 512", "a resolution that is not two whole"},
     {"SphereNan", "s nan 0 0 1",
      "\"s\" has a coordinate that is not a number up to 1e15 (\"nan\"), line 1; it is left"},
     {"SphereInfinite", "s 0 0 inf 1", "\"s\" has a coordinate"},
@@ -336,10 +336,10 @@ TEST_P(BadNffTest, IsRefusedWithPlaceAndCure) {
 
 const BadFile kBadNff[] = {
     {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is not a statement of NFF", ": line 2"},
-    {"UpperCase", "S 0 0 0 1", "\"S\" is no statement", ": line 1"},
-    {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is no statement", ": line 2"},
-    {"NoNumber", "s 0 0\nx 1\n", "\"x\" is no number", ": line 2"},
-    {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "\"s\" is no number", ": line 2; write s x y z radius"},
+    {"UpperCase", "S 0 0 0 1", "\"S\" is not a statement", ": line 1"},
+    {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is not a statement", ": line 2"},
+    {"NoNumber", "s 0 0\nx 1\n", "\"x\" is not a number", ": line 2"},
+    {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "\"s\" is not a number", ": line 2; write s x y z radius"},
     {"HugeCount", "p 99999999999999999999 0 0 0", "is not a number of corners", ": line 1"},
     {"LargeCount", "p 4000000000 0 0 0", "is not a number of corners", ": line 1"},
     {"NegativeCount", "pp -3 0 0 0", "\"-3\" is not a number of corners", ": line 1"},

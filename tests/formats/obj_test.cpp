@@ -139,7 +139,7 @@ TEST_F(ObjTest, NamesAreShownInUtf8) {
   for (std::string word : {"", "x"}) {
     while (word.size() < 100) word += "ü";
     const std::string said = refusal("f " + word + "\n");
-    EXPECT_THAT(said, HasSubstr("is no corner"));
+    EXPECT_THAT(said, HasSubstr("is not a corner"));
     EXPECT_EQ(said, to_utf8(said));
   }
 }
@@ -205,7 +205,7 @@ TEST_F(ObjTest, VerticesThatNoFaceUsesMayHoldAnything) {
   const std::string text = "v nan 0 0\n" + kSquare + "v 1 2\nv 0,5 0 0\nv 1e30 0 0\nv\nf 2 3 4\n";
   const LoadedScene scene = load(text);
   EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
-  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("no face uses"), HasSubstr("\"nan\" is no number"),
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("no face uses"), HasSubstr("\"nan\" is not a number"),
                                                 HasSubstr("line 1 and 4 more"))));
   expect_strict_refusal(text, "no face uses", ": line 1");
 }
@@ -217,9 +217,9 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   ASSERT_THAT(scene.objects, SizeIs(2)) << "an object without a face is none";
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
-                                                HasSubstr("\"-inf\" is no number"), HasSubstr("line 13 and 2 more"),
+                                                HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13 and 2 more"),
                                                 HasSubstr("the face is left out"))));
-  expect_strict_refusal(text, "a face has a vertex that is no three numbers", ": line 13");
+  expect_strict_refusal(text, "a face has a vertex that is not three numbers", ": line 13");
   EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("face"));
 }
 
@@ -229,12 +229,12 @@ TEST_F(ObjTest, NumbersBehindAVertexCostAWarning) {
   EXPECT_THAT(rgba.warnings, ElementsAre(HasSubstr("more than 6 numbers, line 1 and 1 more")));
   const LoadedScene colors = load("v 0 0 0 nan 0 0\nv 1 0 0 0 -1 0\nv 0 1 0 0.5 0 0\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(colors).colors, ElementsAre(vec4(1), vec4(1), vec4(0.5F, 0, 0, 1)));
-  EXPECT_THAT(colors.warnings, ElementsAre(AllOf(HasSubstr("colour is no three"), HasSubstr("line 1 and 1 more"))));
+  EXPECT_THAT(colors.warnings, ElementsAre(AllOf(HasSubstr("colour is not three"), HasSubstr("line 1 and 1 more"))));
   const LoadedScene others = load("v 0 0 0 1 2\nv 1 0 0 x\nv 0 1 0 0 0 0\nf 1 2 3\n");
   EXPECT_EQ(mesh_of(others).positions.at(1), vec3(1, 0, 0));
-  EXPECT_THAT(others.warnings, ElementsAre(AllOf(HasSubstr("no weight and no colour"), HasSubstr("and 1 more"))));
+  EXPECT_THAT(others.warnings, ElementsAre(AllOf(HasSubstr("neither a weight nor a colour"), HasSubstr("and 1 more"))));
   expect_strict_refusal("v 0 0 0 1 1 1 1\n" + kSquare + "f 1 2 3\n", "more than 6 numbers", ": line 1");
-  expect_strict_refusal("v 0 0 0 1 x 1\n" + kSquare + "f 1 2 3\n", "colour is no three numbers", ": line 1");
+  expect_strict_refusal("v 0 0 0 1 x 1\n" + kSquare + "f 1 2 3\n", "colour is not three numbers", ": line 1");
 }
 
 TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
@@ -246,16 +246,16 @@ TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
   EXPECT_EQ(mesh.normals.at(mesh.triangles[0].z), vec3(1, 0, 0));
   for (const size_t sharp : {1, 2}) EXPECT_EQ(mesh.normals.at(mesh.triangles[sharp].x), vec3(0, 0, 1));
   EXPECT_THAT(scene.warnings, ElementsAre("a normal is not three numbers up to 1e15 (\"nan\"), line 5 and 2 more; "
-                                          "the faces that use it are drawn flat",
+                                          "the faces that use it are shaded flat",
                                           HasSubstr("a normal has more than 3 numbers, line 8")));
-  expect_strict_refusal(text, "a normal is no three numbers", ": line 5");
+  expect_strict_refusal(text, "a normal is not three numbers", ": line 5");
 }
 
 TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   const LoadedScene none = load(kSquare + "f 1//1 2//2 3//3\nf 1//1 3//3 4//4\n");
   EXPECT_THAT(mesh_of(none).normals, IsEmpty());
   EXPECT_THAT(none.warnings,
-              ElementsAre("a face refers to a normal that does not exist, line 5 and 1 more; it is drawn flat"));
+              ElementsAre("a face refers to a normal that does not exist, line 5 and 1 more; it is shaded flat"));
   const LoadedScene some = load(kSquare +
                                 "vn 1 0 0\nf 1//1 2//1 3//2\nf 1//1 3//-2 4//0\nf 1//1 3//x 4//1\n"
                                 "f 1//1 2//1 3//1\nf 1//1 2//1 3//99999999999999999999\n");
@@ -264,7 +264,7 @@ TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   EXPECT_EQ(mesh.normals.at(mesh.triangles[3].x), vec3(1, 0, 0));
   EXPECT_THAT(some.warnings, ElementsAre(HasSubstr("line 6 and 3 more")));
   EXPECT_THAT(load(kSquare + "f 1//1 2//1 3//1\nvn 1 0 0\n").warnings, IsEmpty()) << "normals may follow";
-  expect_strict_refusal(kSquare + "f 1//1 2//1 3//1\n", "names a normal that is not there", ": line 5");
+  expect_strict_refusal(kSquare + "f 1//1 2//1 3//1\n", "refers to a normal that does not exist", ": line 5");
 }
 
 TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
@@ -273,8 +273,8 @@ TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
   EXPECT_THAT(scene.warnings,
               ElementsAre("a face refers to texture coordinates that do not exist, line 6 and 1 more; it "
                           "is drawn without them"));
-  expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that are not there", ": line 5");
-  expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is no number", ": line 5");
+  expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that do not exist", ": line 5");
+  expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is not a number", ": line 5");
 }
 
 TEST_F(ObjTest, ZeroBytesAtTheEndAreCutOff) {
@@ -356,7 +356,7 @@ TEST_F(ObjTest, GlassIsRead) {
 TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   std::vector<std::string> warnings;
   material("illum 4\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) with a d of 1, it is drawn opaque"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) and has a d of 1; it is drawn opaque"));
   material("illum 7\nNi -1\n", &warnings);
   EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; 1.5 is used"));
   material("map_Ns wood.png\ndisp wood.png\n", &warnings);
@@ -377,7 +377,7 @@ TEST_F(ObjTest, NumbersOfMaterialsThatAreNoneAreIgnored) {
   for (const char* line : {"Kd x\n", "Ke 1e999 0 0\n", "illum -1\n", "Ns 1e16\n", "d full\n", "Tr x\n", "Ni nan\n"}) {
     EXPECT_EQ(material(std::string("Kd 1 0 0\nd 0.5\n") + line, &warnings).phong().diffuse, vec3(1, 0, 0)) << line;
     EXPECT_THAT(warnings, ElementsAre(HasSubstr("the statement is ignored"))) << line;
-    expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "is no number", ": mtllib m.mtl line 4");
+    expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "is not a number", ": mtllib m.mtl line 4");
   }
   EXPECT_EQ(material("Kd -0.5 0.25 -1e-9\n", &warnings).phong().diffuse, vec3(0, 0.25F, 0));
   EXPECT_THAT(warnings, ElementsAre("Kd of a material is negative, mtllib m.mtl line 2; 0 is used"));
@@ -401,7 +401,8 @@ TEST_F(ObjTest, ColoursOfOtherSpacesAreIgnored) {
 TEST_F(ObjTest, WhatWouldBeInvisibleByTrIsOpaque) {
   std::vector<std::string> warnings;
   EXPECT_EQ(material("Kd 1 0 0\nTr 1.000000\nillum 1\n", &warnings).alpha_mode, AlphaMode::kOpaque);
-  EXPECT_THAT(warnings, ElementsAre(AllOf(HasSubstr("\"m\" would be invisible by its Tr"), HasSubstr("of m.mtl"))));
+  EXPECT_THAT(warnings,
+              ElementsAre(AllOf(HasSubstr("\"m\" would be invisible because of its Tr"), HasSubstr("of m.mtl"))));
   write("tr.mtl", "newmtl a\nTr 1\nnewmtl b\nTr 0.25\nnewmtl c\nd 0.5\nTr 0.5\nnewmtl d\nTr 0\n");
   const LoadedScene scene = load(kSquare +
                                  "mtllib tr.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"
@@ -446,7 +447,7 @@ TEST_F(ObjTest, AnMtlOfAnotherFolderIsReadFromBesideTheScene) {
                            "file:///x/a.mtl", "\\\\server\\share\\a.mtl # x"}) {
     const LoadedScene scene = load(kSquare + "mtllib " + name + "\nusemtl red\nf 1 2 3\n");
     EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(1, 0, 0)) << name;
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr("are read from beside the scene"))) << name;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("are read from the scene's folder"))) << name;
   }
   write("b.mtl", "newmtl blue\nKd 0 0 1\n");
   const LoadedScene two = load(kSquare + "mtllib /x/a.mtl /x/b.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
@@ -463,7 +464,7 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
   };
   EXPECT_THAT(warnings_of("mtllib ../none.mtl"), ElementsAre(HasSubstr("leaves the scene's folder (\"../none.mtl\")")));
   EXPECT_THAT(warnings_of("mtllib /etc/none"), ElementsAre(HasSubstr("is an absolute path (\"/etc/none\")")));
-  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is no relative path")));
+  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is not a relative path")));
   EXPECT_THAT(warnings_of("mtllib"), IsEmpty());
   write("empty.mtl", "");
   EXPECT_THAT(warnings_of("mtllib empty.mtl"), ElementsAre(HasSubstr("\"empty.mtl\" is ignored: the file is empty")));
@@ -474,7 +475,8 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
 TEST_F(ObjTest, AMissingMtlIsGrey) {
   const LoadedScene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
   EXPECT_EQ(scene.materials.at(scene.objects[0].material).phong().diffuse, vec3(0.8F));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"none.mtl\" is not read"), HasSubstr("\"red\" is in no MTL")));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(HasSubstr("\"none.mtl\" is not read"), HasSubstr("\"red\" is not defined in any MTL")));
 }
 
 TEST_F(ObjTest, FacesKeepTheirMaterials) {
@@ -617,8 +619,8 @@ TEST_F(ObjMapTest, CoordinatesThatAreMissingAreSaid) {
   const LoadedScene scene = load("mtllib m.mtl\nusemtl m\nvt 0 x\n" + kSquare + "f 1/1 2/7 3\n");
   // They are 0; v goes down in meshes, where 1 is 0 as the texture repeats.
   EXPECT_THAT(mesh_of(scene).uvs, Each(vec4(0, 0, 0, 0)));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("no number up to 1e15"), HasSubstr("that are not there"),
-                                          HasSubstr("corners without texture")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("not a number up to 1e15"), HasSubstr("that do not exist"),
+                                          HasSubstr("have no texture coordinates")));
 }
 
 TEST_F(ObjMapTest, OptionsPlaceTheMap) {
@@ -683,8 +685,8 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   }
   const LoadedScene beside = load_with("map_Kd C:\\x\\a.png\nmap_Ks /y/a.png\n");
   EXPECT_TRUE(beside.materials.at(0).phong().specular_texture.exists());
-  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from beside the scene")));
-  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is no relative path")));
+  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from the scene's folder")));
+  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not a relative path")));
 }
 
 // Maps of heights
@@ -802,7 +804,7 @@ TEST_F(ObjHeightsTest, APictureOfNormalsIsTakenForOne) {
   std::vector<std::string> warnings;
   const TextureImage normals = normals_of("map_Bump -bm 0.5 n.png\n", &warnings);
   EXPECT_EQ(normals.texels.at(1), 0xFFFA80A0U);
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a map of heights holds normals")));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map holds normals")));
   // Bright grey texels are vectors of length 1 too, and photographs are blue.
   write_picture("grey.png", {200, 200, 200, 201, 201, 201, 199, 199, 199, 202, 202, 202}, {4, 1});
   normals_of("bump grey.png\n", &warnings);
@@ -929,15 +931,15 @@ TEST_P(BadObjTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadObj[] = {
-    {"IndexZero", "f 0 1 2", "\"0\" is no corner", ": line 5"},
+    {"IndexZero", "f 0 1 2", "\"0\" is not a corner", ": line 5"},
     {"IndexPastTheEnd", "f 1 2 5", "index 5 is out of range, there are 4 vertices", ": line 5"},
-    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is no corner", ": line 5"},
-    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is no corner", ": line 5"},
-    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is no corner", ": line 5"},
-    {"IndexIsText", "f a b c", "\"a\" is no corner", ": line 5"},
-    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is no corner", ": line 5"},
-    {"NoPosition", "f /1 2 3", "is no corner", ": line 5"},
-    {"NoFaceOfThreeCorners", "f 1 2\nf 1 x 2", "\"x\" is no corner", ": line 6"},
+    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is not a corner", ": line 5"},
+    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is not a corner", ": line 5"},
+    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is not a corner", ": line 5"},
+    {"IndexIsText", "f a b c", "\"a\" is not a corner", ": line 5"},
+    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is not a corner", ": line 5"},
+    {"NoPosition", "f /1 2 3", "is not a corner", ": line 5"},
+    {"NoFaceOfThreeCorners", "f 1 2\nf 1 x 2", "\"x\" is not a corner", ": line 6"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj), name_of_bad_file);

@@ -194,7 +194,7 @@ TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
 TEST_F(PlyTest, NumbersBeyondDoubleAreThoseOfTheirSide) {
   const std::string file = text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList);
   EXPECT_EQ(mesh_of(load(file + "1e-999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")).positions[0], vec3(0.0F));
-  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasSubstr("no number up to 1e15"));
+  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasSubstr("not a number up to 1e15"));
 }
 
 // Normals and colours
@@ -228,7 +228,7 @@ TEST_F(PlyTest, NormalsOfNoLengthMakeTheirFacesSharp) {
     EXPECT_EQ(mesh.normals.at(corners.x), mesh.normals.at(corners.z));
     EXPECT_NE(mesh.normals.at(corners.x), vec3(1, 0, 0));
   }
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a face has a normal of no length")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a face has a normal that is 0 or not a number")));
   EXPECT_THAT(validate(load_scene(folder_ / "scene.ply")), IsEmpty());
 }
 
@@ -271,7 +271,7 @@ TEST_F(PlyTest, ColorsOutOfRangeAreClamped) {
   const LoadedScene scene =
       load(triangle("property float red\nproperty float green\nproperty float blue\n", {"-1 2 nan", "0 0 0", "0 0 0"}));
   EXPECT_EQ(mesh_of(scene).colors.at(0), vec4(0, 1, 1, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a colour is not a number, line 15; 1 is taken",
+  EXPECT_THAT(scene.warnings, ElementsAre("a colour is not a number, line 15; 1 is used",
                                           "vertex colours below 0 or above 1 are clamped"));
 }
 
@@ -288,7 +288,7 @@ TEST_F(PlyTest, WordsThatAreNoNumbersCostWhatTheySay) {
   EXPECT_EQ(mesh_of(colored).colors.at(0), vec4(1, 0, 0, 1));
   const LoadedScene smooth = load(triangle(kNormal, {"-1.#IND 0 x", "0 0 1", "0 0 1"}));
   EXPECT_THAT(mesh_of(smooth).normals, testing::Each(vec3(0, 0, 1)));
-  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is drawn flat")));
+  EXPECT_THAT(smooth.warnings, ElementsAre(HasSubstr("the face is shaded flat")));
   EXPECT_THAT(load(triangle("property float quality\n", {"x", "y", "z"})).warnings, IsEmpty());
 }
 
@@ -449,10 +449,10 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
   EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("a file does not exist (\"none.png\")")));
   EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leaves the scene's folder")));
   EXPECT_THAT(warnings("C:\\scans\\a.png", uvs, "0 0"), IsEmpty()) << "a path of another machine";
-  EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("no known format")));
+  EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("format is unknown")));
   EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));
   EXPECT_THAT(warnings("a.png", uvs, "nan 0"),
-              ElementsAre("a texture coordinate is not finite or beyond 1e15, line 15 and 2 more; 0 is taken"));
+              ElementsAre("a texture coordinate is not finite or beyond 1e15, line 15 and 2 more; 0 is used"));
 }
 
 TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {
@@ -494,20 +494,21 @@ std::string cut_binary(const std::string& count_of_faces) {
 }
 
 const BadFile kBadPly[] = {
-    {"Empty", text_header("element vertex 0\n" + kPlace + "element face 0\n" + kCornerList), "holds nothing to draw",
+    {"Empty", text_header("element vertex 0\n" + kPlace + "element face 0\n" + kCornerList), "contains nothing to draw",
      ""},
-    {"SmallFacesAlone", square("2 0 1\n", 1), "holds nothing to draw (a face has fewer than 3 corners", ""},
+    {"SmallFacesAlone", square("2 0 1\n", 1), "contains nothing to draw (a face has fewer than 3 corners", ""},
     {"NoPosition",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0,5 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-     "\"0,5\" is no number", ": line 12"},
+     "\"0,5\" is not a number", ": line 12"},
     {"NoPly", "solid x\n", "first line is not \"ply\"", ""},
     {"NoEnd", "ply\nformat ascii 1.0\nelement vertex 3\n", "the header has no end", ": line 3"},
-    {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "tells no format", ": line 6"},
-    {"UnknownFormat", "ply\nformat binary 1.0\nend_header\n", "\"binary\" is no format", ": line 2"},
-    {"UnknownType", text_header("element vertex 3\nproperty half x\n"), "\"half\" is no type", ": line 6"},
-    {"UnknownListType", text_header("element face 3\nproperty list uchar long x\n"), "\"long\" is no type", ": line 6"},
-    {"NegativeCount", text_header("element vertex -1\n"), "\"-1\" is no count", ": line 5"},
-    {"NoCount", text_header("element vertex\n"), "\"\" is no count", ": line 5"},
+    {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "states no format", ": line 6"},
+    {"UnknownFormat", "ply\nformat binary 1.0\nend_header\n", "\"binary\" is not a format", ": line 2"},
+    {"UnknownType", text_header("element vertex 3\nproperty half x\n"), "\"half\" is not a type", ": line 6"},
+    {"UnknownListType", text_header("element face 3\nproperty list uchar long x\n"), "\"long\" is not a type",
+     ": line 6"},
+    {"NegativeCount", text_header("element vertex -1\n"), "\"-1\" is not a number of rows", ": line 5"},
+    {"NoCount", text_header("element vertex\n"), "\"\" is not a number of rows", ": line 5"},
     {"TwoElements", text_header("element vertex 0\nelement vertex 0\n"), "two elements \"vertex\"", ": line 6"},
     {"TwoProperties", text_header("element vertex 0\nproperty int x\nproperty float x\n"), "two properties \"x\"",
      ": line 7"},
@@ -521,22 +522,22 @@ const BadFile kBadPly[] = {
     {"CountOfALie", text_header("element vertex 1000000000\n" + kPlace) + kSquare, "has room for", ""},
     {"CountOfAHugeLie", text_header("element vertex 9223372036854775807\n" + kPlace) + kSquare, "has room for", ""},
     {"CutBinaryHeader", cut_binary("1000"), "1000 rows of \"face\", but the file has room for 9", ""},
-    {"CutBinary", cut_binary("1"), "a count that the file has no room for", ": face 0"},
+    {"CutBinary", cut_binary("1"), "a list is longer than the rest of the file", ": face 0"},
     {"CutText", square("3 0 1 2\n", 2), "ends within its rows", ""},
     {"CutRow", square("3 0 1\n3 0 1 2\n", 2), "fewer numbers", ": line 16"},
-    {"NoNumber", square("3 0 1 x\n", 1), "\"x\" is no number", ": line 16"},
-    {"IndexPastTheEnd", square("3 0 1 4\n", 1), "names a vertex that is not there, there are 4", ": line 16"},
-    {"NegativeIndex", square("3 0 1 -1\n", 1), "names a vertex that is not there", ": line 16"},
-    {"BrokenIndex", square("3 0 1 1.5\n", 1), "names a vertex that is not there", ": line 16"},
-    {"CountOfNone", square("-3 0 1 2\n", 1), "a count that the file has no room for", ": line 16"},
-    {"CountOfALong", square("99999999 0 1 2\n", 1), "a count that the file has no room for", ": line 16"},
+    {"NoNumber", square("3 0 1 x\n", 1), "\"x\" is not a number", ": line 16"},
+    {"IndexPastTheEnd", square("3 0 1 4\n", 1), "refers to a vertex that does not exist, there are 4", ": line 16"},
+    {"NegativeIndex", square("3 0 1 -1\n", 1), "refers to a vertex that does not exist", ": line 16"},
+    {"BrokenIndex", square("3 0 1 1.5\n", 1), "refers to a vertex that does not exist", ": line 16"},
+    {"CountOfNone", square("-3 0 1 2\n", 1), "a list is longer than the rest of the file", ": line 16"},
+    {"CountOfALong", square("99999999 0 1 2\n", 1), "a list is longer than the rest of the file", ": line 16"},
     {"Nan",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0 0\n0 nan 0\n1 0 0\n3 0 1 2\n",
-     "no number up to 1e15, vertex 1", ""},
+     "not a number up to 1e15, vertex 1", ""},
     {"TooLarge",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) +
          "0 0 0\n0 1 0\n1e16 0 0\n3 0 1 2\n",
-     "no number up to 1e15, vertex 2", ""},
+     "not a number up to 1e15, vertex 2", ""},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly), name_of_bad_file);

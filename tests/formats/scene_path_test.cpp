@@ -76,7 +76,7 @@ TEST_F(ScenePathTest, AbsolutePathsNeedTheRootThatHoldsThem) {
   EXPECT_EQ(read(file, "textures"), "textures/c.png");
   EXPECT_THAT(read("/etc/hostname", "textures"), HasSubstr("leaves the scene's folder and the root"));
   for (const char* name : {"file:a.png", "C:\\a.png", "http://a.org/a.png"}) {
-    EXPECT_THAT(read(name, "."), HasSubstr("no relative path")) << name;
+    EXPECT_THAT(read(name, "."), HasSubstr("not a relative path")) << name;
   }
 }
 
@@ -91,7 +91,7 @@ TEST_F(ScenePathTest, TheRootIsAFolder) {
         "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n");
   EXPECT_NO_THROW(load_scene(folder_ / "triangle.stl", {.root = folder_}));
   EXPECT_THAT([&] { load_scene(folder_ / "triangle.stl", {.root = folder_ / "none"}); },
-              testing::ThrowsMessage<UsageError>(HasSubstr("is no folder")));
+              testing::ThrowsMessage<UsageError>(HasSubstr("is not a folder")));
 }
 
 }  // namespace

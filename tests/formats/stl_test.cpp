@@ -176,7 +176,8 @@ TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the number of facets was never written")));
     EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
     // Where the size is no sign, the file is refused.
-    EXPECT_THAT(refusal(bytes + "x"), testing::AnyOf(HasSubstr("holds nothing to draw"), HasSubstr("has room for 3")));
+    EXPECT_THAT(refusal(bytes + "x"),
+                testing::AnyOf(HasSubstr("contains nothing to draw"), HasSubstr("has room for 3")));
   }
 }
 
@@ -235,13 +236,13 @@ TEST_P(BadStlTest, IsRefusedWithPlaceAndCure) {
 
 const BadFile kBadStl[] = {
     {"Short", "stl", "the file is not an STL file", ""},
-    {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is no number", ": line 3"},
-    {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is no number", ": line 4"},
+    {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is not a number", ": line 3"},
+    {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is not a number", ": line 4"},
     {"TooLarge", "solid\nfacet\nvertex 0 0 1e16\nvertex 0 0 0\nvertex 1 1 1\nendfacet\n",
      "nothing to draw (a facet has a vertex coordinate that is not a number up to 1e15 (\"1e16\"), line 3", ""},
     {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",
      "nothing to draw (a facet has fewer than 3 corners (2), line 5", ""},
-    {"LostVertex", "solid\nvertex 0 0 0\n", "lies in no facet", ": line 2"},
+    {"LostVertex", "solid\nvertex 0 0 0\n", "lies outside of facets", ": line 2"},
     {"LostEnd", "solid\nendfacet\n", "has no begin", ": line 2"},
     {"Nested", "solid\nfacet\nfacet\n", "within another", ": line 3"},
     {"Cut", "solid\nfacet\nvertex 0 0 0\n", "ends within a facet", ": line 3"},
@@ -252,8 +253,8 @@ INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl), name_of_
 TEST_F(StlTest, BrokenBinaryFilesSayWhy) {
   StlBuilder stl;
   for (int i = 0; i < 3; ++i) stl.add({{kTriangle[0], kTriangle[1], kTriangle[2]}});
-  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("tells of 3 facets, but has room for 2"));
-  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("tells of 4294967295 facets, but has room for 0"));
+  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("declares 3 facets, but has room for 2"));
+  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("declares 4294967295 facets, but has room for 0"));
 }
 
 }  // namespace

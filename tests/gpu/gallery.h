@@ -34,10 +34,10 @@ Material make_metallic(float metallic, float roughness, const vec3& color = vec3
 /// Textures of the metallic-roughness model in boards: all of its slots, sets and transforms.
 world::Scene make_gallery_of_metallic_roughness();
 
-/// Textures of Phong's model and of what is unlit, with every filter and wrap.
+/// Textures of Phong's model and of unlit materials, with every filter and wrap mode.
 world::Scene make_gallery_of_phong();
 
-/// Boards that blend with what is behind them, and that a mask cuts.
+/// Boards that blend with what is behind them, and boards cut by a mask.
 world::Scene make_gallery_of_alpha();
 
 View make_gallery_view(uvec2 size = uvec2(96, 72));

@@ -11,7 +11,7 @@
 
 namespace promin::test {
 
-/// What the tests ask of a SPIR-V module; "Binary Form" in the SPIR-V specification, section 2.3 on.
+/// Queries of a SPIR-V module for tests ("Binary Form" in the SPIR-V specification, from section 2.3).
 struct SpirvModule {
   explicit SpirvModule(std::span<const uint32_t> words);
 

@@ -8,7 +8,7 @@
 
 namespace promin::test {
 
-/// Options that change how a picture is traced and none of its bits: without texel buffers, with packets and pieces of
+/// Options that change how a picture is traced, but none of its bits: without texel buffers, with packets and pieces of
 /// other sizes, with the trees of all builders.
 inline std::vector<TunedRendererOptions> ways_of_tracing() {
   std::vector<TunedRendererOptions> ways(1);

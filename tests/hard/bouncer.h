@@ -13,7 +13,7 @@
 
 namespace promin::hard {
 
-/// Where a secondary ray of the renderer would start.
+/// Returns the origin of a secondary ray of the renderer.
 struct Bounce {
   bool is_hit = false;
   PrimitiveId id;

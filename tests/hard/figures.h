@@ -23,8 +23,8 @@ struct PrimitiveFigures {
   uint64_t leaks = 0;
 };
 
-/// Everything that this process measured. Where the environment variable PROMIN_FIGURES names a file, it is written
-/// there as JSON when the tests have ended (tools/accuracy).
+/// All figures that this process has measured. If the environment variable PROMIN_FIGURES names a file, they are
+/// written there as JSON at the end of the tests (tools/accuracy).
 struct Figures {
   std::vector<RowFigure> rows;
   std::map<std::string, PrimitiveFigures> primitives;

@@ -50,19 +50,19 @@ std::span<const HardCase> tree_cases();
 std::span<const HardCase> implicit_cases();
 std::span<const HardCase> glass_cases();
 
-/// What the answers to many rays come to against the oracle. Errors are in units of u S (docs/glossary.md).
+/// The errors of the answers to many rays, compared with the oracle, in units of u S (docs/glossary.md).
 struct Tally {
   uint64_t rays = 0;
-  /// Of those, compared with the oracle: what all below but rays that slip through is of.
+  /// Number of rays compared with the oracle. All members below refer to these, except for rays that slip through.
   uint64_t judged = 0;
   /// Both the device and the oracle tell of the same hit.
   uint64_t hits = 0;
   /// The oracle has a hit, the device none.
   uint64_t misses = 0;
-  /// Of the hits, |dt| |d| cos / (u S): B1.
+  /// The largest |dt| |d| cos / (u S) of the hits: B1.
   double max_t_error = 0.0;
   double sum_t_error2 = 0.0;
-  /// Of all hits on analytic shapes, the distance of o + t d from the surface / (u S): BK.
+  /// The largest distance of o + t d from the surface / (u S) of all hits on analytic shapes: BK.
   double max_surface_error = 0.0;
   /// Another id, or one of them a miss; and how far from an edge or silhouette the worst of these passes: B2.
   uint64_t misclassified = 0;
@@ -77,14 +77,14 @@ struct Tally {
   Tally without_t_errors() const;
 };
 
-/// What a hard case works with: the device, the oracle, and where figures go.
+/// The tools of a hard case: the device, the oracle, and the collection of figures.
 class Lab {
  public:
   Lab(const gpu::Device& device, int row) : device_(device), row_(row) {}
 
   const gpu::Device& device() const { return device_; }
 
-  /// 1 where the driver divides and takes roots with correct rounding, else 2: bounds on K are stated times this.
+  /// 1 if the driver computes divisions and roots with correct rounding, else 2. Bounds on K are multiplied by this.
   double rounding_factor() const;
 
   /// Casts through the public Caster, or the kernel that PROMIN_TEST_KERNELS names.
@@ -95,10 +95,10 @@ class Lab {
   static Tally judge(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
   Tally cast_and_judge(const world::Scene& scene, std::span<const Ray> rays) const;
 
-  /// Prints the figure beside its bound, keeps it for docs/accuracy.md and fails the test where it passes the bound.
+  /// Prints the figure beside its bound, keeps it for docs/accuracy.md, and fails the test if it exceeds the bound.
   /// `what` names the figure and its unit: "K of t, distance 1e4".
   void expect_at_most(const std::string& what, double bound, double figure) const;
-  /// As much for what has no bound: printed and kept.
+  /// Prints and keeps a figure without a bound.
   void note(const std::string& what, double figure) const;
 
   /// Adds to the table of primitives, from scenes of this kind of shape alone: every ray cast in any row.
@@ -122,8 +122,8 @@ class Lab {
 /// "distance 1e+04" and the like.
 std::string label(const char* what, double value);
 
-/// The same primitives in boxes without end: every ray tests every primitive, so that where the answers differ, a box
-/// has hidden a hit.
+/// The same primitives in infinite boxes: every ray tests every primitive, so if the answers differ, a box has hidden a
+/// hit.
 PackedScene with_infinite_boxes(PackedScene packed);
 
 /// Rays whose records differ in order or in the bits of t.

@@ -7,8 +7,8 @@
 
 namespace promin::hard {
 
-/// A shape around `center` that is 0.05 to 2 in size, of any proportions and orientation. Each shape of
-/// promin/kinds/primitives.def has its own; the suite over all of them does not link without.
+/// Returns a shape around `center` of size 0.05 to 2, with any proportions and orientation. Each shape of
+/// promin/kinds/primitives.def needs its own definition; without it the suite over all shapes does not link.
 template <class Shape>
 Shape random_shape(const vec3& center, measure::Random& random);
 

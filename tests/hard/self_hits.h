@@ -12,8 +12,8 @@ double uniform_cosine(Random& random);
 /// A unit vector that makes this cosine with a unit normal.
 vec3 direction_at(const dvec3& normal, double cosine, Random& random);
 
-/// Sends rays from around a convex shape of about `scale`, then others from where they hit it outwards, with the
-/// renderer's own lift: counts those that meet it again, which is always wrong.
+/// Sends rays at a convex shape of about the size `scale`, then others outwards from their hits, with the renderer's
+/// own lift. Counts the latter that hit the shape again, which is always wrong.
 uint64_t count_self_hits(const Lab& lab, const world::Shape& shape, double scale, const dvec3& center, Random& random);
 
 }  // namespace promin::hard

@@ -134,8 +134,8 @@ TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
   EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasSubstr("is damaged"));
   EXPECT_THAT(find_missing(job), ElementsAre(0, 1, 2, 3, 5));
   EXPECT_THAT(run(job), ElementsAre(0, 1, 2, 3, 5));
-  EXPECT_THAT(bad_, ElementsAre("0 is damaged", "1 is cut", "2 the file is empty", "3 the file holds another piece",
-                                "5 is damaged"));
+  EXPECT_THAT(bad_, ElementsAre("0 the piece is damaged", "1 the piece is cut short", "2 the file is empty",
+                                "3 the file holds another piece", "5 the piece is damaged"));
   EXPECT_EQ(read(job.file_of(0)), whole);
   EXPECT_THAT(find_missing(job), IsEmpty());
 }
@@ -219,9 +219,9 @@ TEST_F(JobTest, AManifestThatWasChangedByHandIsDamaged) {
   std::string text = read(job_folder_ / "job.json");
   text.replace(text.find(" \"options\""), 1, "  ");
   write(job_folder_ / "job.json", text);
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("it is damaged"));
   write(job_folder_ / "job.json", "");
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("a damaged one"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("it is damaged"));
 }
 
 TEST_F(JobTest, LeftoversOfTheDeadAreCleared) {

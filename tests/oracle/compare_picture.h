@@ -14,8 +14,8 @@
 /// A device's picture against the oracle's.
 namespace promin::oracle {
 
-/// What a device says of each pixel's primary ray, row by row: distance from the eye, infinite on a miss; geometric
-/// normal, never flipped; numbers, kNoObject on a miss.
+/// A device's results for each pixel's primary ray, row by row: distance from the eye, infinite on a miss; geometric
+/// normal, never flipped; object and primitive, kNoObject on a miss.
 struct DeviceAovs {
   std::span<const float> depth;
   std::span<const vec3> normal;
@@ -24,23 +24,25 @@ struct DeviceAovs {
 };
 inline constexpr uint32_t kNoObject = 0xFFFFFFFF;
 
-/// What passes.
+/// The largest errors with which a picture passes.
 struct PictureBounds {
-  /// Of another object or primitive than the oracle's, in u S: B2, and what the camera's ray is off by itself. Of
-  /// d = look + (x right - y up) each product, the difference and the sum are rounded; as |x right - y up| <= |d| that
-  /// is (1 + 1 + sqrt(2)) u |d|, and so much of S at the hit.
+  /// For another object or primitive than the oracle's, in u S: B2 plus the error of the camera's ray itself. In d =
+  /// look + (x right - y up) each product, the difference and the sum are rounded. Because |x right - y up| <= |d|, the
+  /// error is (1 + 1 + sqrt(2)) u |d|, and the same part of S at the hit.
   Real id_margin = kB2 + 3.4L;
-  /// Of all pixels; as many may have the normal from across a crease, which is another answer likewise.
+  /// The share of all pixels. As many pixels may have the normal from across a crease, which also is a different
+  /// answer.
   double id_share = 0.0005;
   Real depth_error = kB1;
   /// Largest difference of a channel for which a pixel's colour counts as right, and the mean over all pixels; of both
   /// Pixel::explained_error and map_error are taken off before.
   Real color_error = 0.02L;
   Real color_mean = 1e-4L;
-  /// Pixels of another colour. What mirrors show moves farther than they do.
+  /// The share of pixels of another colour. Reflections move farther than the mirrors that show them.
   double color_share = 0.0005;
   double color_share_with_mirrors = 0.005;
-  /// The mean difference, with what is explained, of the pixels that are sure. It holds what maps of skies may be off.
+  /// The mean difference of the sure pixels, including explained differences. It includes the permitted error of sky
+  /// maps.
   Real plain_mean = kInfinity;
   /// Pixels that are unsure: explained_error is more than color_error, so they hold a device to little.
   double unsure_share = 0.005;
@@ -68,16 +70,16 @@ struct PictureReport {
   std::vector<uvec2> non_finite;
   /// All, whether their margins explain them or not.
   std::vector<IdMismatch> id_mismatches;
-  /// Verdict::t_error, where it is beyond the bound.
+  /// Verdict::t_error, if it exceeds the bound.
   std::vector<PixelError> depth_errors;
-  /// |dN| in units of what is allowed (allowed_normal_error), where it is more.
+  /// |dN| as a multiple of the permitted error (allowed_normal_error), if it exceeds that.
   std::vector<PixelError> normal_errors;
-  /// Those where the ray passes a rim or apex within id_margin: either side's normal is right, in a few pixels.
+  /// Pixels whose ray passes a rim or apex within id_margin: the normal of either side is correct, in a few pixels.
   std::vector<PixelError> normals_at_creases;
-  /// Largest difference of a channel beyond what the pixel explains, where it is beyond the bound.
+  /// The largest difference of a channel beyond what the pixel explains, if it exceeds the bound.
   std::vector<PixelError> color_errors;
 
-  /// Pixels that are unsure, and of all others the mean and the largest difference with what is explained.
+  /// The number of unsure pixels, and the mean and largest difference of all others, including explained differences.
   uint64_t unsure_count = 0;
   Real plain_mean = 0;
   Real plain_largest = 0;

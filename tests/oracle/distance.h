@@ -20,9 +20,8 @@ struct BoundingSphere {
 /// Whether the primitive exists and can be hit: a degenerate triangle cannot.
 bool is_hittable(const world::Shape& shape, int32_t primitive);
 
-/// Of a plane its point and 0; of a triangle around its centroid, of cylinder and cone around the middle of the axis,
-/// of a box around its centre.
-/// The primitive is hittable, here and below.
+/// For a plane its point and 0; for a triangle around its centroid, for a cylinder or cone around the middle of the
+/// axis, for a box around its centre. Here and below the primitive must be hittable.
 BoundingSphere bounding_sphere(const world::Shape& shape, int32_t primitive);
 
 /// u S of docs/glossary.md, the unit of the bounds B1, B2 and BK: S = |o - c| + size, times kRoundoff.
@@ -35,17 +34,17 @@ Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector&
 /// From a point to the surface, >= 0: of an open shape to its side.
 Real surface_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
 
-/// Where a point lies as an open shape sees it: how far it is outside of the side, were that endless, and how far
-/// beyond the ends; negative inside. Both are convex functions of the point.
+/// The position of a point relative to an open shape: its distance from the side, extended infinitely, and from the
+/// ends; negative inside. Both are convex functions of the point.
 struct PlaceInFrustum {
   Real beyond_side = 0;
   Real beyond_ends = 0;
 };
-/// None where the shape is not an open one.
+/// Empty if the shape is not open.
 std::optional<PlaceInFrustum> place_in_open(const world::Shape& shape, const Vector& point);
 
-/// From a point to where the surface has a crease: the rims of cylinder and cone, the apex, a box's edges;
-/// infinite for others.
+/// Returns the distance of a point from the surface's nearest crease: the rims of a cylinder or cone, the apex, a box's
+/// edges; infinite for other shapes.
 Real distance_to_crease(const world::Shape& shape, const Vector& point);
 
 /// From a point to the segment between `a` and `b`, which may be the same.

@@ -6,10 +6,10 @@
 
 #include "oracle/oracle.h"
 
-/// Glass (docs/model.md, "Glass"): faces between media, and what they do with light.
+/// Glass (docs/model.md, "Glass"): faces between media, and their reflection and refraction.
 namespace promin::oracle {
 
-/// The place of the color in a colour.
+/// The index of the color in a colour.
 constexpr int kGreen = 1;
 
 /// A face as a ray meets it.
@@ -20,48 +20,48 @@ struct Face {
   bool is_thin = false;
 };
 
-/// How a material lets light through; nullptr-like where it does not.
+/// The transmission of a material; empty if it transmits nothing.
 struct GlassOf {
   bool exists = false;
   bool is_clear = false;
   bool is_thin = false;
   Real index = 1;
-  /// Of blue less that of green, and of green less that of red.
+  /// The index of blue less that of green, and of green less that of red.
   Real spread = 0;
   Real index_of(int color) const { return index + (color - kGreen) * spread; }
 };
 GlassOf glass_of(const Material& material);
 
-/// As what light of this weight is bent: where it has one color, as that, else as green.
+/// Returns the color by whose index light of this weight is refracted: its only color if it has one, else green.
 int color_of(const Vector& weight);
 
-/// The solids of glass that a ray is in, the last entered last.
+/// The solids of glass that contain a ray, in the order in which it entered them.
 class Media {
  public:
-  /// Of the last entered; 1 outside of all.
+  /// Returns the index of refraction of the solid entered last; 1 outside of all.
   Real index(int color) const;
-  /// The face of a material as a ray of this color from within these media meets it, and the media beyond.
+  /// Returns the face of a material for a ray of this color from these media, and sets the media beyond.
   Face meet(const Material& material, bool leaves, int color, Media& beyond) const;
-  /// The share of light that is left after this way.
+  /// Returns the share of light that is left after this length.
   Vector left_after(Real way) const;
 
  private:
   std::vector<const Material*> entered_;
 };
 
-/// Where a ray goes on behind a face.
+/// The continuation of a ray behind a face.
 struct Refraction {
   bool is_total = false;
   /// Unit.
   Vector direction{0};
-  /// Of the angles to the normal on either side.
+  /// The cosines of the angles to the normal on both sides.
   Real cosine = 1;
   Real cosine_beyond = 1;
 };
 /// `normal` faces the ray, which comes along the unit vector `direction`.
 Refraction refract(const Vector& direction, const Vector& normal, const Vector& geometric_normal, const Face& face);
 
-/// What a face reflects of unpolarised light.
+/// Returns the share of unpolarised light that a face reflects.
 Real fresnel(const Face& face, const Refraction& at);
 
 /// The share of a source's light that goes straight on through a face. `tint` is the base colour there, `transmission`

@@ -7,7 +7,8 @@
 /// How far a device's normals may be off.
 namespace promin::oracle {
 
-/// Radius of curvature of an analytic shape at a hit, in scene units; infinite where it is flat, and of meshes.
+/// Returns the radius of curvature of an analytic shape at a hit, in scene units; infinite for flat surfaces and
+/// meshes.
 Real radius_of_curvature(const world::Shape& shape, const Ray& ray, const Hit& hit);
 
 /// Allowed |dN| of a geometric normal: 1e-6 + 16 u S / (r cos) on spheres, cylinders, cones and capsules with the

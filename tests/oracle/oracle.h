@@ -10,7 +10,7 @@
 
 #include "scene/world_scene.h"
 
-/// What the renderer is checked against: the formulas of the thesis in long double (64 bits of mantissa on x86), by
+/// The reference for checks of the renderer: the formulas of the thesis in long double (64 bits of mantissa on x86), by
 /// brute force over every primitive. It shares no formula with the shaders, and normalises axes itself.
 namespace promin::oracle {
 
@@ -24,7 +24,7 @@ inline Real largest(const Vector& v) {
 }
 
 /// P(t) = origin + t * direction. The direction has any length; a hit has tmin < t < tmax, and a negative tmin counts
-/// as 0. Nothing is met by a ray with NaN anywhere, with infinity in origin or direction, or without a direction.
+/// as 0. A ray with NaN anywhere, with infinity in origin or direction, or with a direction of 0 hits nothing.
 struct Ray {
   Vector origin{0};
   Vector direction{0};
@@ -54,23 +54,24 @@ Vector axis_of(const world::Box& box, int i);
 /// Whether a ray may meet anything at all: see Ray.
 bool can_hit(const Ray& ray);
 
-/// What a ray of a picture sees otherwise than one that is cast.
+/// How a ray of a picture differs from a cast ray.
 struct Sight {
-  /// Whether backs of triangles are passed by, where their material does not show them, and triangles that a mask cuts
-  /// out whole. Shadow rays see both, and go through the latter.
+  /// Whether the ray passes backs of triangles that their material does not show, and triangles that a mask cuts out
+  /// completely. Shadow rays hit both, and pass through the latter.
   bool passes_backs = false;
-  /// What it has passed already: all that is nearer, and of what is as near all up to this hit.
+  /// The last hit that the ray has passed: it ignores all nearer hits, and those at the same distance up to this one in
+  /// order.
   Hit passed{.t = -1};
 };
 
 /// The nearest hit; of hits at the same t the one with the lower (object, primitive).
 Hit find_nearest_hit(const world::Scene& scene, const Ray& ray, const Sight& sight = {});
 
-/// All crossings, by t, then by (object, primitive); both of a solid. Where a triangle's edge or a solid's rim is met,
-/// each of the faces that have it has a crossing.
+/// Returns all crossings, sorted by t, then by (object, primitive); both of a solid. If the ray meets a triangle's edge
+/// or a solid's rim, each of the adjacent faces has a crossing.
 std::vector<Hit> find_all_hits(const world::Scene& scene, const Ray& ray);
 
-/// The material of what was hit.
+/// The material of the hit.
 const Material& material_of(const world::Scene& scene, const Hit& hit);
 
 /// Whether anything is met at all.

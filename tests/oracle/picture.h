@@ -16,14 +16,15 @@ struct Pixel {
   Hit hit;
   /// Linear RGB.
   Vector color{0};
-  /// How far a device's colour may be off because of highlights of metallic-roughness materials and textures:
-  /// points and normals have errors within their bounds (kB1, allowed_normal_error), and mirrors hand them on. A lobe
+  /// The permitted error of a device's colour because of textures and of highlights of metallic-roughness materials:
+  /// points and normals have errors within their bounds (kB1, allowed_normal_error), and mirrors pass them on. A lobe
   /// of the width alpha changes by about 2 / alpha of itself per radian between normal and half vector, a texture by as
-  /// much as its texels differ. Other light changes so little with directions that a picture's bounds hold without.
+  /// much as its texels differ. Other light depends so little on directions that a picture's bounds hold without this.
   Real explained_error = 0;
   /// And because its skies are maps (Surroundings::map_error).
   Real map_error = 0;
-  /// Whether the ray passes where a mask begins so near that a device may see either what is there or what is behind.
+  /// Whether the ray passes so close to the edge of a mask that a device may see either the surface or what is behind
+  /// it.
   bool is_at_cutoff = false;
 
   /// Distance of the hit from the eye, along the ray; infinite on a miss.

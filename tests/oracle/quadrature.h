@@ -10,7 +10,7 @@
 
 namespace promin::oracle {
 
-/// A place on an interval, and the weight of what is found there.
+/// A position in an interval, and the weight of the value there.
 struct QuadratureNode {
   Real place = 0;
   Real weight = 0;

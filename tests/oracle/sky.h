@@ -6,7 +6,7 @@
 
 #include "oracle/oracle.h"
 
-/// What surrounds a scene, as docs/model.md ("Environment", "Studio") has it: a sky, or ambient light from everywhere.
+/// The environment of a scene (docs/model.md, "Environment", "Studio"): a sky, or ambient light from all directions.
 namespace promin::oracle {
 
 class Surroundings {
@@ -16,22 +16,22 @@ class Surroundings {
 
   bool has_sky() const { return environment_.has_sky(); }
 
-  /// What comes from a direction, a unit vector as all are here: L, unfiltered.
+  /// Returns the unfiltered radiance L from a direction. All directions here are unit vectors.
   Vector radiance(const Vector& direction) const;
 
   /// The irradiance of a surface over pi, by the bands 0 to 2: E(N) / pi.
   Vector irradiance(const Vector& normal) const;
 
-  /// The mean over the lobe of a roughness about a direction: P. By quadrature over half vectors, which errs by less
-  /// than 0.002 of what is brightest.
+  /// Returns P, the mean radiance over the lobe of a roughness about a direction. It is computed by quadrature over
+  /// half vectors, with an error below 0.002 of the brightest radiance.
   Vector lobe_mean(const Vector& direction, Real roughness) const;
 
   /// Between the darkest and the brightest of a channel; 0 without a sky.
   Real range() const { return range_; }
 
-  /// How far a device's P may be off ours, as it is of maps with texels and of a few roughnesses: a share of the range,
-  /// of the studio, whose lamps have edges, 0.13 where smooth and 0.065 elsewhere, of a gradient 0.02, and of a
-  /// panorama without small lights 0.035.
+  /// The permitted error of a device's P, which comes from maps with texels and for a few roughnesses, as a share of
+  /// the range: for the studio, whose lamps have edges, 0.13 for smooth surfaces and 0.065 for others; for a gradient
+  /// 0.02; and for a panorama without small lights 0.035.
   Real map_error(Real roughness) const;
 
  private:

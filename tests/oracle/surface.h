@@ -11,22 +11,22 @@
 #include "oracle/sky.h"
 #include "oracle/texture.h"
 
-/// How surfaces answer light: the models of docs/model.md ("Light"), with textures.
+/// Shading of surfaces: the models of docs/model.md ("Light"), with textures.
 namespace promin::oracle {
 
-/// Light, and how far a device may be off it.
+/// Light, and the largest permitted error of a device.
 struct Radiance {
   Vector color{0};
-  /// Because its highlights lie a little aside, or textures show another place of theirs.
+  /// The error because highlights may be slightly displaced, or textures sampled at another position.
   Real error = 0;
-  /// Because its sky comes from maps.
+  /// The error because the device's sky comes from maps.
   Real map_error = 0;
 
   void add(const Radiance& other) { add(Vector(1), other); }
   void add(const Vector& weight, const Radiance& other);
 };
 
-/// How far a device may have the point and the directions from it, because it rounds: lengths in scene units, and
+/// The errors of the point and of directions from it that rounding on a device may cause: lengths in scene units, and
 /// angles.
 struct PointError {
   Real position = 0;
@@ -34,8 +34,8 @@ struct PointError {
   Real to_eye = 0;
 };
 
-/// A material's textures, each model's in this order: Phong has the base, specular in place of metallic and roughness,
-/// normals and emission, what is unlit has the base alone.
+/// A material's textures, in this order for every model. Phong has base, specular (in place of metallic and roughness),
+/// normals and emission; an unlit material has only the base.
 enum Slot : size_t {
   kBaseSlot,
   kMetallicRoughnessSlot,
@@ -64,51 +64,52 @@ Slots slots_of(const Material& material);
 struct SurfacePoint {
   Vector position{0};
   Vector geometric_normal{0};
-  /// Interpolated where the mesh has vertex normals.
+  /// Interpolated if the mesh has vertex normals.
   Vector normal{0};
-  /// 1 where the front is seen, -1 where the back is.
+  /// 1 if the front is visible, -1 if the back is.
   Real side = 1;
-  /// Where shadow rays start from, but for the lift.
+  /// The origin of shadow rays before the lift.
   Vector shadow_position{0};
   /// How far along the geometric normal secondary rays start.
   Real lift = 0;
   Texel vertex_color{1};
-  /// Of glass, and of mirrors that hang on the angle.
+  /// For glass, and for mirrors whose reflectance depends on the angle.
   std::optional<Face> face;
   const Material* material = nullptr;
-  /// As textures see it; without a mesh on analytic shapes.
+  /// The point for textures; without a mesh on analytic shapes.
   TrianglePoint on_triangle;
-  /// The material's textures; none where nothing is shown.
+  /// The material's textures; empty if nothing is displayed.
   Slots slots;
 };
 
-/// What each of them shows at a point: 1 where there is no texture.
+/// The value of each texture at a point; 1 without a texture.
 using SlotTexels = std::array<Texel, kSlotCount>;
 
-/// A source as it arrives at a point.
+/// The light of a source at a point.
 struct ArrivingLight {
   const Light* light = nullptr;
   Vector to_light{0};
-  /// Infinite for a source without a place.
+  /// Infinite for a source without a position.
   Real distance = kInfinity;
-  /// What shape, distance and shadows leave of its power, and how far a device may be off that.
+  /// The light that remains after the source's shape, distance and shadows, and the largest permitted error of a
+  /// device.
   Vector strength{1};
   Real strength_error = 0;
 };
 
-/// What a surface does with light.
+/// The response of a surface to light.
 struct Response {
-  /// What it sends by itself and of sources.
+  /// The light that the surface emits, and that it reflects from sources.
   Radiance sent;
-  /// Whether a mirror ray may be traced, the weight of what it brings, the normal about which it goes, and the
-  /// roughness at which it meets the sky.
+  /// For a mirror ray: whether it may be traced, the weight of its light, the normal about which it is reflected, and
+  /// the roughness with which it sees the sky.
   Vector mirror_weight{0};
   Vector mirror_normal{0};
   Real mirror_roughness = 0;
-  /// What is seen in place of what a mirror ray would bring.
+  /// The light used in place of a mirror ray's.
   Radiance instead;
-  /// The weight of what is seen beyond the surface, the direction of the ray there, and how much it is blurred; where
-  /// it is neither bent nor blurred it sees what is behind.
+  /// For a ray through the surface: the weight of its light, its direction, and its blur. A ray that is neither
+  /// refracted nor blurred sees what lies behind.
   Vector through{0};
   Refraction beyond;
   Vector refracting_normal{0};
@@ -116,10 +117,11 @@ struct Response {
   Real blur = 0;
 };
 
-/// The normal of a texture, seen along `direction`: it turns the point's in the plane of its tangent, where it has one.
+/// Returns the normal from a normal map, seen along `direction`. It rotates the point's normal in the frame of its
+/// tangent, if it has one.
 Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Real scale, const Vector& direction);
 
-/// Of a ray along the unit vector `direction`.
+/// Returns the response for a ray along the unit vector `direction`.
 Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
                  std::span<const ArrivingLight> lights, const Surroundings& surroundings);
 

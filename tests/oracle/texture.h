@@ -17,10 +17,10 @@ using Texel = glm::vec<4, Real>;
 Real decode_srgb(Real code);
 Real encode_srgb(Real light);
 
-/// The cosine between ray and normal is at least this in levels and where cones are mirrored.
+/// The smallest cosine between ray and normal that levels of detail and reflected cones use.
 inline constexpr Real kLeastCosine = 1.0L / 64;
 
-/// The cone of a ray: its width where the ray begins, and by how much it grows per length.
+/// The cone of a ray: its width at the origin, and its growth per length.
 struct Cone {
   Real width = 0;
   Real spread = 0;
@@ -30,7 +30,7 @@ struct Cone {
 struct TrianglePoint {
   const Mesh* mesh = nullptr;
   int32_t triangle = 0;
-  /// Of the second and third corner.
+  /// The weights of the second and third corner.
   Real u = 0;
   Real v = 0;
   /// The width of the ray's cone there; 0 asks for the finest level.
@@ -42,7 +42,7 @@ struct TrianglePoint {
   Real cosine_error = 0;
 };
 
-/// What a texture shows, RGBA, and by how much a device may be off each.
+/// The RGBA value of a texture, and the permitted error of each channel.
 struct Shown {
   Texel value{1};
   Texel error{0};
@@ -51,7 +51,7 @@ struct Shown {
 /// The point's texture coordinates of the slot, transformed.
 Vector2 coordinates_at(const TextureSlot& slot, const TrianglePoint& point);
 
-/// By how much they change along an edge of the triangle: of the second corner and of the third.
+/// The change of the coordinates along two edges of the triangle: to the second corner and to the third.
 struct UvEdges {
   Vector2 to_b{0};
   Vector2 to_c{0};
@@ -66,13 +66,14 @@ class Textures {
   /// Whether the slot shows anything on a mesh with texture coordinates.
   bool shows(const TextureSlot& slot, const TrianglePoint& point) const;
 
-  /// What is shown; 1 where nothing is. The error is how far the picture moves within the errors of place and level.
+  /// Returns the value of the texture; 1 if there is none. Its error is the change of the value within the errors of
+  /// position and level.
   Shown look_up(const TextureSlot& slot, const TrianglePoint& point) const;
 
-  /// The level of detail, 0 or less where texels are larger than the cone.
+  /// Returns the level of detail, 0 or less if texels are larger than the cone.
   Real level_at(const TextureSlot& slot, const TrianglePoint& point) const;
 
-  /// What is shown at a place and a level of detail.
+  /// Returns the value at a position and a level of detail.
   Texel filter(const TextureSlot& slot, const Vector2& place, Real level) const;
 
  private:
@@ -80,7 +81,7 @@ class Textures {
     uvec2 size{0};
     std::vector<Texel> texels;
   };
-  /// An image is the number of its level 0 and how many it has; none where it is absent.
+  /// An image is given by the number of its level 0 and its number of levels; it has none if it is absent.
   using Levels = std::vector<Level>;
 
   static Level make_level(const TextureImage& image, uint32_t number);

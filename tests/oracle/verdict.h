@@ -8,13 +8,13 @@
 /// primitive. For a plane S grows by |t d|, as in row 10 of the hard cases.
 namespace promin::oracle {
 
-/// The bounds of docs/glossary.md: |dt| |d| cos <= kB1 u S; a hit's point is within kBK u S of the surface; another
-/// answer than the exact one occurs only within kB2 u S of where the answer changes.
+/// The bounds of docs/glossary.md: |dt| |d| cos <= kB1 u S; a hit's point is within kBK u S of the surface; an answer
+/// may differ from the exact one only within kB2 u S of a point at which the exact answer changes.
 inline constexpr Real kB1 = 8;
 inline constexpr Real kB2 = 2;
 inline constexpr Real kBK = 8;
 
-/// What a device says of a ray. `object` is -1 on a miss, and the rest has no meaning then.
+/// A device's answer for a ray. On a miss `object` is -1, and the other members have no meaning.
 struct Answer {
   /// In units of the ray's direction.
   Real t = kInfinity;
@@ -29,7 +29,7 @@ struct Verdict {
   bool is_same = false;
   /// If the same: |dt| |d| cos / (u S), with the angle at the exact hit.
   Real t_error = 0;
-  /// Of a hit on an analytic shape, the same or not: distance of o + t d from the shape's surface / (u S).
+  /// For any hit on an analytic shape: distance of o + t d from the shape's surface / (u S).
   Real surface_error = 0;
   /// If not the same: the least k for which surfaces that are off by k u S, each by its own S, can make the answer the
   /// true one: what the ray hits instead may be absent, behind or beyond the interval's ends, and what is named present
@@ -39,12 +39,12 @@ struct Verdict {
   Real margin = 0;
 };
 
-/// All is infinite that an answer has no right to: a primitive that does not exist or cannot be hit, t that is not
-/// finite, a hit of a ray that meets nothing by definition. That t lies strictly between tmin and tmax is for the
-/// caller to check: rounding on the way here may have moved it.
+/// Errors of impossible answers are infinite: a primitive that does not exist or cannot be hit, a t that is not finite,
+/// a hit of a ray that hits nothing by definition. The caller must check that t lies strictly between tmin and tmax,
+/// because rounding on the way here may have moved it.
 Verdict judge(const world::Scene& scene, const Ray& ray, const Answer& answer);
 
-/// The same where find_nearest_hit(scene, ray) is known already.
+/// The same if find_nearest_hit(scene, ray) is already known.
 Verdict judge(const world::Scene& scene, const Ray& ray, const Hit& exact, const Answer& answer);
 
 }  // namespace promin::oracle

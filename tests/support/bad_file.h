@@ -11,12 +11,12 @@
 
 namespace promin {
 
-/// A file, or a part of one, that is refused, and what the refusal must name.
+/// A file, or a part of one, that is refused, and the place that the message must name.
 struct BadFile {
   const char* name;
   std::string text;
   const char* what;
-  /// What follows the file's name.
+  /// The text after the file's name.
   const char* where;
 };
 

@@ -8,7 +8,7 @@
 
 namespace promin::test {
 
-/// Expects two points or directions of a distance up to `tolerance`.
+/// Expects that two points or directions differ by at most `tolerance`.
 inline void expect_near(const dvec3& got, const dvec3& wanted, double tolerance = 1e-6) {
   EXPECT_LE(glm::distance(got, wanted), tolerance)
       << got.x << " " << got.y << " " << got.z << " is not " << wanted.x << " " << wanted.y << " " << wanted.z;

@@ -8,8 +8,8 @@
 
 namespace promin {
 
-/// While one exists no file of this process may grow beyond so many bytes, which stands for a full disk: what would
-/// fails, and does not end the process.
+/// Simulates a full disk: while an object exists, no file of this process can grow beyond a number of bytes. Writes
+/// beyond it fail and do not end the process.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t most_bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

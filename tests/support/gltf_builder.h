@@ -29,7 +29,7 @@ struct GltfBuilder {
   nlohmann::json json = {{"asset", {{"version", "2.0"}}}};
   std::string bytes;
 
-  /// Appends a tight accessor over these numbers; its index.
+  /// Appends an accessor of these tightly packed numbers. Returns its index.
   template <class Number>
   size_t add(const std::vector<Number>& numbers, const std::string& type, bool normalized = false) {
     constexpr int kType = std::is_same_v<Number, int8_t>     ? 5120
@@ -48,7 +48,7 @@ struct GltfBuilder {
     return json["accessors"].size() - 1;
   }
 
-  /// Appends the numbers as a buffer view; its index.
+  /// Appends the numbers as a buffer view. Returns its index.
   template <class Number>
   size_t add_view(const std::vector<Number>& numbers) {
     bytes.resize((bytes.size() + 3) / 4 * 4);
@@ -58,7 +58,7 @@ struct GltfBuilder {
     return json["bufferViews"].size() - 1;
   }
 
-  /// Appends a mesh of one primitive and a root node that shows it; the node's index.
+  /// Appends a mesh of one primitive and a root node with it. Returns the node's index.
   size_t show(const nlohmann::json& primitive) {
     json["meshes"].push_back({{"primitives", {primitive}}});
     return add_node({{"mesh", json["meshes"].size() - 1}});
@@ -94,7 +94,7 @@ struct GltfBuilder {
   }
 };
 
-/// One triangle, (0,0,0) (1,0,0) (0,1,0), shown by node 0.
+/// Returns a document with one triangle, (0,0,0) (1,0,0) (0,1,0), at node 0.
 inline GltfBuilder triangle_gltf() {
   GltfBuilder gltf;
   const size_t positions = gltf.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");

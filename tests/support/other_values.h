@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// What comes in place of any value of a glTF document: each kind of value, and numbers and words that mean something
+/// Replacements for any value of a glTF document: each kind of value, and numbers and words that have a meaning
 /// elsewhere.
 inline const nlohmann::json kOtherValues = nlohmann::json::parse(
     R"([null, true, -1, 0, 1, 7, 12, 1.5, 1e300, 2147483647, 18446744073709551615, "", "x", "TRIANGLES", [], {}])");

@@ -10,7 +10,7 @@
 
 namespace promin {
 
-/// A binary PLY file in the making.
+/// Builds a binary PLY file.
 class PlyBuilder {
  public:
   explicit PlyBuilder(std::endian order) : order_(order) {}
@@ -21,7 +21,7 @@ class PlyBuilder {
     bytes_ += "ply\nformat binary_" + order + "_endian 1.0\n" + elements + "end_header\n";
   }
 
-  /// Appends a number of the type that PLY calls so.
+  /// Appends a number of the PLY type with this name.
   void add(const std::string& type, double number) {
     if (type == "char" || type == "int8") return append(static_cast<int8_t>(number));
     if (type == "uchar" || type == "uint8") return append(static_cast<uint8_t>(number));

@@ -18,9 +18,9 @@ struct ProcessOptions {
   std::map<std::string, std::string> environment;
   /// No file may grow beyond this, by the process's file size limit; see full_disk.cpp for what stands for a full disk.
   std::optional<size_t> max_file_bytes;
-  /// The most address space, as by ulimit -v.
+  /// The limit of the address space in bytes, as by ulimit -v.
   std::optional<size_t> max_address_bytes;
-  /// The standard output; captured where not given.
+  /// The standard output; captured if not given.
   std::optional<std::filesystem::path> standard_output;
 };
 
@@ -42,9 +42,9 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const;
-  /// What it wrote to its standard error stream so far.
+  /// Returns what the process has written to its standard error so far.
   std::string err() const;
-  /// Waits for its end.
+  /// Waits until the process ends.
   ProcessResult wait();
 
  private:

@@ -12,7 +12,7 @@
 
 namespace promin {
 
-/// The words of a SPIR-V file. Throws InputError where it cannot be read.
+/// Returns the words of a SPIR-V file. Throws InputError if it cannot be read.
 inline std::vector<uint32_t> read_spirv(const std::filesystem::path& file) {
   const std::vector<std::byte> bytes = read_file(file);
   std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));

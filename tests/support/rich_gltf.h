@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// A document that uses everything the tables of broken ones break.
+/// Returns a document with everything that the tables of broken documents change.
 inline GltfBuilder rich_gltf() {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}};

@@ -8,7 +8,7 @@
 
 namespace promin {
 
-/// The scenes of a folder, in the order of their names.
+/// Returns the scene files of a folder, sorted by name.
 inline std::vector<std::filesystem::path> scene_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -14,7 +14,7 @@
 
 namespace promin {
 
-/// What a loaded scene is in the world, with its warnings.
+/// A loaded scene in world space, with its warnings.
 struct LoadedScene : world::Scene {
   std::vector<std::string> warnings;
 };
@@ -34,14 +34,14 @@ class SceneFolder : public TempFolder {
     return {world::flatten(scene), scene.warnings};
   }
 
-  /// What load_scene says when it refuses a file; empty if it does not.
+  /// Returns the message with which load_scene refuses a file; empty if it does not.
   static std::string refusal(const std::filesystem::path& file) {
     return message_of([&] { load_scene(file); });
   }
   std::string refusal(const std::string& name, std::string_view bytes) const { return refusal(write(name, bytes)); }
 };
 
-/// A text with lines that end in \r\n.
+/// Returns the text with lines that end in \r\n.
 inline std::string with_carriage_returns(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -55,7 +55,7 @@ inline const Mesh& mesh_of(const world::Scene& scene, size_t object = 0) {
   return std::get<Mesh>(scene.objects.at(object).shape);
 }
 
-/// Corners of a mesh, triangle after triangle.
+/// Returns the corners of a mesh, triangle after triangle.
 inline std::vector<vec3> corners_of(const Mesh& mesh) {
   std::vector<vec3> corners;
   for (const uvec3& triangle : mesh.triangles) {

@@ -10,7 +10,7 @@
 
 namespace promin {
 
-/// A sheet with bumps, of about so many triangles.
+/// Returns a sheet with bumps, of about `triangle_count` triangles.
 inline Mesh make_sheet(size_t triangle_count) {
   const auto side = static_cast<uint32_t>(std::sqrt(triangle_count / 2));
   Mesh mesh;

@@ -12,7 +12,7 @@
 
 namespace promin {
 
-/// A binary STL file in the making, on a little-endian machine.
+/// Builds a binary STL file, on a little-endian machine.
 class StlBuilder {
  public:
   explicit StlBuilder(std::string header = "made here") : bytes_(std::move(header)) { bytes_.resize(84, '\0'); }

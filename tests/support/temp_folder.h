@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// A test with an empty folder of its own, which goes with it.
+/// A test with an empty folder of its own, which is removed after it.
 class TempFolder : public testing::Test {
  protected:
   TempFolder() {
@@ -30,7 +30,7 @@ class TempFolder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// What the InputError says that `read` throws; empty if it throws none.
+/// Returns the message of the InputError that `read` throws; empty if it throws none.
 template <typename Read>
 std::string message_of(const Read& read) {
   try {

@@ -9,12 +9,12 @@
 
 namespace promin::test {
 
-/// Whether tests take all of their cases, as tools/test --long has them do, and not a few that stand for them.
+/// Returns whether tests run all of their cases, as with tools/test --long, and not only a few representative ones.
 inline bool is_thorough() {
   return std::getenv("PROMIN_TEST_THOROUGH") != nullptr;
 }
 
-/// All cases, or the first of them: those that any run takes.
+/// Returns all cases, or only the first ones, which every run takes.
 template <class Case>
 std::vector<Case> cases_of(std::vector<Case> all, size_t first) {
   if (!is_thorough()) all.resize(std::min(first, all.size()));

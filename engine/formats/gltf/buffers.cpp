@@ -112,7 +112,7 @@ Extent extent_of(const GltfDocument& document, size_t index) {
           compressed->value("byteOffset", uint64_t{0}) + (*compressed)["byteLength"].get<uint64_t>()};
 }
 
-/// How many bytes of each buffer the views that are needed reach over.
+/// The number of bytes of each buffer that the needed views cover.
 std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_images) {
   std::vector<uint64_t> needed(elements_of(document.json, "buffers").size(), 0);
   const std::vector<bool> is_needed_view = find_needed_views(document, with_images);
@@ -124,7 +124,7 @@ std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_
   return needed;
 }
 
-/// Whether the buffer only stands for what compressed views hold, and needs no bytes.
+/// Returns whether the buffer only represents the content of compressed views, and needs no bytes.
 bool is_fallback(const json& buffer) {
   const json* extension = find_meshopt(buffer);
   if (extension == nullptr) return false;
@@ -262,7 +262,7 @@ class BufferReader {
     if (bytes.size() < source["byteLength"].get<uint64_t>()) repair_length(source["byteLength"], index);
   }
 
-  /// Takes a buffer that is shorter than it says where its views need none of the missing bytes. Up to three missing
+  /// Accepts a buffer that is shorter than declared if its views need none of the missing bytes. Up to three missing
   /// bytes that they need are padding, and become 0.
   void repair_length(uint64_t length, size_t index) {
     std::span<const std::byte>& bytes = buffers_.bytes[index];
@@ -280,7 +280,7 @@ class BufferReader {
     bytes = own;
   }
 
-  /// Reads a buffer that only images lie in: they are left out where it cannot be read.
+  /// Reads a buffer that contains only images; they are left out if it cannot be read.
   void try_buffer(const json& source, size_t index) {
     LoadReport attempt = report_.make_attempt();
     try {

@@ -9,10 +9,10 @@
 namespace promin {
 namespace {
 
-/// Columns shorter than this, or this near to parallel, have no direction left to normalise.
+/// Columns shorter than this, or this close to parallel, have no direction to normalise.
 constexpr double kLeastSine = 1e-9;
 
-/// Takes the camera's axes from columns that need no length; whether they give any.
+/// Sets the camera's axes from columns of any length. Returns whether they determine axes.
 bool take_axes(const dmat3& columns, Camera& camera) {
   const dvec3 look = -columns[2] / glm::length(columns[2]);
   const dvec3 up = columns[1] / glm::length(columns[1]);

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// An accessor that is nothing but zeros needs no bytes in the file, so the file's size does not bound it.
+/// An accessor that contains only zeros needs no bytes in the file, so the file's size does not limit it.
 constexpr uint64_t kMaxZeroElements = 1 << 24;
 
 struct Format {
@@ -172,7 +172,7 @@ void check_format(const json& accessor, std::string_view attribute, const std::s
                 "export it as the glTF specification requires");
 }
 
-/// Checks what is beside each other in each instance.
+/// Checks the attributes of instances against each other.
 void check_attributes(const json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   uint64_t first_count = 0;
   for (const auto& [name, index] : attributes.items()) {
@@ -188,7 +188,7 @@ void check_attributes(const json& attributes, const json& accessors, const std::
   }
 }
 
-/// Whether an attribute that only shades cannot be read beside the others. Says why.
+/// Returns whether an attribute that only affects shading does not match the others, after reporting why.
 bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_count, const std::string& place,
                  LoadReport& report) {
   const auto count = accessor["count"].get<uint64_t>();
@@ -204,8 +204,8 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   return has_wrong_format || count != vertex_count;
 }
 
-/// Checks what is beside each other in each vertex. Attributes other than the position are left out where they are
-/// wrong; without joints a mesh stands as it is.
+/// Checks the attributes of vertices against each other. Invalid attributes other than the position are removed;
+/// without joints a mesh is not posed.
 void check_vertices(json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   const auto positions = attributes.find("POSITION");
   if (positions == attributes.end()) return;
@@ -301,7 +301,7 @@ void check_images(json& document, LoadReport& report) {
   }
 }
 
-/// Which accessors mesh primitives need the elements of as they are; of others they are in a stream of Draco's.
+/// Returns the accessors whose elements mesh primitives read directly; those of others are in a Draco stream.
 std::vector<bool> find_plain_accessors(const json& document) {
   std::vector<bool> is_plain(elements_of(document, "accessors").size(), true);
   const auto visit = [&](bool is_compressed) {

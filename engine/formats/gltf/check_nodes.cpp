@@ -17,7 +17,7 @@ std::string node_place(size_t node) {
   return "nodes[" + std::to_string(node) + "]";
 }
 
-/// Takes what `is_extra` finds out of an array of indices.
+/// Removes the elements that `is_extra` finds from an array of indices.
 template <class IsExtra>
 void take_out(json& indices, const IsExtra& is_extra) {
   json kept = json::array();
@@ -42,7 +42,7 @@ std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
       }
       if (parent_counts[child]++ > 0) {
         report.repair(
-            {"a node has two parents", node_place(child), place, "copy the node instead", "it is shown below both"});
+            {"a node has two parents", node_place(child), place, "copy the node instead", "it appears below both"});
       }
       parents[child] = i;
       return false;
@@ -51,7 +51,7 @@ std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
   return parent_counts;
 }
 
-/// A node that is not reached once all of its parents are lies on a cycle or below one.
+/// A node that is not reached after all of its parents lies on a cycle or below one.
 void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadReport& report) {
   std::vector<size_t> reached;
   size_t reached_count = 0;
@@ -116,7 +116,7 @@ void mark_below(const json& nodes, size_t node, std::vector<bool>& is_below) {
   }
 }
 
-/// Leaves nodes in a scene's list that are shown from there.
+/// Keeps those nodes in a scene's list that are shown because of it.
 void check_scene(json& listed, const json& nodes, const std::vector<uint32_t>& parent_counts, const std::string& place,
                  LoadReport& report) {
   std::vector<bool> is_listed(nodes.size(), false);

@@ -33,7 +33,7 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   throw InputError({what, place, kExportAgain});
 }
 
-/// Holds the length in the header against where the chunks end.
+/// Compares the length in the header with the end of the chunks.
 void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
   if (length != end) {
     report.repair({"the GLB header declares another number of bytes than the chunks have",
@@ -73,7 +73,7 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
   GltfContainer container;
   bool is_first = true;
   size_t offset = kHeaderBytes;
-  // The header's length says where the chunks end. How long they are they say themselves.
+  // The header's length gives the end of the chunks; each chunk has its own length.
   while (offset < end) {
     const std::string place = "byte " + std::to_string(offset);
     if (end - offset < kChunkHeaderBytes) {

@@ -86,7 +86,7 @@ void fill_views(GltfDocument& document) {
   document.scene = source.value("scene", size_t{0});
 }
 
-/// Gives an extension's draft, which has its form, its name.
+/// Renames an extension's draft, which has the same form.
 void rename_extension(json& element, const char* draft, const char* name) {
   const auto extensions = element.find("extensions");
   if (extensions == element.end() || !extensions->is_object() || extensions->contains(name)) return;
@@ -96,7 +96,7 @@ void rename_extension(json& element, const char* draft, const char* name) {
   extensions->erase(draft);
 }
 
-/// KHR_lights is what KHR_lights_punctual was called before it was ratified.
+/// KHR_lights is the name of KHR_lights_punctual before ratification.
 void rename_lights(json& document) {
   rename_extension(document, "KHR_lights", "KHR_lights_punctual");
   const auto nodes = document.find("nodes");

@@ -26,8 +26,8 @@ constexpr uint8_t kSequential = 0;
 constexpr uint8_t kEdgebreaker = 1;
 constexpr uint16_t kHasMetadata = 0x8000;
 
-/// A mesh of more triangles than this, or vertices, takes more than a byte for so many of them: a regular grid of 14
-/// bits, coded as tightly as can be, has 8 triangles a byte. The decoder takes some 24 bytes a triangle at once.
+/// The largest plausible number of triangles or vertices per byte: a regular grid of 14 bits in the tightest coding has
+/// 8 triangles per byte. The decoder allocates about 24 bytes per triangle at once.
 constexpr uint64_t kSmallMesh = uint64_t{1} << 19;
 constexpr uint64_t kMostPerByte = 16;
 
@@ -36,7 +36,7 @@ struct DracoError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a stream promises before anything of it is decoded.
+/// The numbers that a stream's header declares.
 struct Promise {
   uint64_t faces = 0;
   /// Of the vertices at least so many.

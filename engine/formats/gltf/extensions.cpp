@@ -53,7 +53,7 @@ constexpr std::string_view kKnown[] = {
 };
 // clang-format on
 
-/// What a document has of one extension.
+/// The uses of an extension in a document.
 struct Extension {
   explicit Extension(std::string its_name)
       : name(std::move(its_name)), is_known(std::ranges::find(kKnown, name) != std::end(kKnown)) {}
@@ -116,7 +116,7 @@ class ExtensionCensus {
     for (const std::string& name : names) ++entry(name).material_count;
   }
 
-  /// Only listed extensions are looked for: of any other nothing is said.
+  /// Only listed extensions are searched for; others are not reported.
   void find_places(const json& parent, const char* array, const std::string& prefix) {
     const json& elements = elements_of(parent, array);
     for (size_t i = 0; i < elements.size(); ++i) {

@@ -42,7 +42,7 @@ std::string_view last_name(std::string_view path) {
   return path.substr(path.find_last_of('.') + 1);
 }
 
-/// How many steps, into members and elements, a path takes.
+/// Returns the number of steps, into members and elements, of a path.
 int count_steps(std::string_view path) {
   int steps = 0;
   for (size_t i = 0; i < path.size(); ++i) {
@@ -52,7 +52,7 @@ int count_steps(std::string_view path) {
   return steps;
 }
 
-/// The path of the part that goes where a rule is broken.
+/// Returns the path of the part to remove if a rule is broken.
 std::string_view part_of(const JsonRule& rule) {
   if (!rule.part.empty()) return rule.part;
   if (!rule.is_required) return rule.path;
@@ -69,7 +69,7 @@ std::string say_left_out(const JsonRule& rule) {
   return "the object that contains it is ignored";
 }
 
-/// Where a value stands in a document, in words only where a message needs them.
+/// The place of a value in a document, which becomes a text only if a message needs it.
 struct Place {
   static constexpr size_t kNoIndex = std::numeric_limits<size_t>::max();
 
@@ -102,8 +102,8 @@ class RuleCheck {
     if (rule.kind == JsonKind::kIndex) used_.resize(size_of_array(document, rule.target));
   }
 
-  /// Checks every value at `path` below `value`. The result says what of it is left out: 0 nothing, 1 the value, 2 what
-  /// holds it, and so on.
+  /// Checks every value at `path` below `value`. Returns what must be removed: 0 for nothing, 1 for the value, 2 for
+  /// its parent, and so on.
   int visit(json& value, const Place& place, std::string_view path) {
     if (path.empty()) return check_value(value, place) ? 0 : level_;
     if (path.starts_with("[]")) return visit_elements(value, place, path.substr(2));
@@ -217,7 +217,7 @@ class RuleCheck {
     if (number >= rule_.lo && number <= rule_.hi) return true;
     const std::string range = written(rule_.lo) + " to " + written(rule_.hi);
     const std::string cure = "use a number from " + range;
-    // Where a number is not clamped, one that is rounded beyond a small limit is not near it.
+    // Without clamping, a rounding error relative to a small limit is not small.
     const double lo_rounding = rule_.is_clamped ? kMostRounding : kMostRounding * rule_.lo;
     const bool is_rounded = number >= rule_.lo - lo_rounding && number <= rule_.hi + kMostRounding;
     const bool is_kept = rule_.is_clamped || (is_rounded && !is_strict_);
@@ -276,7 +276,7 @@ class RuleCheck {
   }
 
   const JsonRule& rule_;
-  /// The array of which only some elements are visited, unless empty.
+  /// The array in which only used elements are visited, unless empty.
   std::string_view skipped_in_;
   const std::vector<bool>& kept_;
   bool is_strict_;

@@ -17,10 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-/// A narrower cone has no area of a sphere that fp32 can show.
+/// A narrower cone has an area of the sphere that fp32 cannot represent.
 constexpr float kLeastConeAngle = 1e-3F;
 
-/// The kind of a type that the schema takes. A type that the schema has and this has not is an error of the program.
+/// Returns the kind for a type that the schema accepts. A type that only the schema knows is a bug.
 LightKind kind_of(const std::string& type) {
   if (type == "directional") return LightKind::kDirectional;
   if (type == "point") return LightKind::kPoint;
@@ -57,14 +57,14 @@ void read_power(const json& source, const std::string& title, Light& light, Load
     }
   }
   if (light.kind == LightKind::kDirectional) light.attenuation = Attenuation::kNone;
-  // Beyond the largest coordinate a range cuts nothing off.
+  // A range beyond the largest coordinate has no effect.
   const double range = source.value("range", 2.0 * kMaxCoordinate);
   if (light.attenuation == Attenuation::kInverseSquare && range <= kMaxCoordinate) {
     light.range = static_cast<float>(range);
   }
 }
 
-/// Where a light travels, of length 1: along -Z of its node, or where that has no length, of the rotations alone.
+/// Returns the unit direction of a light: along -Z of its node or, if that has no length, of the rotations alone.
 std::optional<dvec3> direction_of(const PlacedNode& placed) {
   const dvec3 direction(-placed.world_from_object[2]);
   const double length = glm::length(direction);
@@ -83,7 +83,7 @@ GradientSky gradient_of(const json& source) {
   return sky;
 }
 
-/// The member where it is there and of its type.
+/// Returns the member if it exists and has the right type.
 template <typename T>
 std::optional<T> value_of(const json& object, const char* name) {
   if (!object.is_object()) return std::nullopt;
@@ -126,7 +126,7 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   }
 }
 
-/// What of a sky with directions is not modelled.
+/// Warns of features of a directional sky that are not modelled.
 void warn_about_sky(const json& sky, LoadReport& report) {
   if (sky.value("ambientSkyContribution", 1.0) < 1.0) {
     report.warn("ambientSkyContribution is ignored; all ambient light comes from the sky");

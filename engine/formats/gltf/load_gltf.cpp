@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Nodes may show one mesh many times, so that the size of the file does not bound the scene's.
+/// Nodes may show one mesh many times, so the size of the file does not limit the scene's.
 constexpr uint64_t kMaxTriangles = uint64_t{1} << 28;
 /// Objects are numbered in 32 bits, of which the last two numbers mean none.
 constexpr uint64_t kMaxObjects = (uint64_t{1} << 32) - 2;
@@ -90,7 +90,7 @@ class SceneReader {
     read_mesh(posed);
   }
 
-  /// Whether a node's instances can be taken, told before any of them is.
+  /// Returns whether a node's instances fit, before any of them is added.
   bool has_room_for(uint64_t instance_count, const PlacedNode& placed) {
     const auto mesh = static_cast<size_t>(document_.nodes[static_cast<size_t>(placed.node)].mesh);
     const uint64_t primitive_count = document_.meshes[mesh].primitives.size();
@@ -151,8 +151,8 @@ class SceneReader {
     return static_cast<uint32_t>(scene_.geometries.size() - 1);
   }
 
-  /// The geometry of a primitive of a node's mesh, read once for all nodes that show it with the same weights of morph
-  /// targets and the same skin; kNoGeometry where nothing is drawn.
+  /// Returns the geometry of a primitive of a node's mesh, which is read once for all nodes with the same morph weights
+  /// and the same skin; kNoGeometry if nothing is drawn.
   uint32_t find_mesh(int node, size_t primitive) {
     const GltfNode& shown = document_.nodes[static_cast<size_t>(node)];
     const auto mesh = static_cast<size_t>(shown.mesh);

@@ -145,8 +145,8 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
   return material;
 }
 
-/// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is its specular colour. That is what an index of
-/// refraction of 0 makes of it.
+/// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is its specular colour, as an index of
+/// refraction of 0 gives it.
 MetallicRoughness specular_glossiness_of(const json& source, const json& extension, GltfTextures& textures) {
   const float glossiness = extension.value("glossinessFactor", 1.0F);
   MetallicRoughness material;

@@ -22,11 +22,11 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
-/// Transforms of a smaller determinant are as good as singular, or overflow, and normals may vanish under them.
+/// Transforms of a smaller determinant are practically singular, or overflow, and normals may vanish.
 constexpr double kLeastDeterminant = 1e-100;
 
-/// Whether all vertices are in range in the world. The corners of their box, which bounds them, mostly tell; otherwise
-/// each vertex is looked at.
+/// Returns whether all vertices are in range in the world. Usually the corners of their box decide; otherwise each
+/// vertex is tested.
 bool is_mesh_in_range(const Mesh& mesh, const dmat4& world_from_object) {
   Bounds box;
   for (const vec3& position : mesh.positions) box.extend(position);
@@ -50,8 +50,7 @@ void warn_of_normals(const std::string& place, LoadReport& report) {
   report.warn({"a mesh primitive has normals of no length", "", place, "", "it is shaded flat"});
 }
 
-/// A component of a vertex colour as it can be drawn: not negative, and 1, which colours nothing, where it is no
-/// number.
+/// Returns a valid component of a vertex colour: not negative, and 1, which has no effect, for a NaN.
 float drawable(float component) {
   return std::isfinite(component) ? std::max(component, 0.0F) : 1.0F;
 }
@@ -195,7 +194,7 @@ class PrimitiveReader {
                        "export the mesh again, in a larger unit of length");
         return;
       }
-      // -0 becomes 0, as under a transform, so that none and one that moves nothing come to the same.
+      // -0 becomes 0, as under a transform, so that no morph target and one without effect give the same result.
       mesh.positions.emplace_back(p[0] + 0.0F, p[1] + 0.0F, p[2] + 0.0F);
     }
   }
@@ -293,7 +292,7 @@ class PrimitiveReader {
     mesh.tangents.clear();
   }
 
-  /// nullopt where there is nothing to pose by, or once the report holds the reason.
+  /// Returns nullopt if there is nothing to pose, or after reporting the reason.
   std::optional<SkinInfluences> read_influences() {
     SkinInfluences influences;
     for (int set = 0; accessor_of(("JOINTS_" + std::to_string(set)).c_str()) >= 0; ++set)
@@ -310,7 +309,7 @@ class PrimitiveReader {
     return influences;
   }
 
-  /// Adds a set of four joints to each vertex, behind those that it has.
+  /// Adds a set of four joints to each vertex, after its other sets.
   void add_influences(int set, SkinInfluences& influences) {
     const std::string number = std::to_string(set);
     const int weights = accessor_of(("WEIGHTS_" + number).c_str());
@@ -347,7 +346,7 @@ class PrimitiveReader {
     weights[0] = 1.0F;
   }
 
-  /// A joint without weight may be any number.
+  /// A joint with weight 0 may have any index.
   bool has_valid_joints(size_t vertex, const SkinInfluences& influences) {
     for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
       if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;

@@ -19,7 +19,7 @@ constexpr uint64_t kMaxRatio = 64;
 /// In version 1 two bits may.
 constexpr uint64_t kMaxRatioOfVersion1 = 1024;
 
-/// What a stream says of itself in its first byte: the kind in the upper half, the version in the lower.
+/// The first byte of a stream: the kind in the upper half, the version in the lower.
 constexpr unsigned kAttributesHeader = 0xA0;
 
 /// A compressed view, checked.
@@ -47,7 +47,7 @@ std::string place_of(size_t view) {
   return "bufferViews[" + std::to_string(view) + "]";
 }
 
-/// What is wrong with the shape of the elements; null where nothing is.
+/// Returns the fault in the shape of the elements, or null.
 const char* find_wrong_stride(const Stream& stream) {
   if (stream.mode != "ATTRIBUTES") {
     if (stream.stride != 2 && stream.stride != 4) return "indices have a stride of 2 or 4";
@@ -132,8 +132,8 @@ class Decoder {
   }
 
  private:
-  /// Before memory is taken. Files may name one stream many times, so all of them together are held against what there
-  /// is of bytes, too.
+  /// Checked before memory is allocated. Files may use one stream many times, so the total is compared with the size of
+  /// the file, too.
   bool has_room_for(const Stream& stream, bool is_later_version, size_t index) {
     const uint64_t ratio = is_later_version ? kMaxRatioOfVersion1 : kMaxRatio;
     const uint64_t wanted = stream.decoded_bytes();

@@ -43,7 +43,7 @@ std::optional<dmat3> local_rotation(const nlohmann::json& node) {
   return rotation;
 }
 
-/// The place of what a scene around a center has at the origin of the file.
+/// Returns the transform that moves the file's origin relative to the scene's center.
 dmat4 world_around(const dvec3& center) {
   dmat4 place(1.0);
   place[3] = dvec4(dvec3(0.0) - center, 1.0);
@@ -69,7 +69,7 @@ std::vector<int> root_nodes(const GltfDocument& document) {
   return scenes.empty() ? find_roots(document) : elements_of(scenes[document.scene], "nodes").get<std::vector<int>>();
 }
 
-/// Nodes with several parents may stand for more places than the size of the file bounds.
+/// Nodes with several parents may appear more often than the size of the file limits.
 constexpr size_t kMostFurtherPlaces = size_t{1} << 18;
 
 }  // namespace
@@ -132,7 +132,7 @@ std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std:
     const auto [next, world_from_parent] = pending.back();
     pending.pop_back();
     const auto node = static_cast<size_t>(next);
-    // What is below a node of the scene is in the scene.
+    // Nodes below a node of the scene are in the scene.
     if (is_placed[node]) continue;
     is_placed[node] = true;
     worlds[node] = world_from_parent * local_transform(document.json["nodes"][node]);

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Brackets outside of strings; whether they match is the parser's business.
+/// Counts brackets outside of strings; the parser checks whether they match.
 int depth_of(std::string_view text) {
   int depth = 0;
   int deepest = 0;
@@ -33,8 +33,8 @@ int depth_of(std::string_view text) {
   return deepest;
 }
 
-/// The text with the largest number of its sign in place of each that is beyond double, of which the parser makes
-/// nothing. Checks of ranges find it.
+/// Returns the text with each number beyond double, which the parser cannot read, replaced by the largest double of the
+/// same sign. Range checks find it.
 std::string bound_numbers(std::string_view text) {
   constexpr std::string_view kLargest = "1.7976931348623157e308";
   constexpr std::string_view kOfNumbers = "0123456789+-.eE";
@@ -59,7 +59,7 @@ std::string bound_numbers(std::string_view text) {
   return bounded;
 }
 
-/// Numbers beyond double are found by the parser, as hardly any file has them.
+/// The parser finds numbers beyond double, because very few files have them.
 json parse_bounded(std::string_view text) {
   try {
     return json::parse(text);

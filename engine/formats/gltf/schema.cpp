@@ -23,7 +23,7 @@ constexpr JsonRule length(std::string_view path) {
 constexpr JsonRule length_or_zero(std::string_view path) {
   return number(path, 0.0, kMaxCoordinate);
 }
-/// Factors that share light out.
+/// Factors that divide light.
 constexpr JsonRule share(std::string_view path) {
   return number(path, 0.0, 1.0);
 }
@@ -371,7 +371,7 @@ constexpr JsonRule kBufferRules[] = {
 #undef PROMIN_MESHOPT
 #undef PROMIN_DRACO
 
-/// The parts of a document that only colour, show or light: they leave the geometry in no doubt.
+/// The parts of a document that only affect colours, cameras and lights, and not the geometry.
 constexpr std::string_view kRepairedParts[] = {
     "extensionsUsed",
     "extensionsRequired",
@@ -400,7 +400,7 @@ bool is_repaired(std::string_view path) {
   });
 }
 
-/// Takes the elements out of an array that nothing uses and that are such.
+/// Removes unused elements that satisfy the condition from an array.
 template <class IsDropped>
 void drop_unused(json& document, const char* name, const JsonCheck& check, const IsDropped& is_dropped) {
   const auto array = document.find(name);
@@ -410,7 +410,7 @@ void drop_unused(json& document, const char* name, const JsonCheck& check, const
   }
 }
 
-/// Whether a buffer cannot even be asked for its bytes, which the reader does of buffers that nothing uses.
+/// Returns whether the bytes of a buffer cannot be requested; the reader requests those of unused buffers too.
 bool is_broken_buffer(const json& buffer) {
   if (!buffer.is_object()) return true;
   const auto length = buffer.find("byteLength");

@@ -49,7 +49,7 @@ class ShapeReader {
     return parameters == shape_.end() ? otherwise : parameters->value(name, otherwise);
   }
 
-  /// The shape, held against what it is in the world; none where it does not keep its form there.
+  /// Returns the shape after checking its form in the world; nullopt if the transform distorts it.
   template <class Described>
   std::optional<Geometry> check(const Described& shape) {
     if (!place(shape, at_)) return fall_back_from_transform();

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Makes the last row of a joint's matrix 0 0 0 1: in a valid file nothing but rounding stands there.
+/// Sets the last row of a joint's matrix to 0 0 0 1; in a valid file it differs only by rounding.
 void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
   for (int column = 0; column < 4; ++column) {
     const double wanted = column == 3 ? 1.0 : 0.0;

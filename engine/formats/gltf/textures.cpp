@@ -42,8 +42,8 @@ void take_sampler(const json& sampler, Texture& texture) {
   texture.are_levels_linear = minified == kNearestMipmapLinear || minified == kLinearMipmapLinear;
 }
 
-/// KHR_texture_transform: the coordinates are scaled, then turned, then moved. The matrix of its text turns the other
-/// way round than its pictures and every viewer do (glTF#1563).
+/// KHR_texture_transform: the coordinates are scaled, then turned, then moved. The matrix in the text of the extension
+/// rotates in the opposite direction of its pictures and of every viewer (glTF#1563).
 void take_transform(const json& transform, TextureSlot& slot) {
   const json offset = transform.value("offset", json::array({0.0, 0.0}));
   const json scale = transform.value("scale", json::array({1.0, 1.0}));
@@ -56,7 +56,7 @@ void take_transform(const json& transform, TextureSlot& slot) {
   slot.to_v = vec3(dvec3(-sine * s.x, cosine * s.y, o.y));
 }
 
-/// The image that a texture shows, or -1. Where there is one of core glTF, it shows what an extension's shows.
+/// Returns the image of a texture, or -1. An image of core glTF has the same content as that of an extension.
 int image_of(const json& texture) {
   if (texture.contains("source")) return texture["source"];
   for (const char* name : {"EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu"}) {

@@ -24,7 +24,7 @@ size_t find_variant(const json& document, const std::string& name, const std::fi
   throw UsageError({what, file.string(), "choose one of: " + known});
 }
 
-/// The material of a mesh primitive in a variant; `otherwise` where it has none of its own there.
+/// Returns the material of a mesh primitive in a variant; `otherwise` if it has no mapping.
 int material_in(const json& primitive, size_t variant, int otherwise) {
   const json* extension = find_extension(primitive, kExtension);
   if (extension == nullptr) return otherwise;

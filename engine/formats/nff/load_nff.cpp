@@ -16,7 +16,8 @@
 namespace promin {
 namespace {
 
-/// The material in promin's model. NFF knows no ambient light; what a user adds of it falls on the diffuse colour.
+/// Returns the material in promin's model. NFF has no ambient light; ambient light that a user adds uses the diffuse
+/// colour.
 Phong to_phong(const NffMaterial& nff) {
   Phong phong;
   phong.diffuse = nff.diffuse * nff.color;
@@ -25,7 +26,7 @@ Phong to_phong(const NffMaterial& nff) {
   phong.shininess = nff.shininess;
   phong.reflection = vec3(nff.specular);
   phong.transmission = vec3(nff.transmittance);
-  // Files have 0 where nothing is refracted.
+  // Files have 0 if nothing is refracted.
   phong.ior = nff.ior > 0.0F ? nff.ior : 1.0F;
   return phong;
 }
@@ -62,17 +63,17 @@ class PolygonMesh {
     return result;
   }
 
-  /// Sharp polygons so far get the normals that they are drawn with.
+  /// Gives flat-shaded polygons so far the normals of their triangles.
   void make_smooth() {
     for (size_t i = mesh_.normals.size(); i < mesh_.positions.size(); i += 3) add_normals(i);
   }
 
-  /// Those of a sharp triangle whose first vertex has this index.
+  /// Sets the normals of a flat-shaded triangle, given by the index of its first vertex.
   void add_normals(size_t first) {
     const dvec3 a(mesh_.positions[first]);
     const dvec3 normal = glm::cross(dvec3(mesh_.positions[first + 1]) - a, dvec3(mesh_.positions[first + 2]) - a);
     const double length = glm::length(normal);
-    // A triangle without area is never hit, so any normal will do for it.
+    // A triangle without area is never hit, so its normal does not matter.
     mesh_.normals.insert(mesh_.normals.end(), 3, length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));
   }
 
@@ -95,8 +96,8 @@ class PolygonMesh {
   Mesh mesh_;
 };
 
-/// Without colours n sources have sqrt(n) / (2 n) each, as the Standard Procedural Databases have it: together they
-/// grow brighter, but slowly.
+/// Without colours each of n sources has sqrt(n) / (2 n), as in the Standard Procedural Databases: their total grows
+/// slowly with n.
 void add_lights(const NffText& text, Scene& scene) {
   const auto count = static_cast<double>(text.lights.size());
   for (const NffLight& source : text.lights) {

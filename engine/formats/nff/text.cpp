@@ -18,9 +18,9 @@
 namespace promin {
 namespace {
 
-/// The product of two is a factor of a material, of which fp32 and validate() take up to 1e15.
+/// A material's factor is a product of two of these, and fp32 and validate() allow up to 1e15.
 constexpr double kMostFactor = 1e7;
-/// A view along its up to this sine has no top.
+/// A view this close to parallel with its up vector has no top.
 constexpr double kLeastSine = 1e-6;
 
 /// What a view is made of.
@@ -38,7 +38,7 @@ class NffParser {
  private:
   struct Statement {
     std::string_view keyword;
-    /// What follows it, for messages.
+    /// The values that follow it, for messages.
     const char* form;
     void (NffParser::*read)();
     /// Whether it is a shape. The next statement begins behind the words that it needs.
@@ -88,8 +88,8 @@ class NffParser {
     if (statement_->is_shape) report_.lose_geometry();
   }
 
-  /// Takes the next word as a number, which may be infinite or NaN; NaN where it is not a number. Where another
-  /// statement begins instead, or another part of a view, it is not taken.
+  /// Reads the next word as a number, which may be infinite or NaN; NaN if it is not a number. If another statement or
+  /// another part of a view begins, the word is not consumed.
   double take_any_number() {
     if (is_broken_) return 0.0;
     if (words_.next().empty()) {
@@ -103,7 +103,7 @@ class NffParser {
     return number.value_or(std::numeric_limits<double>::quiet_NaN());
   }
 
-  /// A number within a range; another one is said and becomes the nearest that is, or the least.
+  /// Reads a number in a range. Other numbers are reported and become the nearest one in the range, or the smallest.
   double take_number(double least, double most, const char* range) {
     const double number = take_any_number();
     if (is_broken_ || (number >= least && number <= most)) return number;
@@ -129,7 +129,7 @@ class NffParser {
   }
   float take_factor() { return static_cast<float>(take_number(0.0, kMostFactor, "from 0 to 1e7")); }
 
-  // The order in which arguments are evaluated is the compiler's own, that of statements is not.
+  // The order of evaluation of arguments is unspecified, that of statements is not.
   dvec3 take_point() {
     dvec3 point;
     for (int i = 0; i < 3; ++i) point[i] = take_coordinate();
@@ -145,7 +145,7 @@ class NffParser {
   /// Whether the statement is read, and says where it is.
   bool is_good() const { return is_placed_ && !is_broken_; }
 
-  /// Takes a radius, of whose sign nothing is made but that it is told.
+  /// Reads a radius; its sign is only reported.
   double take_radius(bool may_be_zero) {
     const double radius = take_coordinate();
     const bool is_valid = std::abs(radius) >= kMinSize || (may_be_zero && radius == 0.0);
@@ -230,7 +230,7 @@ class NffParser {
     if (is_good()) leave_out("has fewer than 3 corners");
   }
 
-  /// 0 where it is no direction.
+  /// Returns 0 if it is not a direction.
   vec3 take_normal() {
     dvec3 normal;
     for (int i = 0; i < 3; ++i) normal[i] = take_any_number();
@@ -265,7 +265,7 @@ class NffParser {
     }
     const dvec3 look = glm::normalize(*at - *from);
     const dvec3 side = glm::cross(look, glm::normalize(*up));
-    // Written so that NaN, which points in one place give, is refused too.
+    // Written so that NaN, which coinciding points give, is refused too.
     if (!(glm::length(side) >= kLeastSine)) {
       return leave_out("has from and at in the same place, or an up that is 0 or parallel to the view");
     }
@@ -275,7 +275,7 @@ class NffParser {
     out_.cameras.push_back(camera);
   }
 
-  /// 0 where the file has no resolution that can be taken.
+  /// 0 if the file has no valid resolution.
   uvec2 take_resolution() {
     dvec2 size;
     for (int i = 0; i < 2; ++i) size[i] = take_any_number();
@@ -289,9 +289,9 @@ class NffParser {
   LoadReport& report_;
   NffText out_;
   const Statement* statement_ = nullptr;
-  /// The last word that was taken for a number; empty where there was none.
+  /// The last word that was read as a number; empty if there was none.
   std::string_view word_;
-  /// Whether the statement has a place, as far as it is read.
+  /// Whether the position of the statement is valid as far as it has been read.
   bool is_placed_ = true;
   std::optional<NffMaterial> material_;
   bool is_group_open_ = false;

@@ -24,7 +24,7 @@ uint32_t encode(const dvec3& normal) {
   return texel;
 }
 
-/// A row or column of texels: where those beside the texel `at` lie.
+/// The neighbours of the texel `at` in a row or column.
 struct Neighbours {
   uint32_t before;
   uint32_t after;

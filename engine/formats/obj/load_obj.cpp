@@ -17,8 +17,8 @@
 namespace promin {
 namespace {
 
-/// Builds the mesh of one group after another. Its vertices are what its faces use of positions, with their normals
-/// and, where there is anything to show on them, texture coordinates.
+/// Builds the meshes of groups one after the other. The vertices of a mesh are the positions that its faces use, with
+/// normals and, if there is a texture, texture coordinates.
 class MeshBuilder {
  public:
   MeshBuilder(const ObjText& text, LoadReport& report)
@@ -66,8 +66,8 @@ class MeshBuilder {
       const dvec3 c(text_.positions[corners[triangle.z].position]);
       const dvec3 normal = glm::cross(b - a, c - a);
       const double length = glm::length(normal);
-      // A sharp corner among smooth ones gets vertices of its own. A triangle without area is never hit, so any normal
-      // will do.
+      // A flat-shaded corner among smooth ones gets its own vertices. A triangle without area is never hit, so its
+      // normal does not matter.
       for (int i = 0; i < 3; ++i) {
         vertices[i] = add_vertex(corners[triangle[i]]);
         mesh_.normals.push_back(length > 0.0 ? vec3(normal / length) : vec3(0.0F, 1.0F, 0.0F));
@@ -78,8 +78,8 @@ class MeshBuilder {
     mesh_.triangles.push_back(vertices);
   }
 
-  /// The vertices of one position form a chain, the newest first; it is short, as few normals and texture coordinates
-  /// meet in a point.
+  /// The vertices at one position form a chain, the newest first. It is short, because a point has few normals and
+  /// texture coordinates.
   uint32_t find_or_add_vertex(const ObjCorner& corner) {
     const ObjCorner wanted = {corner.position, needs_uvs_ ? corner.uv : kNoObjIndex,
                               has_normals_ ? corner.normal : kNoObjIndex};

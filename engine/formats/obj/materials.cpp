@@ -28,7 +28,7 @@ double illum_of(const MtlMaterial& source) {
   return std::floor(source.find("illum", 2.0).x);
 }
 
-/// What find_beside_scene says of a file that it does not find.
+/// The sentence of find_beside_scene about a missing file.
 std::string reason_against(const std::string& name, LoadReport& report) {
   LoadReport attempt = report.make_attempt();
   find_beside_scene(name, "", true, attempt);
@@ -62,7 +62,7 @@ std::vector<std::string> find_library(const std::string& line, LoadReport& repor
   return files;
 }
 
-/// A colour of the file, or what it is without; 1 where a map alone tells it.
+/// Returns a colour of the file, or its default; 1 if only a map gives it.
 vec3 color_of(const MtlMaterial& source, const std::string& keyword, double otherwise) {
   return vec3(source.find(keyword, source.find_map("map_" + keyword) != nullptr ? 1.0 : otherwise));
 }
@@ -74,19 +74,19 @@ void warn_of_unused_maps(const MtlMaterial& source, std::initializer_list<const 
   }
 }
 
-/// Where a material has both, d holds.
+/// If a material has both, d counts.
 float opacity_of(const MtlMaterial& source) {
   const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
   return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
-/// Whether light goes through, and is bent: illum 6 and 7.
+/// Returns whether light is transmitted and refracted: illum 6 and 7.
 bool is_refracting(const MtlMaterial& source) {
   return illum_of(source) == 6.0 || illum_of(source) == 7.0;
 }
 
-/// Whether the transmission filter Tf says what goes through: of what refracts always, of the glass of illum 4 and 9
-/// where a file has one, else their d alone tells.
+/// Returns whether the filter Tf determines the transmission: always for refracting materials, and for the glass of
+/// illum 4 and 9 if the file has one; else d determines it.
 bool is_filtering(const MtlMaterial& source) {
   const bool is_unbent = illum_of(source) == 4.0 || illum_of(source) == 9.0;
   return is_refracting(source) || (is_unbent && source.numbers.contains("Tf") && opacity_of(source) < 1.0F);
@@ -108,13 +108,13 @@ bool is_metallic_roughness(const MtlMaterial& source) {
          source.maps.contains("map_Pm");
 }
 
-/// Whether opacity is that of the whole surface, rather than of light that goes through Phong's glass.
+/// Returns whether opacity applies to the whole surface, and not to light through Phong's glass.
 bool blends(const MtlMaterial& source) {
   return !is_filtering(source) || is_metallic_roughness(source);
 }
 
-/// Of Tr without d there are two conventions. By that of most programs it is 1 - d, and 1 would be invisible: a file
-/// that has such a material was written by the other, by which Tr is d.
+/// There are two conventions for Tr without d. In most programs Tr is 1 - d, so a material with Tr = 1 would be
+/// invisible. A file with such a material therefore follows the other convention, in which Tr is d.
 void settle_transparency(std::vector<MtlMaterial>& materials, const std::string& file, LoadReport& report) {
   const auto has_tr_alone = [](const MtlMaterial& source) {
     return source.numbers.contains("Tr") && !source.numbers.contains("d");
@@ -142,7 +142,7 @@ void take_alpha(const MtlMaterial& source, Material& material, LoadReport& repor
 }
 
 MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& textures) {
-  // A map tells all by itself.
+  // A map alone determines the value.
   const auto share = [&](const char* keyword, double otherwise) {
     const bool has_map = source.find_map(std::string("map_") + keyword) != nullptr;
     return has_map ? 1.0F : static_cast<float>(std::min(source.find(keyword, otherwise).x, 1.0));
@@ -174,13 +174,13 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& rep
   if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
   if (is_filtering(source)) {
     warn_of_unused_maps(source, {"map_d"}, report);
-    // A material that is opaque by d and yet refracts is all glass.
+    // A material that refracts although its d is opaque is pure glass.
     const double through = opacity_of(source) < 1.0F ? 1.0 - static_cast<double>(opacity_of(source)) : 1.0;
     phong.transmission = vec3(through * glm::clamp(source.find("Tf", 1.0), dvec3(0.0), dvec3(kMaxCoordinate)));
   }
   phong.fresnel = illum == 5.0 || illum == 7.0;
   if (is_refracting(source) || phong.fresnel) {
-    // Glass where the file does not say.
+    // The default is the index of glass.
     const double ior = source.find("Ni", kGlass).x;
     phong.ior = static_cast<float>(is_index(ior) ? ior : kGlass);
   }
@@ -219,7 +219,7 @@ void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   }
 }
 
-/// The folder of a file, relative to the scene's own, with a slash at its end where it is another.
+/// Returns the folder of a file relative to the scene's own, with a slash at its end if it is another.
 std::string folder_of(const std::filesystem::path& file, const std::filesystem::path& scene) {
   const std::filesystem::path folder = file.lexically_relative(scene.parent_path()).parent_path();
   return folder.empty() || folder == "." ? "" : folder.string() + "/";
@@ -254,7 +254,7 @@ std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>
       }
     }
   }
-  // Where no material has a whole name, it is found without a comment.
+  // If no material has the whole name, it is looked up without a comment.
   std::map<std::string, MtlMaterial> shorter;
   for (const auto& [name, source] : materials) shorter.emplace(without_comment(name), source);
   for (auto& [name, source] : shorter) source.name = name;

@@ -34,7 +34,7 @@ bool is_among(const std::array<std::string_view, Count>& words, std::string_view
   return std::ranges::find(words, word) != words.end();
 }
 
-/// An option of a map, and how many words may follow it; where they are numbers, fewer may.
+/// An option of a map, and the number of words that may follow it; there may be fewer if they are numbers.
 struct MapOption {
   std::string_view name;
   int word_count;
@@ -164,7 +164,7 @@ class MtlParser {
     int count = 0;
     bool is_negative = false;
     for (std::string_view word = take_word(rest); !word.empty() && count < most; word = take_word(rest)) {
-      // The opacity of what is seen edge-on, which is drawn as that of all.
+      // The opacity at grazing angles, which is used for all angles.
       if (word == "-halo") continue;
       if (count == 0 && (word == "spectral" || word == "xyz")) return ignore_color(keyword, word);
       const std::optional<double> number = parse_number(word);
@@ -182,7 +182,7 @@ class MtlParser {
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
   }
 
-  /// By a curve, or in CIE's space of colours, which MTL allows.
+  /// Warns of a colour given as a spectral curve or as CIE XYZ, which MTL allows.
   void ignore_color(const std::string& keyword, std::string_view kind) {
     report_.warn("colours given as " + std::string(kind) + " are ignored, the first is " + keyword + " in " + place());
   }

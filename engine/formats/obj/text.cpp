@@ -43,8 +43,8 @@ class ObjParser {
   }
 
  private:
-  /// The line at hand, and those in which it goes on behind a backslash at its end. Comments do not: they may end in
-  /// the path of a folder.
+  /// The current line, and those that continue it after a backslash at its end. Comments are not continued, because
+  /// they may end in the path of a folder.
   std::string_view take_statement() {
     std::string_view line = lines_.line();
     if (!line.ends_with('\\') || line.find('#') != std::string_view::npos) return line;
@@ -92,7 +92,7 @@ class ObjParser {
     std::array<double, 6> values{};
     /// All words count, and the first six are read.
     size_t word_count = 0;
-    /// How many words come before the first that is not a number up to 1e15.
+    /// Number of words before the first that is not a number up to 1e15.
     size_t good_count = 0;
     /// That word.
     std::string_view bad_word = {};
@@ -122,7 +122,7 @@ class ObjParser {
     bool is_used = false;
   };
 
-  /// x y z, maybe a weight or a colour. What is no position costs the faces that use it.
+  /// x y z, possibly with a weight or a colour. Faces that use an invalid position are left out.
   void read_vertex(std::string_view rest) {
     const Numbers numbers = read_numbers(rest);
     const std::array<double, 6>& n = numbers.values;
@@ -238,11 +238,11 @@ class ObjParser {
     return true;
   }
 
-  /// What a word becomes that is no index: one past the end.
+  /// The index for a word that is not an index: one past the end.
   static constexpr uint32_t kMissing = kNoObjIndex - 1;
 
-  /// An index as OBJ writes it: from 1 on, or from -1 backwards from the current place. Vertices may follow the faces
-  /// that use them, so the upper end is checked last.
+  /// Reads an OBJ index: from 1 on, or from -1 backwards from the current position. Vertices may follow the faces that
+  /// use them, so the upper limit is checked at the end.
   static uint32_t read_index(std::string_view word, size_t count_so_far) {
     const std::optional<int64_t> written = parse_integer(word);
     if (!written || *written == 0) return kMissing;
@@ -270,7 +270,7 @@ class ObjParser {
     keep_faces(is_drawn);
   }
 
-  /// Leaves the other faces out, and groups without any.
+  /// Removes the other faces, and groups without faces.
   void keep_faces(const std::vector<bool>& is_kept) {
     std::vector<ObjFace> kept;
     for (ObjGroup& group : out_.groups) {

@@ -19,7 +19,7 @@ struct MapUse {
   std::string_view keyword;
   ImageUse use;
 };
-/// The maps that are read. Those of roughness and metallic are read to be merged.
+/// The maps that are read. Maps of roughness and metallic are read so that they can be merged.
 constexpr std::array<MapUse, 8> kMapUses = {{{"map_Kd", ImageUse::kColor},
                                              {"map_d", ImageUse::kData},
                                              {"map_Ks", ImageUse::kColor},

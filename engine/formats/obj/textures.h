@@ -55,8 +55,8 @@ class ObjTextures {
   std::vector<Texture> textures_;
   /// Indices of images_, by the pictures that they were made from.
   std::map<std::pair<ImagePointer, ImagePointer>, uint32_t> image_numbers_;
-  /// Indices of images_ of normals, by the picture of heights and the fields of HeightMap; a height of 0 is that of a
-  /// picture that holds normals itself.
+  /// Indices in images_ of normal maps, by the height map's picture and the fields of HeightMap. A picture that is a
+  /// normal map itself has a height of 0.
   std::map<std::tuple<ImagePointer, double, double, int, bool>, uint32_t> height_numbers_;
   /// Indices of textures_, by image and whether it is clamped.
   std::map<std::pair<uint32_t, bool>, uint32_t> texture_numbers_;

@@ -17,7 +17,7 @@
 namespace promin {
 namespace {
 
-/// The numbers of a vertex or face that are read, by their place in a row of them; any others go to the last place.
+/// The indices of the numbers of a vertex or face that are read; all others go to the last place.
 enum Column : uint32_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kU, kV, kTexture, kColumnCount };
 using Row = std::array<double, kColumnCount + 1>;
 
@@ -55,7 +55,7 @@ uint32_t column_of(const PlyProperty& property) {
   return found == kColumnNames.end() || property.is_list ? kColumnCount : found->column;
 }
 
-/// Which of its properties a row's element has where, and the numbers that stand for full colour.
+/// The places of an element's properties, and the numbers that stand for full colour.
 struct Layout {
   std::vector<uint32_t> columns;
   std::array<bool, kColumnCount + 1> is_there{};
@@ -99,7 +99,7 @@ class BodyReader {
  private:
   bool is_good() const { return problem_.empty() && rows_.problem().empty(); }
 
-  /// What faces say comes before what vertices say, but for colours, where vertices say more.
+  /// Data of faces has priority over data of vertices, except for colours, because vertices give more of them.
   void decide_what_is_read() {
     const Layout vertices(*header_.find("vertex"));
     has_normals_ = vertices.has_all(kNx);
@@ -242,7 +242,7 @@ class BodyReader {
     return static_cast<double>(byte) / 255.0 == share ? kOfBytes[byte] : srgb_to_linear(share);
   }
 
-  /// nullopt once the problem is told.
+  /// Returns nullopt after reporting the problem.
   std::optional<uint32_t> index_of(double number) {
     if (number >= 0.0 && number < static_cast<double>(vertex_count_) && number == std::floor(number)) {
       return static_cast<uint32_t>(number);

@@ -44,8 +44,8 @@ const Named* find_named(const std::vector<Named>& all, std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// Walks the lines of a header. Rows of numbers lie behind it, of which the first byte may look like the end of a line:
-/// a \n behind a \r belongs to the line only where the first line ends so.
+/// Iterates over the lines of a header. The first byte of the rows after it may look like a line end, so a \n after a
+/// \r belongs to the line only if the first line ends in this way.
 class HeaderLines {
  public:
   explicit HeaderLines(std::string_view file) : file_(file) {
@@ -173,7 +173,7 @@ class HeaderParser {
     if (has_room(properties, "properties")) properties.push_back(property);
   }
 
-  /// Each new name is looked for among the others.
+  /// Limits the search for each new name among the others.
   template <class Named>
   bool has_room(const std::vector<Named>& all, const std::string& what) {
     if (all.size() < kMaxNames) return true;
@@ -188,7 +188,7 @@ class HeaderParser {
     return PlyType::kFloat32;
   }
 
-  /// A header that lies must not take memory.
+  /// A wrong header must not cause large allocations.
   void check_counts(uint64_t room) {
     const bool is_text = out_.encoding == PlyEncoding::kText;
     // The last number of a text may have no space behind it.
@@ -196,7 +196,7 @@ class HeaderParser {
     for (const PlyElement& element : out_.elements) {
       uint64_t row_bytes = 0;
       for (const PlyProperty& property : element.properties) {
-        // A number of a text takes a digit and a space.
+        // In a text file a number takes at least a digit and a space.
         row_bytes += is_text ? 2 : size_of(property.is_list ? property.count_type : property.type);
       }
       const uint64_t rows = row_bytes == 0 ? element.row_count : room / row_bytes;

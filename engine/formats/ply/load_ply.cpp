@@ -64,7 +64,7 @@ bool has_rounded_coordinates(const PlyHeader& header) {
   return std::ranges::any_of(header.find("vertex")->properties, is_rounded);
 }
 
-/// What the header has to have.
+/// Checks the required parts of the header.
 void check_elements(const PlyHeader& header, LoadReport& report) {
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr) {
@@ -81,7 +81,7 @@ void check_elements(const PlyHeader& header, LoadReport& report) {
                 "export it with faces; point clouds are not drawn");
 }
 
-/// Makes a mesh of what a file has.
+/// Makes a mesh from the content of a file.
 class MeshMaker {
  public:
   /// `material_of_texture` has what the faces of each texture file are made of; kUnused where its picture cannot be
@@ -110,16 +110,16 @@ class MeshMaker {
   }
 
  private:
-  /// The vertices that share a place are looked through up to this number, so that time stays in bounds where each of
-  /// very many faces around one has another colour.
+  /// At most this number of vertices at the same position are searched, which limits the time if very many faces around
+  /// one position have different colours.
   static constexpr int kMostTries = 32;
 
   bool shows_textures() const {
     return std::ranges::any_of(material_of_texture_, [](uint32_t material) { return material != kUnused; });
   }
 
-  /// Those that faces use, in the file's order; others may hold anything. What has no normal gets its vertices with its
-  /// triangles.
+  /// Adds the vertices that faces use, in the file's order; others may have any content. Vertices without normals are
+  /// added with their triangles.
   void add_vertices() {
     new_index_.resize(body_.positions.size(), kUnused);
     for (const uint32_t corner : body_.corners) new_index_[corner] = 0;
@@ -142,7 +142,7 @@ class MeshMaker {
     return length > 0.0 && std::isfinite(length);
   }
 
-  /// What a vertex of the mesh has beside its normal.
+  /// The attributes of a vertex other than its normal.
   struct Look {
     uint32_t vertex = 0;
     vec4 color{1.0F};
@@ -252,13 +252,13 @@ class MeshMaker {
   bool has_normals_;
   bool has_colors_;
   bool has_uvs_;
-  /// Whether faces give their corners more than the vertices have.
+  /// Whether faces give their corners attributes that the vertices lack.
   bool is_split_;
   Mesh mesh_;
-  /// The polygon that is being added, and where its corners begin.
+  /// The current polygon, and the index of its first corner.
   size_t polygon_ = 0;
   size_t first_corner_ = 0;
-  /// What each vertex of the file is in the mesh, where nothing is split.
+  /// The mesh vertex of each vertex of the file, if nothing is split.
   std::vector<uint32_t> new_index_;
   /// The newest vertex of the mesh in the place of each of the file, where anything is split.
   std::vector<uint32_t> newest_vertex_;

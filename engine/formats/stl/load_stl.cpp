@@ -80,12 +80,12 @@ class FacetColors {
 
   /// Whether facets have colours at all.
   bool exist() const { return is_magics_ || has_marks_; }
-  /// Whether the bytes hold anything that is no colour.
+  /// Whether the bytes contain anything other than colours.
   bool are_unknown() const { return has_codes_ && !exist(); }
 
   vec3 of(uint64_t facet) const {
     const uint16_t code = code_of(facet);
-    // A writer that knows no colours of facets leaves all their bytes 0.
+    // Writers without facet colours leave these bytes 0.
     if (is_magics_ ? !has_codes_ || (code & kMark) != 0 : (code & kMark) == 0) return default_;
     const vec3 color(linear_[code & 31U], linear_[code >> 5 & 31U], linear_[code >> 10 & 31U]);
     return is_magics_ ? color : vec3(color.b, color.g, color.r);
@@ -137,7 +137,7 @@ std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   }
   uint64_t count = facet_count(file);
   const uint64_t room = (file.size() - kFirstFacet) / kFacetBytes;
-  // Who writes to a pipe cannot go back to write the count.
+  // A program that writes to a pipe cannot go back to write the count.
   const bool is_open = count == 0 || count == std::numeric_limits<uint32_t>::max();
   if (is_open && room > 0 && file.size() == kFirstFacet + kFacetBytes * room) {
     report.repair({"the number of facets was never written", std::to_string(count), "", "export the file again",

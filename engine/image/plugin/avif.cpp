@@ -21,7 +21,7 @@ void check(avifResult result) {
 Decoder open_avif(std::span<const unsigned char> file) {
   Decoder decoder(avifDecoderCreate(), avifDecoderDestroy);
   if (!decoder) throw std::bad_alloc();
-  // What encoders leave out that no decoder needs.
+  // Accepts files without the boxes that some encoders omit and no decoder needs.
   decoder->strictFlags = AVIF_STRICT_DISABLED;
   check(avifDecoderSetIOMemory(decoder.get(), file.data(), file.size()));
   check(avifDecoderParse(decoder.get()));

@@ -136,7 +136,7 @@ Bytes stored_level(Bytes file) {
   return bytes_at(file, number_at<uint64_t>(file, kLevelsAt), number_at<uint64_t>(file, kLevelsAt + sizeof(uint64_t)));
 }
 
-/// The level without Zstandard's compression, of so many bytes.
+/// Returns the level, decompressed if Zstandard compressed it; it must have `byte_count` bytes.
 std::vector<unsigned char> read_level(Bytes file, const Header& header, uint64_t byte_count) {
   const Bytes stored = stored_level(file);
   if (header.supercompression == 0) {

@@ -48,7 +48,7 @@ void tell(ProminPicturesMessage& message, std::string_view text) {
   message.text[size] = '\0';
 }
 
-/// Runs the body of a call, and makes a status of what it throws: nothing is thrown beyond this.
+/// Runs the body of a call and converts exceptions to a status; no exception leaves this function.
 template <typename Body>
 int guard(ProminPicturesMessage* message, const Body& body) noexcept {
   try {
@@ -95,13 +95,14 @@ OIIO::ImageSpec keep_alpha_apart() {
 ProminPicturesInfo describe(ProminPicturesReader& reader) {
   const OIIO::ImageSpec& spec = reader.input->spec();
   reader.first_channel = find_rgb(spec);
-  // What other formats have several of are pictures that follow each other.
+  // Several parts in other formats are successive pictures.
   const int parts = is_exr(reader) ? std::max(spec.get_int_attribute("oiio:subimages", 1), 1) : 1;
   return {is_flat(spec) ? static_cast<uint64_t>(spec.width) : 0, is_flat(spec) ? static_cast<uint64_t>(spec.height) : 0,
           is_flat(spec) ? 1U : 0U, reader.first_channel, static_cast<uint32_t>(parts)};
 }
 
-/// Whether a channel's integers are told as such, not as parts of the largest: they say what a thing is, not how light.
+/// Returns whether a channel's integers are read as integers and not as fractions of the largest: they are ids and not
+/// light.
 bool is_integer(const ProminPicturesReader& reader, const OIIO::TypeDesc& type) {
   return is_exr(reader) && type == OIIO::TypeDesc::UINT32;
 }
@@ -212,7 +213,7 @@ void write_picture(const char* file, const std::string& format, OIIO::ImageSpec 
   spec.attribute("oiio:ColorSpace", is_light ? "Linear" : "sRGB");
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("compression", "zip");
-  // Else the file would hold the time at which it is written, and equal pictures would be different files.
+  // Otherwise the file would contain its time of writing, and equal pictures would give different files.
   spec.attribute("DateTime", "");
   const auto output = OIIO::ImageOutput::create(format);
   if (!output) throw std::runtime_error(first_line(OIIO::geterror()));

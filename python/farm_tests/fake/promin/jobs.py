@@ -103,7 +103,7 @@ def create(kind: str, arguments: list[str], folder: str | os.PathLike[str]) -> J
     text = json.dumps(manifest, indent=1)
     if (root / "job.json").exists():
         if (root / "job.json").read_text() != text:
-            raise UsageError(f"the folder has another job, {root}; take another folder")
+            raise UsageError(f"the folder belongs to another job, {root}; take another folder")
     else:
         _write(root / "job.json", text.encode())
     return Job(root)
@@ -154,7 +154,7 @@ class Job:
             if header["job"] != self.id:
                 return "bad", "the piece belongs to another job", b""
             if header["sha256"] != hashlib.sha256(content).hexdigest():
-                return "bad", "is damaged", b""
+                return "bad", "the piece is damaged", b""
         except (ValueError, KeyError):
             return "bad", "the file is not a piece of a job, or it is cut short", b""
         return "done", "", content
@@ -195,7 +195,10 @@ class Job:
             if not str(output).endswith(endings):
                 raise UsageError(f"an output is none of {', '.join(endings)}, {output}; name it so")
             if len(frames) > 1 and "#" not in Path(output).name:
-                raise UsageError(f"several frames would be written to one file, {output}; write #### in its name for the number of a frame")
+                raise UsageError(
+                    f"several frames would be written to one file, {output}; write #### in its name for the number"
+                    " of a frame"
+                )
 
     def merge(self, outputs: list[str], *, allow_mixed: bool = False, frames: Optional[list[int]] = None) -> None:
         for frame in frames or ():
