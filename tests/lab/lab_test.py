@@ -56,7 +56,7 @@ def computes_figures(folder):
     expect(median_interval(values) == (1.0, 100.0, 0.9375), "an interval of fewer than 6 runs")
     lower, upper, confidence = median_interval(range(1, 21))
     expect((lower, upper) == (6, 15) and abs(confidence - 0.9586) < 1e-4, f"{lower}, {upper}, {confidence}")
-    # How often the interval contains the true median of a skewed distribution.
+    # The interval contains the true median of a skewed distribution this often.
     draw = random.Random(5)
     held = 0
     for _ in range(2000):
@@ -76,7 +76,8 @@ def computes_figures(folder):
     ]
     rows.append({"renderer": "Tachyon", "samples": 4, "ms": [50.0], "error": 0.01})
     sentences = list(report.renderer_sentences({"rows": rows, "versions": {"Tachyon": "Tachyon 1"}, "between": {}}))
-    expect(sentences == ["Tachyon 1 takes 50 ms for an error of 1 %; promin takes 80 ms for the same error."], sentences)
+    said = "Tachyon 1 takes 50 ms for an error of 1 %; promin takes 80 ms for the same error."
+    expect(sentences == [said], sentences)
     expect(report.plot(rows) == report.plot(rows), "a plot of the same figures differs")
     words = [report.duration(ms) for ms in (1.26, 12.4, 1260, 12400)]
     expect(words == ["1.3 ms", "12 ms", "1.3 s", "12 s"], f"{words}")
@@ -185,8 +186,8 @@ def check_picture_rays(folder):
         header = file.read_bytes()[:128].decode("latin1")
         expect(f"'shape': ({count}, 8)" in header, f"{file.name} has other rays: {header}")
     # Rays are found by the picture's rules: highlights without diffuse light, colours, cones, parallel cameras.
-    names = ("showcase", "metallic_roughness", "vertex_colors", "light_spot", "light_physical", "orthographic", "mirrors")
-    scenes = [SCENES / f"{name}.gltf" for name in names]
+    names = "showcase metallic_roughness vertex_colors light_spot light_physical orthographic mirrors"
+    scenes = [SCENES / f"{name}.gltf" for name in names.split()]
     run_lab("rates", *scenes, "--runs", 1, "--side", 64, "-o", folder / "runs.json")
     for part in read_json(folder / "runs.json")["rates"]["pictures"]:
         apart = abs(part["count"] - part["traced_rays"])
@@ -196,7 +197,7 @@ def check_picture_rays(folder):
 
 
 def makes_tables(folder):
-    """What tools/bench and tools/accuracy print, and a table for the terminal."""
+    """The tables of tools/bench and tools/accuracy, and a table for the terminal."""
     check_bench_tables(folder)
     check_accuracy_document(folder)
     printed = run_lab("rates", "needles:500", "--runs", 0, "--side", 16, "-o", folder / "runs.json")

@@ -14,7 +14,7 @@ import sys
 from figures import join, markdown_table
 from stats import read_figures
 
-# What the kernels do, and where it comes from; shaders/primitives/*.glsl have the reasons.
+# The methods of the kernels and their sources; shaders/primitives/*.glsl have the reasons.
 METHODS = {
     "sphere": (
         "around the closest approach, corrected once; discriminant (r - |p|)(r + |p|) in units of r",
@@ -145,7 +145,7 @@ def rows_section(runs):
     body = []
     for row in sorted({row for row, what in figures}):
         entries = {what: entry for (r, what), entry in figures.items() if r == row}
-        # What must not happen at all is told in one line where it did not.
+        # Events that must never happen share one line if they did not.
         never = [what for what, entry in entries.items() if all(measured == (0, 0) for measured in entry.values())]
         for what, entry in entries.items():
             if what not in never:

@@ -99,7 +99,7 @@ def _ratio_of(row, key="time_ratio"):
 
 
 def _rate_target(report, row):
-    """Of rates, hence the other way round than of times."""
+    """A ratio of rates is the inverse of the ratio of times."""
     ratio = _ratio_of(row)
     return _target(ratio and 1 / ratio, least=dict(zip(_RAYS, _targets_of(report)))[row["rays"]])
 

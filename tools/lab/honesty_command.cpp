@@ -32,7 +32,7 @@ struct HonestyOptions {
   uint32_t truth_samples = 1024;
   uint32_t most_samples = 128;
   uint32_t runs = 3;
-  /// Whether errors and claims are of what is shown.
+  /// Errors and claims are those of the shown picture.
   bool is_shown = false;
 };
 
@@ -51,14 +51,14 @@ std::vector<PixelWindow> choose_windows(const uvec2& size) {
   return windows;
 }
 
-/// Of pixels whose truth is known.
+/// Errors of the pixels whose truth is known.
 struct Errors {
   double rmse = 0.0;
   /// The error of a pixel's worst channel that 999 in 1000 pixels do not reach.
   double worst = 0.0;
 };
 
-/// What a picture takes and brings.
+/// The time and the errors of a picture.
 struct Point {
   double ms = 0.0;
   Errors errors;
@@ -153,7 +153,7 @@ class HonestyBench {
     return {std::sqrt(sum2 / (3.0 * static_cast<double>(worst.size()))), *at};
   }
 
-  /// Of refined pixels, those whose error is within the claim.
+  /// Returns the share of the refined pixels whose error is within the claim.
   double honest_share(View view) {
     size_t refined = 0;
     size_t honest = 0;

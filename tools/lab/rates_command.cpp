@@ -46,7 +46,7 @@ void print_rays(const Json& row) {
   std::string ratio = "-";
   std::string differing = "-";
   if (row.contains("time_ratio")) {
-    // Of rates, hence the other way round than of times.
+    // A ratio of rates is the inverse of the ratio of times.
     const measure::Quartiles q = quartiles_of(row, "time_ratio");
     ratio = fmt::format("{:.3f}", 1.0 / q.median);
     quartiles = fmt::format("{:.3f}-{:.3f}", 1.0 / q.upper, 1.0 / q.lower);

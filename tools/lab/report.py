@@ -83,8 +83,8 @@ class Lab:
 
 
 def _run_turns(contestants, runs):
-    """{name: function that returns milliseconds} to {name: list}: each once a turn, each turn in another order. Whoever
-    returns None drops out."""
+    """Maps {name: function that returns milliseconds} to {name: list}. Each contestant runs once a turn, each turn in
+    another order. A contestant that returns None drops out."""
     times = {name: [] for name in contestants}
     order = list(contestants)
     shuffler = random.Random(1)
@@ -256,17 +256,18 @@ def _time_at(rows, error):
 
 
 def renderer_sentences(figures):
-    """What a peer's picture of most samples takes, and what promin takes for the same error."""
+    """Says how long a peer's picture with the most samples takes, and how long promin takes for the same error."""
     for name, version in figures["versions"].items():
         own = [row for row in figures["rows"] if row["renderer"] == name]
         last = own[-1]
         took_ms = _time_at([row for row in figures["rows"] if row["renderer"] == "promin"], last["error"])
         text = f"{version} takes {duration(median(last))} for an error of {percent(last['error'])}"
-        text += f"; promin takes {duration(took_ms)} for the same error." if took_ms else ", which promin did not reach."
-        yield text
+        own_time = f"; promin takes {duration(took_ms)} for the same error."
+        yield text + (own_time if took_ms else "; no picture of promin has this error.")
     if figures["between"]:
-        apart = [f"{percent(error)} from {name}'s" for name, error in figures["between"].items() if error is not None]
-        yield f"With the most samples, promin's picture differs by {join(apart)}: they show the same scene."
+        known = {name: error for name, error in figures["between"].items() if error is not None}
+        differences = [f"{percent(error)} from {name}'s" for name, error in known.items()]
+        yield f"With the most samples, promin's picture differs by {join(differences)}: their models of light differ."
 
 
 def _listed(rows, figure):
@@ -298,7 +299,7 @@ def knob_rows(lab, knobs, methods):
     yield (
         "Target error",
         "Instead of a number of samples: each pixel stops when its estimated error is below a limit.",
-        _listed(targets, lambda row: f"{_time_and_error(row)}, {row['samples_a_pixel']:.1f} samples a pixel on average"),
+        _listed(targets, lambda row: f"{_time_and_error(row)}, {row['samples_a_pixel']:.1f} samples a pixel"),
         lab.png(f"{targets[-1]['name']}.png"),
         f"target error {targets[-1]['setting']}",
     )
@@ -314,7 +315,7 @@ def knob_rows(lab, knobs, methods):
     is_equal = len({row["error"] for row in builders}) == 1
     yield (
         "Builder",
-        "How the tree over the scene is built; 4 samples.",
+        "The program that builds the tree over the scene; 4 samples.",
         _listed(builders, lambda row: f"{duration(row['build_ms'])} to build, {duration(median(row))} to trace")
         + (" The error is the same with each." if is_equal else " The errors differ, which they should not."),
         lab.png(f"{builders[0]['name']}.png"),
@@ -323,30 +324,17 @@ def knob_rows(lab, knobs, methods):
     ratio = ratio_of(methods["promin_ms"], methods["textbook_ms"])
     yield (
         "Robust methods",
-        "promin's intersections are exact at edges; a textbook's are not.",
+        "promin's intersections decide edges without a gap; a textbook's do not.",
         f"A picture with promin's methods takes {compared(ratio)} one with the textbook's."
         f" {methods['different_percent']:.2g} % of its pixels differ visibly."
-        f" Of {methods['rays']:,} rays at the edges of a closed mesh, from inside, the textbook's methods lose"
-        f" {methods['lost_by_textbook']:,} and promin {methods['lost_by_promin']:,}.",
+        f" From inside of a closed mesh, at its edges, the textbook's methods lose {methods['lost_by_textbook']:,} and"
+        f" promin {methods['lost_by_promin']:,} of {methods['rays']:,} rays.",
         lab.png("methods.png"),
         "where the two pictures differ (brighter is more)",
     )
 
 
 # The page.
-
-_STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #1c1917;
-  background: #fff }
-h1 { font-size: 1.6rem; margin: 0 } h2 { font-size: 1.2rem; margin: 2rem 0 .5rem }
-p { margin: .4rem 0 } img { max-width: 100% } figure { margin: 0; flex: 1 1 16rem }
-figcaption, footer, small { font-size: .85rem; color: #57534e } .pictures { display: flex; gap: 1rem; flex-wrap: wrap;
-  margin-top: 1rem } .plot svg { width: 100%; height: auto } .knob { display: flex; gap: 1rem; border-top: 1px solid
-  #e7e5e4; padding: .8rem 0; align-items: flex-start; flex-wrap: wrap } .knob figure { flex: 0 0 12rem }
-.knob div { flex: 1 1 20rem } h3 { margin: 0; font-size: 1rem } footer { margin-top: 2rem; border-top: 1px solid #a8a29e }
-.quick { background: #fef3c7; padding: .5rem 1rem }
-"""
-
 
 def plot(rows):
     """Error over time as SVG, a line a renderer, both axes logarithmic."""
@@ -427,9 +415,10 @@ def page(lab, scene, renderers, knobs, methods, footer):
         words = f"<div><h3>{name}</h3><p>{what}</p><p>{figures}</p></div>"
         top.append(f'<div class="knob">{_figure(picture, caption)}{words}</div>')
     top.append(f"<footer><p>{html.escape(footer)}</p></footer>")
+    style = (pathlib.Path(__file__).parent / "report.css").read_text(encoding="utf-8")
     head = '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>promin: speed against error</title>'
     head += '<meta name="viewport" content="width=device-width">'
-    return f"{head}<style>{_STYLE}</style></head><body>\n" + "\n".join(top) + "\n</body></html>\n"
+    return f"{head}<style>{style}</style></head><body>\n" + "\n".join(top) + "\n</body></html>\n"
 
 
 def footer_text(provenance, plan, commit, busy):

@@ -17,8 +17,8 @@ def _rounded(value):
 def median_interval(values):
     """Returns (lower, upper, confidence) of one value or more: an interval that contains the median of all that might
     be measured, whatever the distribution, with that probability. It lies between the k-th least and the k-th largest
-    value. These miss the median as often as fewer than k of n throws of a coin are heads: 1 - 2 sum_{i<k} C(n, i) / 2^n.
-    It is the narrowest interval of at least 95 %. Fewer than 6 values have none, and give the least and the largest
+    value. These miss the median as often as fewer than k of n throws of a coin are heads:
+    1 - 2 sum_{i<k} C(n, i) / 2^n. It is the narrowest interval of at least 95 %. Fewer than 6 values have none, and give the least and the largest
     (Conover, Practical Nonparametric Statistics, 3.2)."""
     values, count = sorted(values), len(values)
     heads, k, confidence = 1, 1, max(0.0, 1 - 2 / 2**count)
