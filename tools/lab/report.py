@@ -46,8 +46,9 @@ class Plan:
             "Tachyon": 16 if is_quick else 256,
             "POV-Ray": 16 if is_quick else 81,
         }
-        self.size = (96, 54) if is_quick else (640, 360)
-        self.truth_samples = 32 if is_quick else 256
+        self.size = (96, 54) if is_quick else (480, 270)
+        self.knob_samples = (1, 4, 16) if is_quick else (1, 4, 16, 64)
+        self.truth_samples = 64 if is_quick else 256
         self.mesh = "wavy:2000" if is_quick else "wavy:131000"
         self.ray_side = 64 if is_quick else 1024
 
@@ -160,7 +161,7 @@ def measure_knobs(lab, scene):
     size = ("--size", *plan.size)
     lab.say(f"the truth of {scene.name}")
     lab.render(scene, "truth", *size, "--spp", plan.truth_samples, "--max-depth", _TRUTH_DEPTH)
-    settings = [("samples", f"{samples}", ("--spp", samples)) for samples in (1, 4, 16, 64)]
+    settings = [("samples", f"{samples}", ("--spp", samples)) for samples in plan.knob_samples]
     settings += [("target error", f"1/{part}", ("--target-error", 1 / part)) for part in (16, 64)]
     settings += [("depth", f"{depth}", ("--spp", 4, "--max-depth", depth)) for depth in (0, 1, 2, 5, 10)]
     settings += [("builder", name, ("--spp", 4, "--builder", name)) for name in ("sah", "median", "spatial")]
