@@ -331,7 +331,7 @@ def knob_rows(lab, knobs, methods):
         f" From inside of a closed mesh, at its edges, the textbook's methods lose {methods['lost_by_textbook']:,} and"
         f" promin {methods['lost_by_promin']:,} of {methods['rays']:,} rays.",
         lab.png("methods.png"),
-        "where the two pictures differ (brighter is more)",
+        "the difference of the two pictures: black is none",
     )
 
 
