@@ -268,7 +268,7 @@ def renderer_sentences(figures):
     if figures["between"]:
         known = {name: error for name, error in figures["between"].items() if error is not None}
         differences = [f"{percent(error)} from {name}'s" for name, error in known.items()]
-        yield f"With the most samples, promin's picture differs by {join(differences)}: their models of light differ."
+        yield f"With the most samples, promin's picture differs by {join(differences)}."
 
 
 def _listed(rows, figure):
