@@ -82,12 +82,12 @@ on_driver() (
   "$@"
 )
 
-# run_python SCRIPT ARGUMENT...: a script of tools/reporting, by PROMIN_PYTHON or the system's Python, for which
+# run_python SCRIPT ARGUMENT...: a script of tools/lab, by PROMIN_PYTHON or the system's Python, for which
 # matplotlib is packaged.
 run_python() {
   local python=python3
   [[ ! -x /usr/bin/python3 ]] || python=/usr/bin/python3
-  "${PROMIN_PYTHON:-$python}" "$repository/tools/reporting/$1" "${@:2}"
+  "${PROMIN_PYTHON:-$python}" "$repository/tools/lab/$1" "${@:2}"
 }
 
 # describe_commit: that of the sources, with -dirty where any but docs differ from it, as no program is made of those.

@@ -13,8 +13,8 @@
 
 namespace promin::measure {
 
-/// Of some measurements; between two of them linearly. For programs' own tables: all that reports tell of times is
-/// computed by tools/reporting/stats.py.
+/// Quartiles of some measurements, interpolated linearly between two of them. For tables of programs;
+/// tools/lab/stats.py computes the statistics of documents and pages.
 struct Quartiles {
   double lower = 0.0;
   double median = 0.0;

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""The tools that measure: statistics, tables, peers and a quick report as a user makes it.
+
+lab_test.py TEST BIN TOOLS SCENES: TEST is a function below, BIN the folder of the programs."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+BIN, TOOLS, SCENES = map(pathlib.Path, sys.argv[2:5])
+sys.path[:0] = [str(TOOLS / "lab"), str(TOOLS)]
+sys.dont_write_bytecode = True
+
+from figures import gap_text, number
+from stats import figures_of_times, fit_doublings, median_interval, read_figures
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"lab_test.py: {what}")
+
+
+def run_program(*words, environment=None):
+    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=900, env=environment)
+
+
+def run_lab(*words):
+    done = run_program(BIN / "promin-lab", *words)
+    expect(done.returncode == 0, f"promin-lab {words}: {done.stderr[-2000:]}")
+    return done.stdout
+
+
+def run_python(script, *words, environment=None):
+    python = os.environ.get("PROMIN_PYTHON", "/usr/bin/python3")
+    return run_program(python, "-B", TOOLS / "lab" / script, *words, environment=environment)
+
+
+def read_json(file):
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def computes_figures(folder):
+    """Statistics, numbers, and what the page derives from rows."""
+    values = [3.0, 1.0, 2.0, 4.0, 100.0]
+    figures = figures_of_times(values)
+    expect(figures["median"] == statistics.median(values) and figures["runs"] == 5, f"{figures}")
+    expect(median_interval(values) == (1.0, 100.0, 0.9375), "an interval of fewer than 6 runs")
+    lower, upper, confidence = median_interval(range(1, 21))
+    expect((lower, upper) == (6, 15) and abs(confidence - 0.9586) < 1e-4, f"{lower}, {upper}, {confidence}")
+    # The interval contains the true median of a skewed distribution this often.
+    draw = random.Random(5)
+    held = 0
+    for _ in range(2000):
+        low, high, _ = median_interval([draw.expovariate(1.0) for _ in range(20)])
+        held += low <= math.log(2) <= high
+    expect(0.94 < held / 2000 < 0.98, f"the interval holds the median in {held} of 2000 cases")
+    line = fit_doublings([1, 2, 4, 8], [5, 7, 9, 11])
+    expect(abs(line["per_doubling"] - 2) < 1e-9 and abs(line["r_squared"] - 1) < 1e-9, f"{line}")
+    expect([number(v) for v in (None, 0, 1.2345, 1234, 2e-5)] == ["–", "0", "1.23", "1,234", "2·10^−5"], "numbers")
+    gaps = [{"name": "A", "is_installed": False}, {"name": "B", "is_installed": True, "reason": "no file"}]
+    said = "Not measured, because not installed: A. Not measured: B, which failed: no file"
+    expect(gap_text(gaps) == said, gap_text(gaps))
+    import report
+
+    rows = [
+        {"renderer": "promin", "samples": n, "ms": [10.0 * n, 11.0 * n, 9.0 * n], "error": 0.08 / n} for n in (1, 4, 16)
+    ]
+    rows.append({"renderer": "Tachyon", "samples": 4, "ms": [50.0], "error": 0.01})
+    sentences = list(report.renderer_sentences({"rows": rows, "versions": {"Tachyon": "Tachyon 1"}, "between": {}}))
+    said = "Tachyon 1 takes 50 ms for an error of 1 %; promin takes 80 ms for the same error."
+    expect(sentences == [said], sentences)
+    expect(report.plot(rows) == report.plot(rows), "a plot of the same figures differs")
+    words = [report.duration(ms) for ms in (1.26, 12.4, 1260, 12400)]
+    expect(words == ["1.3 ms", "12 ms", "1.3 s", "12 s"], f"{words}")
+    words = [report.compared(ratio) for ratio in (1.01, 1.12, 0.9, 3.0)]
+    expect(words[1:] == ["12 % more time than", "10 % less time than", "3 times the time of"], f"{words}")
+
+
+def names_gaps(folder):
+    """A peer that fails does not take the others with it; the table names the program's own last line."""
+    peers = folder / "peers.json"
+
+    def measure():
+        options = ("--programs", BIN, "--side", 16, "--level", 1, "--runs", 1)
+        done = run_python("peers.py", peers, *options, environment={**os.environ, "PATH": path})
+        expect(done.returncode == 0, f"peers.py: {done.stderr}")
+        return read_json(peers)["peers"]
+
+    def install(name, script):
+        (folder / name).write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+        (folder / name).chmod(0o755)
+
+    for name in ("sh", "head", "cat"):
+        (folder / name).symlink_to(f"/bin/{name}")
+    path = str(folder)
+    found = measure()
+    expect(not found["rows"] and found["first"], f"without peers: {found}")
+    expect([gap["reason"] for gap in found["gaps"]] == ["not installed"] * 2, f"without peers: {found['gaps']}")
+    install("tachyon", "echo working; echo 'Tachyon: no such file' >&2; exit 1")
+    install("povray", "echo hi")
+    found = measure()
+    reasons = {gap["name"]: gap["reason"] for gap in found["gaps"] if gap["is_installed"]}
+    expect(reasons["Tachyon"] == "Tachyon: no such file", f"Tachyon: {reasons}")
+    expect("no time" in reasons["POV-Ray"], f"POV-Ray: {reasons}")
+    # One that is measured, with a black picture; the other is too fast for its own clock.
+    picture = "printf 'P6\\n16 16\\n65535\\n' >tachyon.ppm; head -c 1536 /dev/zero >>tachyon.ppm"
+    install("tachyon", f"{picture}; echo 'Version 0.5 Ray Tracing Time: 2.5'")
+    install("povray", "echo 'Version 3.7'; echo '  Trace Time:  0 hours  0 minutes  0 seconds (0.000 seconds)'")
+    found = measure()
+    expect(found["rows"], f"a peer that works was not measured: {found}")
+    row = found["rows"][0]
+    expect(row["peer"] == "Tachyon 0.5" and row["peer_ms"] == [2500.0], f"a peer that is measured: {row}")
+    expect("less time" in found["gaps"][0]["reason"], f"a renderer whose time is 0: {found['gaps']}")
+    expect(row["mean_difference"] > 0.01 and row["time_ratio"] == [row["promin_ms"][0] / 2500.0], f"{row}")
+
+
+def _cells(text):
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines()]
+
+
+def check_bench_tables(folder):
+    system = folder / "system"
+    system.mkdir()
+    run_lab("rates", "wavy:500", "--runs", 1, "--side", 32, "-o", system / "rates.json")
+    run_lab("growth", "--quick", "--runs", 1, "--side", 32, "-o", folder / "growth.json")
+    done = run_python("bench_tables.py", "-o", folder / "bench.json", "--growth", folder / "growth.json", system)
+    expect(done.returncode == 0, f"bench_tables.py: {done.stderr}")
+    lines = _cells(done.stdout)
+    report = read_figures(system / "rates.json")
+    for row in report["rates"]["rows"]:
+        cells = next(line for line in lines if line[1:3] == [row["scene"], row["rays"]])
+        expect(cells[4] == number(row["promin_mrays_per_s"]), f"another rate than {row}: {cells}")
+        expect(cells[-4] == number(row["node_steps_per_ray"]), f"other steps than {row}: {cells}")
+    rows = [row for row in read_json(folder / "growth.json")["growth"]["rows"] if row["curve"] == "camera"]
+    fit = fit_doublings([row["value"] for row in rows], [row["node_steps_per_ray"] for row in rows])
+    cells = next(line for line in lines if line[0].startswith("steps a doubling"))
+    expect(cells[1] == f"{fit['per_doubling']:.2f} ({fit['r_squared']:.3f})", f"another growth than {fit}: {cells}")
+    expect(read_json(folder / "bench.json")["drivers"]["system"] == report, "bench.json has other figures")
+
+
+def check_accuracy_document(folder):
+    (folder / "system.log").touch()
+    run_lab("robustness", "wavy:500", "--runs", 1, "--side", 32, "-o", folder / "system" / "robustness.json")
+    report = read_figures(folder / "system" / "robustness.json")
+    hard = {"driver": report["provenance"]["driver"], "failed": [], "primitives": {}, "rows": []}
+    (folder / "system.json").write_text(json.dumps(hard), encoding="utf-8")
+    done = run_python("accuracy_document.py", folder)
+    expect(done.returncode == 0, f"accuracy_document.py: {done.stderr}")
+    lines = _cells(done.stdout)
+    for row in report["robustness"]["rows"]:
+        cells = next(line for line in lines if line[0] == row["scene"] and line[2] == row["rays"])
+        expect(cells[6:] == [str(row["only_promin_hits"]), str(row["only_textbook_hits"])], f"{row}: {cells}")
+    edges = next(row for row in report["robustness"]["rows"] if row["rays"] == "edges")
+    expect(edges["promin_hits"] == edges["count"], f"promin loses rays inside of a closed mesh: {edges}")
+
+
+def check_picture_rays(folder):
+    """promin-lab rates compares a picture with its rays, and writes the rays as files that cast reads."""
+    rays = folder / "rays"
+    scene = SCENES / "showcase.gltf"
+    options = ("--runs", 1, "--side", 64, "--max-depth", 2, "--rays", rays, "-o", folder / "runs.json")
+    done = run_program(BIN / "promin-lab", "rates", scene, *options)
+    expect(done.returncode == 1 and "no such folder" in done.stderr and not done.stdout, f"a folder is missing: {done}")
+    rays.mkdir()
+    expect("of what its own" in run_lab("rates", scene, *options), "no picture is compared with its rays")
+    rates = read_json(folder / "runs.json")["rates"]
+    picture, mirrors = rates["pictures"]
+    expect((picture["what"], mirrors["what"]) == ("picture", "mirror stage"), f"{picture['what']}, {mirrors['what']}")
+    sets = {row["rays"]: row["count"] for row in rates["picture_rays"]}
+    expect(list(sets) == ["camera", "shadow 0", "mirror 1", "shadow 1", "mirror 2", "shadow 2"], f"sets: {sets}")
+    expect(sets["camera"] == 64 * 64 and sum(sets.values()) == picture["count"], f"not all rays are there: {sets}")
+    expect(sum(list(sets.values())[2:]) == mirrors["count"], f"other rays than those behind first hits: {mirrors}")
+    for name, count in sets.items():
+        file = rays / f"showcase_{name.replace(' ', '_')}.npy"
+        done = run_program(BIN / "promin", "cast", scene, file, "-o", folder / "hits.npy")
+        expect(done.returncode == 0, f"cast of {file.name}: {done}")
+        header = file.read_bytes()[:128].decode("latin1")
+        expect(f"'shape': ({count}, 8)" in header, f"{file.name} has other rays: {header}")
+    # Rays are found by the picture's rules: highlights without diffuse light, colours, cones, parallel cameras.
+    names = "showcase metallic_roughness vertex_colors light_spot light_physical orthographic mirrors"
+    scenes = [SCENES / f"{name}.gltf" for name in names.split()]
+    run_lab("rates", *scenes, "--runs", 1, "--side", 64, "-o", folder / "runs.json")
+    for part in read_json(folder / "runs.json")["rates"]["pictures"]:
+        apart = abs(part["count"] - part["traced_rays"])
+        expect(apart <= max(3, 1e-3 * part["traced_rays"]), f"other rays than the picture's: {part}")
+    done = run_program(BIN / "promin-lab", "rates", scene, "--runs", 0, "--rays", rays)
+    expect(done.returncode == 2 and "--runs 0" in done.stderr, f"rays without a picture: {done}")
+
+
+def makes_tables(folder):
+    """The tables of tools/bench and tools/accuracy, and a table for the terminal."""
+    check_bench_tables(folder)
+    check_accuracy_document(folder)
+    printed = run_lab("rates", "needles:500", "--runs", 0, "--side", 16, "-o", folder / "runs.json")
+    expect("needles:500, 500 primitives" in printed, printed)
+    rows = read_json(folder / "runs.json")["rates"]["rows"]
+    expect([row["rays"] for row in rows] == ["camera", "shadow", "random"], f"promin-lab rates: {rows}")
+    expect(rows[0]["count"] == 256 and "promin_ms" not in rows[0], f"it should only count steps: {rows}")
+    check_picture_rays(folder)
+
+
+def writes_a_report(folder):
+    """A quick page with pictures, one plot, a row a knob and a footer, on a scene of the user's."""
+    scene = SCENES / "mirrors.gltf"
+    done = run_python("report.py", scene, "--quick", "--programs", BIN, "--commit", "abc", "-o", folder / "out")
+    expect(done.returncode == 0, f"report.py: {done.stderr[-2000:]}")
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    figures = read_json(folder / "out" / "figures.json")
+    expect(not re.search(r"(src|href)=['\"]?(http|//|file)", page), "the page needs other files")
+    expect("A quick report" in page, "the page does not say that it is quick")
+    expect(page.count("<svg") == 1 and page.count('<img src="data:image/png;base64,') == 7, "other pictures")
+    knobs = re.findall(r"<h3>([^<]*)</h3>", page)
+    expect(knobs == ["Samples", "Target error", "Depth", "Builder", "Robust methods"], f"other knobs: {knobs}")
+    footer = page[page.index("<footer>") :]
+    expect("commit abc" in footer and figures["methods"]["provenance"]["driver"] in footer, f"the footer: {footer}")
+    expect(scene.name in page and str(folder) not in page, "the page names the folder, or not the scene")
+    names = {row["renderer"] for row in figures["renderers"]["rows"]}
+    missing = {gap["name"] for gap in figures["renderers"]["gaps"]}
+    expect(names | missing == {"promin", "Tachyon", "POV-Ray"} and not names & missing, f"{names}, {missing}")
+    for name in missing:
+        expect(name in page, f"the page does not name {name}, which is missing")
+    # The figures that hold on any machine: more samples are more exact, a tree does not change a picture, and promin
+    # loses no ray.
+    own = [row["error"] for row in figures["renderers"]["rows"] if row["renderer"] == "promin"]
+    expect(own == sorted(own, reverse=True) and own[-1] > 0, f"errors of more and more samples: {own}")
+    builders = [row["error"] for row in figures["knobs"] if row["knob"] == "builder"]
+    expect(len(builders) == 3 and len(set(builders)) == 1, f"errors of builders: {builders}")
+    expect(figures["methods"]["lost_by_promin"] == 0, f"{figures['methods']}")
+    done = run_python("report.py", folder / "none.gltf", "--programs", BIN, "-o", folder / "none")
+    expect(done.returncode == 1 and "no such scene" in done.stderr, f"a scene that is not there: {done}")
+
+
+TESTS = {test.__name__: test for test in (computes_figures, names_gaps, makes_tables, writes_a_report)}
+
+with tempfile.TemporaryDirectory() as name:
+    TESTS[sys.argv[1]](pathlib.Path(name))

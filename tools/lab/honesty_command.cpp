@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// promin-lab honesty: whether pictures with an error target are as exact as they claim, and what they take beside
+// pictures of as many samples in each pixel that are as exact. Whole pictures are timed; what is true is known of some
+// windows of them, from many samples of a lattice, which these pictures do not take.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "core/stopwatch.h"
+#include "lab/commands.h"
+#include "measure/samples.h"
+#include "promin/device.h"
+#include "promin/framing.h"
+#include "promin/lighting.h"
+#include "promin/load_scene.h"
+#include "promin/renderer.h"
+#include "trace/pixel_estimate.h"
+#include "trace/refinement.h"
+
+namespace promin::lab {
+namespace {
+
+struct HonestyOptions {
+  std::string scene;
+  uvec2 size{1280, 720};
+  uint32_t truth_samples = 1024;
+  uint32_t most_samples = 128;
+  uint32_t runs = 3;
+  /// Errors and claims are those of the shown picture.
+  bool is_shown = false;
+};
+
+/// Windows along each side of the picture, and their share of it.
+constexpr uint32_t kWindows = 5;
+constexpr uint32_t kShare = 5;
+
+std::vector<PixelWindow> choose_windows(const uvec2& size) {
+  std::vector<PixelWindow> windows;
+  const uvec2 cell = size / kWindows;
+  const uvec2 side = glm::max(cell / kShare, uvec2(1));
+  for (uint32_t i = 0; i < kWindows * kWindows; ++i) {
+    const uvec2 lo = cell * uvec2(i % kWindows, i / kWindows) + (cell - side) / 2U;
+    windows.push_back({lo, lo + side});
+  }
+  return windows;
+}
+
+/// Errors of the pixels whose truth is known.
+struct Errors {
+  double rmse = 0.0;
+  /// The error of a pixel's worst channel that 999 in 1000 pixels do not reach.
+  double worst = 0.0;
+};
+
+/// The time and the errors of a picture.
+struct Point {
+  double ms = 0.0;
+  Errors errors;
+};
+
+class HonestyBench {
+ public:
+  HonestyBench(const gpu::Device& device, const std::string& file, const HonestyOptions& options)
+      : options_(options), windows_(choose_windows(options.size)), name_(std::filesystem::path(file).stem()) {
+    Scene scene = load_scene(file);
+    light_scene(scene, LightChoice::kAuto);
+    const float aspect_ratio = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
+    view_.camera = scene.cameras.empty() ? frame_scene(scene, aspect_ratio) : scene.cameras.front();
+    view_.size = options.size;
+    if (options.is_shown) display_ = display_of(scene);
+    view_.max_depth = default_max_depth(scene);
+    renderer_.emplace(device, scene, RendererOptions{.with_aovs = true});
+    plain_renderer_.emplace(device, scene);
+  }
+
+  void run() {
+    find_truth();
+    std::vector<View> views;
+    for (uint32_t samples = 1; samples <= options_.most_samples; samples *= 2) {
+      views.push_back(view_);
+      views.back().samples_per_pixel = samples;
+    }
+    const size_t uniform_count = views.size();
+    for (const float error : {1.0F / 16.0F, 1.0F / 64.0F, 1.0F / 128.0F}) {
+      views.push_back(view_);
+      views.back().error_target =
+          ErrorTarget{.error = error, .min_samples = usual_min_samples(error), .display = display_};
+    }
+    std::vector<RenderResult> results(views.size());
+    std::vector<std::function<double()>> contestants;
+    for (size_t i = 0; i < views.size(); ++i) {
+      contestants.emplace_back([&, i] {
+        // With what the host does between dispatches, which is more where pixels are refined.
+        const Stopwatch rendering;
+        results[i] = plain_renderer_->render(views[i]);
+        return rendering.ms();
+      });
+    }
+    const std::vector<std::vector<double>> times = measure::time_in_turns(contestants, options_.runs);
+    std::vector<Point> uniform;
+    for (size_t i = 0; i < views.size(); ++i) {
+      const Point point{measure::quartiles_of(times[i]).median, errors_of(results[i].image)};
+      if (i < uniform_count) {
+        uniform.push_back(point);
+        tell(fmt::format("{} spp", views[i].samples_per_pixel), views[i].samples_per_pixel, point);
+      } else {
+        const double pixels = static_cast<double>(view_.size.x) * view_.size.y;
+        tell(fmt::format("error 1/{:g}", 1.0 / static_cast<double>(views[i].error_target->error)),
+             static_cast<double>(results[i].error->samples) / pixels, point);
+        fmt::print(" {:.2f} % | {} | {} |\n", 100.0 * honest_share(views[i]),
+                   ratio_to(uniform, point, [](const Point& p) { return p.errors.rmse; }),
+                   ratio_to(uniform, point, [](const Point& p) { return p.errors.worst; }));
+        continue;
+      }
+      fmt::print(" | | |\n");
+    }
+  }
+
+ private:
+  void find_truth() {
+    View fine = view_;
+    fine.samples_per_pixel = options_.truth_samples;
+    for (const PixelWindow& window : windows_) {
+      fine.crop = window;
+      truth_.push_back(plain_renderer_->render(fine).image);
+    }
+  }
+
+  /// A color as errors measure it.
+  vec3 shown(const vec3& color) const { return display_ ? shown_color(color, *display_) : color; }
+
+  Errors errors_of(const Image& image) const {
+    double sum2 = 0.0;
+    std::vector<double> worst;
+    for (size_t w = 0; w < windows_.size(); ++w) {
+      for (uint32_t y = 0; y < truth_[w].size.y; ++y) {
+        for (uint32_t x = 0; x < truth_[w].size.x; ++x) {
+          const vec3& written = image.at(windows_[w].lo.x + x, windows_[w].lo.y + y);
+          const dvec3 error = dvec3(shown(written)) - dvec3(shown(truth_[w].at(x, y)));
+          sum2 += glm::dot(error, error);
+          worst.push_back(std::max({std::abs(error.x), std::abs(error.y), std::abs(error.z)}));
+        }
+      }
+    }
+    const auto at = worst.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(worst.size()));
+    std::nth_element(worst.begin(), at, worst.end());
+    return {std::sqrt(sum2 / (3.0 * static_cast<double>(worst.size()))), *at};
+  }
+
+  /// Returns the share of the refined pixels whose error is within the claim.
+  double honest_share(View view) {
+    size_t refined = 0;
+    size_t honest = 0;
+    for (size_t w = 0; w < windows_.size(); ++w) {
+      view.crop = windows_[w];
+      const RenderResult result = renderer_->render(view);
+      for (size_t i = 0; i < truth_[w].pixels.size(); ++i) {
+        if (result.aovs.samples[i] == view.error_target->min_samples) continue;
+        ++refined;
+        const vec3& written = result.image.pixels[i];
+        const vec3 claim = display_ ? shown_claim(result.aovs.error[i], written, *display_) : result.aovs.error[i];
+        const vec3 error = glm::abs(shown(written) - shown(truth_[w].pixels[i]));
+        honest += glm::all(glm::lessThanEqual(error, claim)) ? 1 : 0;
+      }
+    }
+    return static_cast<double>(honest) / static_cast<double>(std::max<size_t>(refined, 1));
+  }
+
+  /// The time of a picture over that of one with as many samples in each pixel and the same error: between those of
+  /// powers of two, along a straight line of logarithms.
+  template <typename Error>
+  static std::string ratio_to(const std::vector<Point>& uniform, const Point& point, const Error& error_of) {
+    for (size_t i = 1; i < uniform.size(); ++i) {
+      const double above = std::log(error_of(uniform[i - 1]));
+      const double below = std::log(error_of(uniform[i]));
+      const double wanted = std::log(error_of(point));
+      if (wanted > above || wanted < below) continue;
+      const double share = (above - wanted) / (above - below);
+      return fmt::format("{:.3f}",
+                         point.ms / std::exp(std::lerp(std::log(uniform[i - 1].ms), std::log(uniform[i].ms), share)));
+    }
+    return error_of(point) < error_of(uniform.back()) ? fmt::format("< {:.3f}", point.ms / uniform.back().ms) : "-";
+  }
+
+  void tell(const std::string& what, double samples, const Point& point) const {
+    fmt::print("| {} | {} | {:.2f} | {:.0f} | {:.5f} | {:.4f} |", name_, what, samples, point.ms, point.errors.rmse,
+               point.errors.worst);
+    std::fflush(stdout);
+  }
+
+  HonestyOptions options_;
+  std::vector<PixelWindow> windows_;
+  std::string name_;
+  View view_;
+  std::optional<DisplayTransform> display_;
+  std::optional<Renderer> renderer_;
+  std::optional<Renderer> plain_renderer_;
+  std::vector<Image> truth_;
+};
+
+void measure_honesty(const HonestyOptions& options) {
+  const gpu::DeviceHandle device = gpu::open_device();
+  fmt::print(
+      "| scene | picture | samples a pixel | ms | RMSE | 99.9 % error | within the claim | time over uniform "
+      "sampling's "
+      "of equal RMSE | of equal 99.9 % error |\n|---|---|---|---|---|---|---|---|---|\n");
+  HonestyBench(*device, options.scene, options).run();
+}
+
+}  // namespace
+
+app::Command add_honesty_command(CLI::App& program) {
+  using app::OptionValues;
+  CLI::App& command = app::add_command(program, "honesty",
+                                       "How many pixels of pictures with an error target are within their claims, and "
+                                       "time beside that of as many samples in each pixel");
+  const auto options = std::make_shared<HonestyOptions>();
+  app::OptionTable table(command);
+  table.add_required("SCENE", "", "A scene to make pictures of",
+                     [=](const OptionValues& words) { options->scene = words.text(); });
+  table.add("--size", "W H", "Size of the pictures, 25 to 8192 [1280 720]", [=](const OptionValues& words) {
+    options->size = uvec2(words.whole(0, 25, 8192), words.whole(1, 25, 8192));
+  });
+  table.add("--truth", "N", "Samples of what counts as true, 64 to 65535 [1024]",
+            [=](const OptionValues& words) { options->truth_samples = words.whole(0, 64, kMaxSamplesPerPixel); });
+  table.add("--most", "N", "The most samples in each pixel to compare with, 2 to 1024 [128]",
+            [=](const OptionValues& words) { options->most_samples = words.whole(0, 2, 1024); });
+  table.add("--runs", "N", "Turns whose median counts, 1 to 99 [3]",
+            [=](const OptionValues& words) { options->runs = words.whole(0, 1, 99); });
+  table.add_flag("--shown", "Errors and claims of what is shown (--error-in display), and not of linear light",
+                 options->is_shown);
+  return {&command, [options] { measure_honesty(*options); }};
+}
+
+}  // namespace promin::lab

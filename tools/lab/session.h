@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "promin/device.h"
+#include "promin/view.h"
+#include "scene/world_scene.h"
+
+namespace promin::lab {
+
+using Json = nlohmann::ordered_json;
+
+/// The options of the commands that measure; each command adds those that it uses.
+struct LabOptions {
+  /// Words of measure::open_scene.
+  std::vector<std::string> scenes;
+  /// The file of all runs as JSON; empty for none.
+  std::filesystem::path output;
+  std::optional<std::string> device;
+  /// The number of timed runs of each contestant.
+  uint32_t runs = 9;
+  /// The number of pixels of the camera's picture in each direction.
+  uint32_t side = 1024;
+  std::string builder = "sah";
+  uint32_t max_depth = View().max_depth;
+  /// A folder for the rays of a picture, a .npy file a set.
+  std::optional<std::filesystem::path> rays;
+  /// The commit of the sources.
+  std::string commit = "unknown";
+};
+
+void add_scenes(CLI::App& command, app::OptionTable& table, LabOptions& options);
+/// --device, --runs, --side, --commit and --output.
+void add_measuring_options(app::OptionTable& table, LabOptions& options, uint32_t fewest_runs);
+
+/// The device and the options of a measurement.
+class Session {
+ public:
+  /// Throws DeviceError.
+  explicit Session(const LabOptions& options) : options_(options), device_(gpu::open_device(options.device)) {}
+
+  const LabOptions& options() const { return options_; }
+  const gpu::Device& device() const { return *device_; }
+  uint32_t runs() const { return options_.runs; }
+  uint32_t side() const { return options_.side; }
+
+  /// Prints a line to the standard error stream.
+  void say(const std::string& text) const;
+
+  /// Returns what every figure depends on: device, driver, compiler, commit, date, CPU, runs.
+  Json provenance() const;
+
+  /// Writes {"provenance", "rates": ...} to the options' output, if they name a file.
+  void write(const std::string& section, const Json& content) const;
+
+ private:
+  const LabOptions& options_;
+  gpu::DeviceHandle device_;
+};
+
+/// Returns the view of the scene's first camera, or of one that frames it.
+View view_of(const world::Scene& scene, const uvec2& size);
+
+// An array of numbers in the JSON has one number a run: times of one unit, or ratios of times of the same turn.
+// tools/lab/stats.py computes medians and intervals from them.
+
+}  // namespace promin::lab

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: The promin developers
+# SPDX-License-Identifier: Apache-2.0
+"""Statistics of runs: medians, quartiles, intervals and growth; and the files of promin-lab with all runs."""
+
+import json
+import math
+import pathlib
+import statistics
+
+_LEAST_CONFIDENCE = 0.95
+
+
+def _rounded(value):
+    return float(f"{value:.7g}")
+
+
+def median_interval(values):
+    """Returns (lower, upper, confidence) of one value or more: an interval that contains the median of all that might
+    be measured, whatever the distribution, with that probability. It lies between the k-th least and the k-th largest
+    value. These miss the median as often as fewer than k of n throws of a coin are heads:
+    1 - 2 sum_{i<k} C(n, i) / 2^n. It is the narrowest interval of at least 95 %. Fewer than 6 values have none, and give the least and the largest
+    (Conover, Practical Nonparametric Statistics, 3.2)."""
+    values, count = sorted(values), len(values)
+    heads, k, confidence = 1, 1, max(0.0, 1 - 2 / 2**count)
+    for i in range(1, (count + 1) // 2):
+        heads += math.comb(count, i)
+        if 1 - 2 * heads / 2**count < _LEAST_CONFIDENCE:
+            break
+        k, confidence = i + 1, 1 - 2 * heads / 2**count
+    return values[k - 1], values[count - k], confidence
+
+
+def figures_of_times(values):
+    """Returns the figures of times or of ratios of times, one a run."""
+    lower, median, upper = statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else values * 3
+    least, most, confidence = median_interval(values)
+    return {
+        "median": _rounded(median),
+        "lower_quartile": _rounded(lower),
+        "upper_quartile": _rounded(upper),
+        "interval_lower": _rounded(least),
+        "interval_upper": _rounded(most),
+        "confidence": confidence,
+        "runs": len(values),
+    }
+
+
+def fit_doublings(xs, ys):
+    """Returns by how much y grows with each doubling of x, and the share of the variance that such a line explains."""
+    doublings = [math.log2(x) for x in xs]
+    slope = statistics.linear_regression(doublings, ys).slope
+    return {"per_doubling": slope, "r_squared": statistics.correlation(doublings, ys) ** 2}
+
+
+def mrays_per_s(count, times):
+    return _rounded(count / (1e3 * times["median"]))
+
+
+def _summarise(value):
+    """Arrays of runs become figures."""
+    if isinstance(value, list) and value and isinstance(value[0], (int, float)):
+        return figures_of_times(value)
+    if isinstance(value, list):
+        return [_summarise(part) for part in value]
+    if isinstance(value, dict):
+        return {key: _summarise(part) for key, part in value.items()}
+    return _rounded(value) if isinstance(value, float) else value
+
+
+def read_figures(file):
+    """Returns what a file of promin-lab or of peers.py contains, with medians and rates in the place of runs."""
+    report = _summarise(json.loads(pathlib.Path(file).read_text(encoding="utf-8")))
+    for section in ("rates", "robustness"):
+        for row in report.get(section, {}).get("rows", []):
+            for who in ("promin", "peer", "peer_packets", "robust", "plain"):
+                if f"{who}_ms" in row:
+                    row[f"{who}_mrays_per_s"] = mrays_per_s(row["count"], row[f"{who}_ms"])
+    return report
