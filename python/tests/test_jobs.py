@@ -434,7 +434,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     changed = make_rays(1000)
     changed[3, 3] = 0.5
     np.save(rays, changed)
-    with pytest.raises(promin.InputError, match="has changed since .*rays.npy"):
+    with pytest.raises(promin.InputError, match="the file changed after .*rays.npy"):
         runner.run(0)
     with pytest.raises(promin.UsageError, match='the file "rays.npy" has changed since'):
         jobs.open(tmp_path / "job").runner()
