@@ -118,7 +118,7 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
         watch.say(f"{len(missing)} of {of_pieces(len(job.pieces))} to make, by {words}")
         if len(job.pieces) < workers:
             watch.say(
-                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some have no work; --pieces cuts a "
+                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some get no work; --pieces cuts a "
                 "job in another folder into more"
             )
         foreman = Foreman(

@@ -174,7 +174,7 @@ TEST_F(BvhCliTest, FilesThatCannotBeTrustedAreRefusedWithThree) {
       {"empty.pbvh", "the file is empty"},
       {"flipped.pbvh", "the BVH file is damaged: its checksum does not match, flipped.pbvh; build it again with "},
       {"none.pbvh", "the file does not exist, none.pbvh"},
-      {".", "the scene is not a regular file"},
+      {".", "the file is not a regular file, .; name a regular file"},
       {"stale.pbvh", "the BVH file is stale: it was built from other geometry than the scene's, stale.pbvh; build it"}};
   for (const auto& [file, sentence] : cases) {
     SCOPED_TRACE(file);

@@ -53,15 +53,24 @@ inline constexpr const char* kSquareGltf =
   "scene": 0
 })";
 
+/// The square of glTF's default material, under a part of the studio and shown with an exposure and a tone mapping.
+inline std::string make_default_gltf() {
+  nlohmann::json gltf = nlohmann::json::parse(kSquareGltf);
+  gltf["extensionsUsed"] = {"KHR_lights_punctual"};
+  gltf.erase("materials");
+  gltf["meshes"][0]["primitives"][0].erase("material");
+  return gltf.dump();
+}
+
 /// The square twice, side by side: lit on the left and on the right of an unlit colour, linear RGB of 0.5, 0.25 and
 /// 0.02.
 inline std::string make_mixed_gltf() {
-  nlohmann::json gltf = nlohmann::json::parse(kSquareGltf);
+  nlohmann::json gltf = nlohmann::json::parse(make_default_gltf());
   gltf["extensionsUsed"].push_back("KHR_materials_unlit");
-  gltf["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.02, 1}}}},
-                               {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}});
+  gltf["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.02, 1}}}},
+                        {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}};
   gltf["meshes"].push_back(gltf["meshes"][0]);
-  gltf["meshes"][1]["primitives"][0]["material"] = 1;
+  gltf["meshes"][1]["primitives"][0]["material"] = 0;
   gltf["nodes"][0]["translation"] = {-1.2, 0, 0};
   gltf["nodes"].push_back({{"mesh", 1}, {"translation", {1.2, 0, 0}}});
   gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);

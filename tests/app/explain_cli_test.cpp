@@ -24,6 +24,7 @@ vec3 vector_of(const json& v) {
 }
 
 TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
+  write("square.gltf", make_default_gltf());
   const Image picture = render({"square.gltf", "--size", "64", "36", "-s", "2"}, "a.exr");
   for (const auto& [x, y] : {std::pair(32U, 18U), std::pair(0U, 0U)}) {
     const ProcessResult result = run(

@@ -160,9 +160,9 @@ TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
     arguments.insert(arguments.end(), aovs.begin(), aovs.end());
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    const size_t place = result.err.find("held ");
+    const size_t place = result.err.find("at most ");
     EXPECT_NE(place, std::string::npos) << result.err;
-    return place == std::string::npos ? 0.0 : std::stod(result.err.substr(place + 5));
+    return place == std::string::npos ? 0.0 : std::stod(result.err.substr(place + 8));
   };
   const auto compression = [&] {
     const auto input = OIIO::ImageInput::open((folder() / "a.exr").string());

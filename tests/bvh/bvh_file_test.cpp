@@ -213,8 +213,8 @@ TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
   EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, std::array<uint64_t, 5>{~0U, ~0U, ~0U, ~0U, ~0U}))),
             "the BVH file does not name its builder" + cure);
   EXPECT_THAT(refusal(Bytes()), HasSubstr("the file is empty"));
-  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }), HasSubstr("the scene is not a regular file"));
-  EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasSubstr("not found"));
+  EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }), HasSubstr("the file is not a regular file"));
+  EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasSubstr("the file does not exist"));
 }
 
 TEST_F(BvhFileTest, CountsBeyondTheFileAreRefused) {

@@ -164,7 +164,7 @@ TEST_F(FileTest, ThreadsMayWriteOneFileAtATime) {
 
 TEST_F(FileTest, UnreadableFilesSayWhy) {
   std::ofstream(folder_ / "empty.obj").close();
-  EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasSubstr("not found"));
+  EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasSubstr("the file does not exist"));
   EXPECT_THAT(message_of_reading(folder_), HasSubstr("is a folder"));
   EXPECT_THAT(message_of_reading(folder_ / "empty.obj"), HasSubstr("empty"));
 }

@@ -60,7 +60,8 @@ const BadGltf kBadGltf[] = {
     // Types
     {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 is given where an array is expected", "nodes"},
     {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string is given where an object", "nodes[1]"},
-    {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "where an integer belongs", "nodes[0].mesh"},
+    {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "where an integer is expected",
+     "nodes[0].mesh"},
     {"NoAttributes", [](auto& g) { primitive(g).erase("attributes"); }, "\"attributes\" is missing",
      "meshes[0].primitives[0]"},
     {"ShortMatrix",
@@ -72,7 +73,7 @@ const BadGltf kBadGltf[] = {
      [](auto& g) {
        g.json["nodes"][0]["scale"] = {1, "1", 1};
      },
-     "where a number belongs", "nodes[0].scale[1]"},
+     "where a number is expected", "nodes[0].scale[1]"},
     // Indices
     {"MeshIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }, "index 9 is out of range", "nodes[0].mesh"},
     {"NegativeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = -1; }, "index -1 is out of range", "nodes[0].mesh"},
@@ -297,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(Table, BadUriTest, testing::ValuesIn(kBadUris),
 class BadFileTest : public SceneFolder {};
 
 TEST_F(BadFileTest, MissingFoldersAndEmptyFilesSayWhy) {
-  EXPECT_THAT(refusal(folder_ / "none.gltf"), HasSubstr("not found"));
+  EXPECT_THAT(refusal(folder_ / "none.gltf"), HasSubstr("the file does not exist"));
   fs::create_directories(folder_ / "a.glb");
   EXPECT_THAT(refusal(folder_ / "a.glb"), HasSubstr("is a folder"));
   EXPECT_THAT(refusal("b.gltf", ""), HasSubstr("empty"));

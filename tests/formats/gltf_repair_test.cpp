@@ -92,7 +92,7 @@ const Repair kRepairs[] = {
      "the version is not written as glTF requires (2), asset.version; it is read as glTF 2.0"},
     {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; it is ignored"},
     {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; },
-     "another value is given where a string is expected (7), extensions.KHR_implicit_shapes.shapes[0].name; they are "
+     "another value is given where a string is expected (7), extensions.KHR_implicit_shapes.shapes[0].name; it is "
      "ignored"},
     {"ExtensionsUsed",
      [](auto& g) {
@@ -143,7 +143,7 @@ const Repair kRepairs[] = {
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationDistance", -1}};
      },
-     "a number is out of range (-1), materials[0].extensions.KHR_materials_volume.attenuationDistance; they are "
+     "a number is out of range (-1), materials[0].extensions.KHR_materials_volume.attenuationDistance; it is "
      "ignored"},
     {"AttenuationColor",
      [](auto& g) {

@@ -160,7 +160,7 @@ TEST_F(GltfTest, NormalsWithoutLengthMakeTheMeshSharp) {
         gltf.add<float>({0, 0, 1, bad, bad, bad, 0, 0, 1}, "VEC3");
     const LoadedScene scene = load(gltf);
     EXPECT_THAT(mesh_of(scene).normals, IsEmpty());
-    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("sharp")));
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("shaded flat")));
   }
 }
 
@@ -907,7 +907,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   gltf.json["images"] = {{{"uri", "my%20sky.exr"}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("does not exist")));
   write("my sky.exr", "no picture");
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("format is unknown")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("the picture has an unknown format")));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(load(gltf).environment.sky));
   // The middle is +Z and the left is +X: of four pixels the first goes from -Z to +X.
   Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.0F))};

@@ -945,7 +945,7 @@ const BadFile kBadObj[] = {
 INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj), name_of_bad_file);
 
 TEST_F(ObjTest, BrokenFilesSayWhy) {
-  EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasSubstr("not found"));
+  EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasSubstr("the file does not exist"));
   EXPECT_THAT(SceneFolder::refusal(folder_), HasSubstr("is a folder"));
   EXPECT_THAT(refusal(""), HasSubstr("empty"));
   EXPECT_THAT(refusal(std::string_view("v 0 0\0 0", 8)), HasSubstr("not text"));

@@ -166,7 +166,7 @@ TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
       {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
       {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, and 4 now"},
-      {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is other now"},
+      {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is called other now"},
       {[](Manifest& m) { m.kind = "rays"; }, "its kind is \"bytes\""}};
   for (const auto& [change, sentence] : cases) {
     Manifest other = make_manifest();
