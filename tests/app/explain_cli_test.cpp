@@ -30,7 +30,7 @@ TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
     const ProcessResult result = run(
         {"render", "square.gltf", "--size", "64", "36", "-s", "2", "--explain", std::to_string(x), std::to_string(y)});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.err, MatchesRegex("promin: note: assumed: [^\n]*\n"));
+    EXPECT_THAT(result.err, MatchesRegex("promin: note: assumed: [^\n]*\n(promin: note: compiling ...\n)?"));
     const json explanation = json::parse(result.out);
     EXPECT_EQ(explanation.at("pixel"), json({x, y}));
     EXPECT_EQ(vector_of(explanation.at("color")), picture.at(x, y));
