@@ -24,8 +24,8 @@ bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 /// Drivers remove dead code too, but later: lavapipe first puts all functions into one and unrolls their loops, and a
 /// scene of one sphere would pay for every other shape. A function with a loop whose first block begins with an OpPhi,
 /// which glslang does not write, is left whole.
-/// Throws std::logic_error if the words are not a SPIR-V module, or if a specialization constant is neither a bool nor an
-/// integer of 32 bits.
+/// Throws std::logic_error if the words are not a SPIR-V module, or if a specialization constant is neither a bool nor
+/// an integer of 32 bits.
 std::vector<uint32_t> specialize(std::span<const uint32_t> spirv, std::span<const SpecializationConstant> constants);
 
 }  // namespace promin::gpu

@@ -410,7 +410,8 @@ class MetallicRoughnessSurface {
   Real sharpness_below() const { return is_dull_below_ ? 0 : lobe_.sharpness(); }
   Radiance reflect_environment(const Vector& normal, Real roughness, Real occlusion) const {
     Radiance dimmed;
-    dimmed.add(Vector(occlusion), environment_of(at_.surroundings, at_.direction, normal, at_.point.geometric_normal, roughness));
+    dimmed.add(Vector(occlusion),
+               environment_of(at_.surroundings, at_.direction, normal, at_.point.geometric_normal, roughness));
     return dimmed;
   }
 

@@ -139,8 +139,7 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
   // The product with 32 would wrap to the right size.
   EXPECT_THAT(refusal(npy(header_of((uint64_t{1} << 59) + 1), data)), HasSubstr("rays, but the file holds 32 bytes"));
   EXPECT_THAT(message_of([&] { RayReader(folder_ / "none.npy"); }), HasSubstr("the file does not exist"));
-  EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }),
-              HasSubstr("the file is not a regular file"));
+  EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }), HasSubstr("the file is not a regular file"));
 }
 
 // Any flipped or missing byte of the header gives rays or a sentence, never a crash.
