@@ -267,9 +267,7 @@ Device::Device(const DeviceOptions& options)
       enabled_extensions_.push_back("VK_KHR_portability_subset");
     }
     if (options.presentation != nullptr) enabled_extensions_.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    enabled_features_ = pick_features(physical_.getFeatures(), options.features, info_.name);
-    device_ = make_device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_, &enabled_features_),
-                          info_.name);
+    device_ = make_device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_), info_.name);
     queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));

@@ -11,7 +11,6 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "device/optional_features.h"
 #include "device/pipeline.h"
 #include "device/profile.h"
 #include "promin/device.h"
@@ -31,8 +30,6 @@ struct DeviceOptions {
   std::optional<std::string> selection = std::nullopt;
   /// If not null, the device must be able to present to its surface.
   const Presentation* presentation = nullptr;
-  /// Optional features to enable; no others are enabled.
-  std::vector<FeatureRequest> features = {};
   /// Replaces the profile's. Tests set it to 1: such kernels compile in two thirds of the time.
   std::optional<uint32_t> pixel_packet_size = std::nullopt;
 };
@@ -41,8 +38,8 @@ struct DeviceOptions {
 void translate_vulkan_errors(const std::function<void()>& work);
 
 /// A Vulkan instance and one logical device with one compute queue; for a window the queue also draws and presents. It
-/// needs only the minima that Vulkan 1.1 requires, and enables other features only on request. Several threads may use
-/// a device, each with its own buffers and pipelines.
+/// needs only the minima that Vulkan 1.1 requires, and enables no optional feature. Several threads may use a device,
+/// each with its own buffers and pipelines.
 class Device {
  public:
   /// Throws DeviceError.
@@ -54,9 +51,6 @@ class Device {
   const std::string& choice() const { return choice_; }
   /// Returns the settings that suit the device.
   const DeviceProfile& profile() const { return profile_; }
-  /// Returns whether a requested feature is enabled.
-  bool has_enabled(OptionalFeature feature) const { return has_feature(enabled_features_, feature); }
-  const vk::PhysicalDeviceFeatures& enabled_features() const { return enabled_features_; }
   /// Returns the names of the enabled device extensions.
   const std::vector<const char*>& enabled_extensions() const { return enabled_extensions_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
@@ -111,7 +105,6 @@ class Device {
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
   DeviceProfile profile_;
-  vk::PhysicalDeviceFeatures enabled_features_;
   std::vector<const char*> enabled_extensions_;
   std::string choice_;
 };
