@@ -116,8 +116,9 @@ def cryptomatte_id(name: str) -> np.float32:
     return np.float32(_promin.cryptomatte_id(str(name)))
 
 
-def to_mattes(channels: list[tuple[str, NDArray[np.uint32]]]) -> dict[str, NDArray[np.float32]]:
-    """Returns the Cryptomatte arrays of Frame.aovs from the library's channels; empty if there are none."""
+def to_mattes(channels: list[tuple[str, NDArray[Any]]]) -> dict[str, NDArray[np.float32]]:
+    """Returns the Cryptomatte arrays of Frame.aovs from an EXR's channels in order, float32 or its bits; empty if there
+    are none."""
     mattes = {}
     for name, layer in _MATTES.items():
         planes = [values for channel, values in channels if channel.startswith(layer)]
@@ -151,17 +152,16 @@ def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDA
 
 
 def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
-    """R, G and B of a picture file of any format that OpenImageIO knows, (rows, columns, 3) float32, without
-    conversion: EXR and Radiance files hold linear light, others codes of sRGB as 0...1. Where there is alpha, which
-    `read_aovs` reads, the colours of EXR and WebP files are multiplied by it and others are not. Raises InputError,
-    RunError."""
+    """Reads R, G and B of a picture file of any format that OpenImageIO supports. Returns (rows, columns, 3) float32
+    without conversion: linear light from EXR and Radiance files, sRGB values in 0...1 from others. Colours of EXR and
+    WebP files are multiplied by alpha, which `read_aovs` reads; others are not. Raises InputError, RunError."""
     return _promin.read_image(os.fsdecode(path))
 
 
 def read_aovs(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
-    """Returns what a picture file has beside R, G and B, as arrays by the names of Frame.aovs: "alpha" of any format,
-    "depth" and all others of an .exr that promin has written. Channels of other programs keep their names in the file:
-    (rows, columns), float32 or uint32. Raises InputError, RunError."""
+    """Reads all channels of a picture file except R, G and B. Returns arrays with the names of Frame.aovs: "alpha" of
+    any format, and "depth" and all others of an .exr that promin has written. Channels of other programs keep their
+    names in the file: (rows, columns), float32 or uint32. Raises InputError, RunError."""
     channels = {
         name: values if is_integer else values.view(np.float32)
         for name, is_integer, values in _promin.read_channels(os.fsdecode(path))
@@ -172,13 +172,10 @@ def read_aovs(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
             aovs[name] = channels.pop(channel)
         elif letters and all(f"{channel}.{letter}" in channels for letter in letters):
             aovs[name] = np.stack([channels.pop(f"{channel}.{letter}") for letter in letters], axis=-1)
-    for name, layer in _MATTES.items():
-        planes = sorted(channel for channel in channels if re.fullmatch(rf"{layer}\d\d\.[RGBA]", channel))
-        # The letters' order is not the alphabet's.
-        planes.sort(key=lambda channel: (channel[:-1], "RGBA".index(channel[-1])))
-        if planes:
-            stack = np.stack([channels.pop(channel) for channel in planes], axis=-1)
-            aovs[name] = stack.reshape(*stack.shape[:2], -1, 2)
+    planes = [channel for channel in channels if re.fullmatch(rf"({'|'.join(_MATTES.values())})\d\d\.[RGBA]", channel)]
+    # The letters' order is not the alphabet's.
+    planes.sort(key=lambda channel: (channel[:-1], "RGBA".index(channel[-1])))
+    aovs.update(to_mattes([(channel, channels.pop(channel)) for channel in planes]))
     return {**aovs, **{name: values for name, values in channels.items() if name not in ("R", "G", "B")}}
 
 
