@@ -69,7 +69,7 @@ class OptionValues {
   std::string whole_word_;
 };
 
-/// The options of a command, one row each. Of a repeated option the last one counts.
+/// The options of a command, one row each. If an option is repeated, the last one counts.
 class OptionTable {
  public:
   explicit OptionTable(CLI::App& command);

@@ -31,8 +31,8 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
 Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& pose, const uvec2& size,
                    const Console& console);
 
-/// Says that none of the cameras sees anything of the scene in pictures of this size, and what shows it. Returns an
-/// empty text where one of them may see something.
+/// Returns a sentence if none of the cameras sees anything of the scene in pictures of this size, with options that
+/// show the scene. Returns an empty text if one of them may see something.
 std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size);
 /// Warns with that sentence.
 void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,

@@ -83,10 +83,10 @@ struct OverlayContent {
   PathEntry* entry = nullptr;
 };
 
-/// The distance that panels keep from the window's edges at first, in the interface's units.
+/// Returns the distance between a new panel and the window's edges, in the interface's units.
 float overlay_margin();
 
-/// Makes ImGui's fonts and sizes anew; not within a frame.
+/// Creates ImGui's fonts and sizes again; not within a frame.
 void scale_overlay(const OverlayScale& scale);
 
 /// The user's actions in the overlay other than switches.
@@ -99,9 +99,9 @@ struct OverlayAnswer {
   std::optional<FileUse> asked;
   /// Whether the typed path is complete.
   bool has_typed = false;
-  /// Whether the user types none after all.
+  /// Whether the user has cancelled the typed path.
   bool gives_up = false;
-  /// Where the panel is.
+  /// The area of the panel.
   WindowArea area;
   /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.
   float height = 0.0F;
@@ -110,8 +110,8 @@ struct OverlayAnswer {
 /// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.
 OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches);
 
-/// Shows what keys and pointer do, at the right edge.
+/// Shows the actions of keys and pointer, at the right edge.
 void show_help();
-/// Whether that leaves the panel free at the left edge.
+/// Returns whether the help leaves room for the panel at the left edge.
 bool has_room_beside_help();
 }  // namespace promin::app

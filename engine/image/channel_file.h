@@ -16,34 +16,35 @@ namespace promin {
 struct FileChannel {
   std::string name;
   bool is_integer = false;
-  /// Of its part.
+  /// The size of its part.
   uvec2 size{0};
   size_t part = 0;
-  /// Among the part's channels.
+  /// Index among the part's channels.
   size_t place = 0;
 };
 
-/// All channels of a picture file, those of all parts of an EXR, some rows at a time. It does not matter whether they
-/// lie in one part or in several: a channel of a part has its own name where the part is the one that
-/// ExrOptions::is_multipart puts it into, and as a colour of the first, else the part's name and a dot before it. Alpha
-/// is kept apart from colours, but of EXR and WebP. Everything throws as read_image does.
+/// Reads all channels of a picture file, in an EXR those of all parts, some rows at a time. It does not matter whether
+/// channels lie in one part or in several: a channel keeps its own name if it lies in the part into which
+/// ExrOptions::is_multipart puts it, or is a colour of the first part; else its name is prefixed by the part's name and
+/// a dot. Colours of EXR and WebP files are multiplied by alpha, others are not. Every member throws as read_image
+/// does.
 class ChannelFile {
  public:
   explicit ChannelFile(const std::filesystem::path& file);
 
   const std::filesystem::path& file() const { return file_; }
-  /// In the file's order.
+  /// Returns the channels in the file's order.
   const std::vector<FileChannel>& channels() const { return channels_; }
 
-  /// Of the part with the most.
+  /// Returns the number of rows of the part that has most.
   uint32_t row_count() const;
-  /// Of all parts together.
+  /// Returns the bytes of a row of all parts together.
   uint64_t row_bytes() const;
 
-  /// Reads the rows from `begin` to `end` of all parts that reach so far down.
+  /// Reads the rows from `begin` to `end` of all parts that extend that far down.
   void read_rows(uint32_t begin, uint32_t end);
 
-  /// The integer or the float's bits of a pixel in the rows that were read last.
+  /// Returns the integer, or the bits of the float, of a pixel in the rows that were read last.
   uint32_t bits(const FileChannel& channel, uint32_t x, uint32_t y) const {
     const Part& part = parts_[channel.part];
     const size_t pixel = size_t{y - first_row_} * part.size.x + x;

@@ -24,13 +24,13 @@ namespace promin::python {
 /// Returns the options of `promin render` that these words give, read as on the command line. Throws UsageError.
 app::RenderOptions read_options(const std::vector<std::string>& words);
 
-/// The sentence with Python's keywords in place of the options of `promin render`: look_at for --look-at.
+/// Returns the sentence with Python's keywords in place of the options of `promin render`: look_at for --look-at.
 std::string name_keywords(const std::string& sentence);
 
-/// The problem as Python has it, which has no command line.
+/// Returns the error with Python's keywords and without a place, because Python has no command line.
 UsageError name_keywords(const UsageError& error);
 
-/// Calls a function of the programs; the UsageError that it throws has Python's keywords.
+/// Calls a function of the programs. A UsageError that it throws gets Python's keywords.
 template <typename Function>
 requires std::invocable<Function>
 auto with_keywords(const Function& function) {

@@ -147,13 +147,13 @@ class Caster:
         return counts
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Whether points (..., 3) are inside of a closed surface, the scene as a whole: bool (...).
+        """Returns for each of the points (..., 3) whether it is inside a closed surface, as bool (...). The surface is
+        the scene as a whole.
 
-        A point is inside where a ray from it crosses the surface an odd number of times, by the rule of `count`: edges
-        and corners count once. The ray the other way must agree. Where it does not, the point lies on the surface, or
-        the surface is not closed: it counts as outside, and a Python warning says of how many points that is so. A
-        point in two solids that overlap is outside; give each solid a Caster of its own. Raises UsageError, RunError,
-        Cancelled."""
+        A point is inside if a ray from it crosses the surface an odd number of times. Edges and corners count once, as
+        for `count`. The opposite ray must agree. If it does not, the point is on the surface, or the surface is not
+        closed. Such a point counts as outside, and a Python warning reports their number. A point in two overlapping
+        solids counts as outside; make a Caster for each solid. Raises UsageError, RunError, Cancelled."""
         places = to_vectors(points, "points")
         is_odd, agrees = (self.count(places, way) % 2 == 1 for way in (PROBE, -PROBE))
         doubtful = int((is_odd != agrees).sum())
