@@ -313,7 +313,7 @@ jobs::Content encode_part(const PicturePart& part) {
                {"exposure_ev", part.display.exposure_ev},
                {"tone_mapping", part.display.tone_mapping},
                {"dithers", part.display.dithers},
-               {"exr", {part.exr.is_half, part.exr.compression, part.exr.is_multipart}},
+               {"exr", {part.exr.is_half, part.exr.compression}},
                {"channels", channels},
                {"metadata", part.metadata}};
   if (part.frame) json["frame"] = *part.frame;

@@ -15,7 +15,7 @@ void arrange_help(CLI::App& program, CLI::App& render) {
                          {"promin info model.glb", "lists the contents of a file: cameras, lights, materials"}});
   group_options(
       render,
-      {{"Output", {"output", "size", "crop", "alpha", "aov", "depth", "half", "compression", "multipart", "explain"}},
+      {{"Output", {"output", "size", "crop", "alpha", "aov", "depth", "half", "compression", "explain"}},
        {"Quality",
         {"quality", "spp", "target-error", "time-limit", "min-spp", "max-spp", "error-in", "filter", "filter-width",
          "max-depth"}},

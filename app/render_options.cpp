@@ -467,10 +467,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
               options.names_compression = true;
               options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
             });
-  table.add_flag(
-      "--multipart",
-      "Write each AOV as a part of its own in an EXR; some programs read such files faster, others cannot read them",
-      options.exr.is_multipart);
   table.add("--features", "scene|all",
             "Features to compile into the kernels: those that the scene uses, or all, for measurements [scene]",
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
@@ -606,8 +602,7 @@ void check_render_options(const RenderOptions& options) {
   for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
                                        {has_depth_kind, "--depth"},
                                        {options.exr.is_half, "--half"},
-                                       {options.names_compression, "--compression"},
-                                       {options.exr.is_multipart, "--multipart"}}) {
+                                       {options.names_compression, "--compression"}}) {
     refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
   }
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth", "give --aov depth as well");

@@ -97,8 +97,11 @@ constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
 constexpr OtherName kNearCommands[] = {
     {"diff", "compare"}, {"gpus", "devices"}, {"inspect", "info"}, {"montage", "contact-sheet"}};
 
-constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k"};
-constexpr uvec2 kNamedSizes[] = {{1280, 720}, {1920, 1080}, {3840, 2160}};
+/// The first three are for users; the others are accepted.
+constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k", "720p", "1080p", "1440p", "2160p"};
+constexpr uvec2 kNamedSizes[] = {{1280, 720},  {1920, 1080}, {3840, 2160}, {1280, 720},
+                                 {1920, 1080}, {2560, 1440}, {3840, 2160}};
+static_assert(std::size(kSizeNames) == std::size(kNamedSizes));
 
 bool has_option(const CLI::App& command, std::string_view name) {
   return command.get_option_no_throw(std::string(name)) != nullptr;
@@ -259,7 +262,7 @@ std::optional<uvec2> find_named_size(std::string_view name) {
 }
 
 std::span<const std::string_view> size_names() {
-  return kSizeNames;
+  return std::span(kSizeNames).first(3);
 }
 
 }  // namespace promin::app

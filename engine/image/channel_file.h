@@ -23,11 +23,10 @@ struct FileChannel {
   size_t place = 0;
 };
 
-/// Reads all channels of a picture file, in an EXR those of all parts, some rows at a time. It does not matter whether
-/// channels lie in one part or in several: a channel keeps its own name if it lies in the part into which
-/// ExrOptions::is_multipart puts it, or is a colour of the first part; else its name is prefixed by the part's name and
-/// a dot. Colours of EXR and WebP files are multiplied by alpha, others are not. Every member throws as read_image
-/// does.
+/// Reads all channels of a picture file, in an EXR those of all parts, some rows at a time. A channel of a file with
+/// several parts keeps its own name if its part is called as the name's beginning ("N" has N.x), or if it is a colour
+/// of the first part; else its name is prefixed by the part's name and a dot. Colours of EXR and WebP files are
+/// multiplied by alpha, others are not. Every member throws as read_image does.
 class ChannelFile {
  public:
   explicit ChannelFile(const std::filesystem::path& file);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 
@@ -15,10 +14,9 @@ namespace promin {
 /// Encodes an EXR file by OpenEXR. Equal pixels give equal bytes.
 class ExrEncoder {
  public:
-  /// The bytes must outlive it. `target` is the final file; rows of parts other than the first are kept beside it until
-  /// the end. All functions throw RunError if bytes cannot be written or kept, and std::runtime_error for other
-  /// failures of OpenEXR.
-  ExrEncoder(PictureBytes& bytes, const PictureHeader& header, const std::filesystem::path& target);
+  /// The bytes must outlive it. All functions throw RunError if bytes cannot be written, and std::runtime_error for
+  /// other failures of OpenEXR.
+  ExrEncoder(PictureBytes& bytes, const PictureHeader& header);
   ~ExrEncoder();
   ExrEncoder(const ExrEncoder&) = delete;
   ExrEncoder& operator=(const ExrEncoder&) = delete;

@@ -169,7 +169,7 @@ class PictureWriter::Impl {
       : file_(file), header_(header), output_(file), bytes_(output_.temporary(), file) {
     encode([&] {
       if (has_named_channels(file)) {
-        exr_.emplace(bytes_, header, file);
+        exr_.emplace(bytes_, header);
       } else if (is_jpeg(file)) {
         jpeg_.emplace(bytes_, header.size);
       } else if (const std::string_view format = plugin_format_of(file); !format.empty()) {

@@ -73,9 +73,6 @@ struct ExrOptions {
   bool is_half = false;
   /// See ExrCompression.
   ExrCompression compression = ExrCompression::kZip;
-  /// Whether each group of channels becomes a part of its own. Some programs read single groups faster, others cannot
-  /// read such files.
-  bool is_multipart = false;
 };
 
 /// Writes a picture; the ending determines the format. An .exr stores R, G and B as linear fp32, then `channels`, with

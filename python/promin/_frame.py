@@ -63,20 +63,19 @@ class Frame:
         *,
         half: bool = False,
         compression: str = "zip",
-        multipart: bool = False,
     ) -> None:
         """Writes the picture: an .exr with all AOVs or a .hdr in linear light, or a .png, .jpg, .webp or .tif after the
         transform `display`. display: None is the picture's own. The file is written completely or not at all. These
         options apply to an .exr. half: store colours, normals and coverage as 16-bit floats. compression: "none",
-        "rle", "zips", "zip" or "piz", always lossless. multipart: write each AOV as a part of its own. Raises
-        UsageError for another ending, RunError if the file cannot be written."""
+        "rle", "zips", "zip" or "piz", always lossless. Raises UsageError for another ending,
+        RunError if the file cannot be written."""
         file = os.fsdecode(path)
         if _promin.has_named_channels(file):
             channels = list_channels(self.aovs)
         else:
             showing = {"alpha": self.aovs.get("alpha"), "unlit": self.unlit}
             channels = list_channels({name: values for name, values in showing.items() if values is not None})
-        exr = {"is_half": bool(half), "compression": compression, "is_multipart": bool(multipart)}
+        exr = {"is_half": bool(half), "compression": compression}
         shown = to_dict(display or self.display)
         _promin.write_image(file, self.rgb, list(self.metadata.items()), self.placement, channels, shown, exr)
 

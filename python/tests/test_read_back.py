@@ -20,9 +20,8 @@ def frame(scenes: Path) -> promin.Frame:
     return promin.render(scenes / "box.gltf", size=(48, 32), roll=10, aovs=AOVS)
 
 
-@pytest.mark.parametrize("is_multipart", [False, True])
-def test_aovs_of_an_exr_come_back_bit_for_bit(frame: promin.Frame, is_multipart: bool, tmp_path: Path) -> None:
-    frame.save(tmp_path / "a.exr", multipart=is_multipart)
+def test_aovs_of_an_exr_come_back_bit_for_bit(frame: promin.Frame, tmp_path: Path) -> None:
+    frame.save(tmp_path / "a.exr")
     back = promin.read_aovs(tmp_path / "a.exr")
     assert back.keys() == frame.aovs.keys() and len(back) == len(AOVS) + 1
     for name, values in frame.aovs.items():

@@ -109,7 +109,7 @@ def test_arguments_have_the_defaults_of_the_library() -> None:
     assert default_of(promin.Renderer.__init__, "texture_memory") == DEFAULTS["texture_memory"]
     assert default_of(promin.Renderer.__init__, "light") == CHOICES["light"][0]
     assert np.float32(default_of(promin.Renderer.camera, "aspect_ratio")) == np.float32(DEFAULTS["aspect_ratio"])
-    names = {"half": "is_half", "compression": "compression", "multipart": "is_multipart"}
+    names = {"half": "is_half", "compression": "compression"}
     for ours, theirs in names.items():
         assert default_of(promin.Frame.save, ours) == DEFAULTS["ExrOptions"][theirs]
     assert set(names.values()) == DEFAULTS["ExrOptions"].keys()

@@ -111,7 +111,7 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
 }
 
 /// Two EXRs of the same colours, in one part and in several, of 200 rows: more than are held at a time.
-class ComparePartsCliTest : public CompareCliTest {
+class CompareChannelsCliTest : public CompareCliTest {
  protected:
   static constexpr uvec2 kSize{600, 200};
   static constexpr size_t kPixels = size_t{kSize.x} * kSize.y;
@@ -126,44 +126,29 @@ class ComparePartsCliTest : public CompareCliTest {
       }
     }
     channels_.front().values.front() = std::bit_cast<uint32_t>(std::numeric_limits<float>::infinity());
-    write_parts("one.exr", false);
-    write_parts("parts.exr", true);
+    write_channels("one.exr");
   }
 
-  void write_parts(const std::string& file, bool is_multipart) const {
+  void write_channels(const std::string& file) const {
     const Image image{kSize, std::vector<vec3>(kPixels, vec3(0.5F))};
-    write_image(folder() / file, image, {}, std::nullopt, channels_, {}, {.is_multipart = is_multipart});
+    write_image(folder() / file, image, {}, std::nullopt, channels_);
   }
 
   std::vector<Channel> channels_;
 };
 
-TEST_F(ComparePartsCliTest, OnePartEqualsSeveral) {
-  for (const char* first : {"one.exr", "parts.exr"}) {
-    for (const char* second : {"one.exr", "parts.exr"}) {
-      const ProcessResult same = compare({first, second, "--fail", "0"});
-      EXPECT_EQ(same.exit_code, 0) << same.err;
-      EXPECT_THAT(same.out, HasSubstr("channels    11 in addition to R, G and B are equal\n"));
-    }
-  }
-}
-
-TEST_F(ComparePartsCliTest, EveryPartIsCompared) {
+TEST_F(CompareChannelsCliTest, EveryChannelIsCompared) {
   channels_[0].values[kPixels - 3] = std::bit_cast<uint32_t>(0.75F);
   channels_[1].values[5] = 9;
-  for (const bool is_multipart : {false, true}) {
-    write_parts("other.exr", is_multipart);
-    for (const char* first : {"one.exr", "parts.exr"}) {
-      const ProcessResult other = compare({first, "other.exr", "--fail", "0.25"});
-      EXPECT_EQ(other.exit_code, 5);
-      EXPECT_THAT(other.err,
-                  HasSubstr("differs by more than 0.25 in object, the most at pixel 5 0 by 2, other.exr against"));
-      EXPECT_THAT(other.out, HasSubstr("mean        0\n"));
-      EXPECT_THAT(other.out, HasSubstr("Z: largest 0.25, at pixel 597 199; "));
-      EXPECT_THAT(other.out, HasSubstr("object: largest 2, at pixel 5 0; "));
-      EXPECT_THAT(other.out, HasSubstr("9 in addition to R, G and B are equal\n"));
-    }
-  }
+  write_channels("other.exr");
+  const ProcessResult other = compare({"one.exr", "other.exr", "--fail", "0.25"});
+  EXPECT_EQ(other.exit_code, 5);
+  EXPECT_THAT(other.err,
+              HasSubstr("differs by more than 0.25 in object, the most at pixel 5 0 by 2, other.exr against"));
+  EXPECT_THAT(other.out, HasSubstr("mean        0\n"));
+  EXPECT_THAT(other.out, HasSubstr("Z: largest 0.25, at pixel 597 199; "));
+  EXPECT_THAT(other.out, HasSubstr("object: largest 2, at pixel 5 0; "));
+  EXPECT_THAT(other.out, HasSubstr("9 in addition to R, G and B are equal\n"));
   EXPECT_EQ(compare({"one.exr", "other.exr", "--fail", "2"}).exit_code, 0);
   const ProcessResult nearer = compare({"one.exr", "other.exr", "--json", "--fail", "0.125"});
   EXPECT_EQ(nearer.exit_code, 5);
@@ -174,23 +159,18 @@ TEST_F(ComparePartsCliTest, EveryPartIsCompared) {
   EXPECT_EQ(figures.at("N.X").at("different"), 0);
   // Of an infinity on one side alone there is no difference that is a number.
   channels_[0].values.front() = 0;
-  write_parts("other.exr", true);
+  write_channels("other.exr");
   const ProcessResult infinite = compare({"one.exr", "other.exr", "--json", "--fail", "1e9"});
   EXPECT_EQ(infinite.exit_code, 5);
   EXPECT_THAT(infinite.err, HasSubstr("in Z, the most at pixel 0 0 by inf"));
   EXPECT_EQ(json::parse(infinite.out)["channels"]["Z"]["largest"], nullptr);
 }
 
-TEST_F(ComparePartsCliTest, PartsThatOneHasAreSaid) {
+TEST_F(CompareChannelsCliTest, ChannelsThatOneHasAreSaid) {
   channels_.resize(1);
-  for (const bool is_multipart : {false, true}) {
-    write_parts("other.exr", is_multipart);
-    for (const char* first : {"one.exr", "parts.exr"}) {
-      expect_failure(
-          compare({"other.exr", first}), 3,
-          std::string("the pictures have different channels, only ") + first + " has N.X N.Y N.Z P.X P.Y and 5 more");
-    }
-  }
+  write_channels("other.exr");
+  expect_failure(compare({"other.exr", "one.exr"}), 3,
+                 "the pictures have different channels, only one.exr has N.X N.Y N.Z P.X P.Y and 5 more");
 }
 
 }  // namespace

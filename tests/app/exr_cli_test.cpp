@@ -90,22 +90,6 @@ TEST_F(ExrCliTest, EveryCompressionHoldsTheSameNumbers) {
   EXPECT_EQ(run({"render", "square.gltf", "-o", "b.exr", "--compression", "dwaa"}).exit_code, 2);
 }
 
-TEST_F(ExrCliTest, PartsHoldTheSameNumbers) {
-  const OptionValues aovs = {"--spp", "4", "--aov", "depth,normal,direct,object,cryptomatte"};
-  const ReadExr one = render_exr(aovs);
-  EXPECT_EQ(one.part_count, 1);
-  OptionValues options = aovs;
-  options.push_back("--multipart");
-  const ReadExr parts = render_exr(options);
-  EXPECT_GE(parts.part_count, 5);
-  EXPECT_EQ(parts.channels, one.channels);
-  EXPECT_EQ(parts.types, one.types);
-  // What waits for its part is read by 16 MiB: positions here in two turns, of a square that fills all rows.
-  const ReadExr large = render_exr({"--aov", "position,depth", "--fov", "20", "--multipart"}, uvec2(1500, 1000));
-  EXPECT_EQ(large.part_count, 3);
-  EXPECT_EQ(large.channels, render_exr({"--aov", "position,depth", "--fov", "20"}, uvec2(1500, 1000)).channels);
-}
-
 TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
   const ReadExr with = render_exr({"--background", "linear:0.5,0.25,1", "--spp", "16"});
   const ReadExr without = render_exr({"--alpha", "--spp", "16"});
@@ -181,10 +165,6 @@ TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
   OptionValues refined = aovs;
   refined.insert(refined.end(), {"--target-error", "0.25"});
   EXPECT_LT(held_mb(refined) - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
-  // And all parts but the first wait for it.
-  OptionValues in_parts = aovs;
-  in_parts.emplace_back("--multipart");
-  EXPECT_LT(held_mb(in_parts) - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
 }
 
 // A job of one piece holds the whole picture; the other waits on disk, as pictures of more than 12 MiB do: these have
@@ -290,7 +270,15 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
   write_foreign(folder() / "tiles.exr", {tiles});
   EXPECT_THAT(run({"compare", "rows.exr", "tiles.exr"}).out, testing::HasSubstr("Z: largest 0.5, at pixel 39 33; 1 "));
 
-  // A part that has not the name of what it holds goes before its channels' names.
+  // A part that is called as its channels adds nothing to their names.
+  ForeignPart colors{"rgba", {"R", "G", "B"}, {}};
+  ForeignPart depth{"Z", {"Z"}, {}};
+  for (size_t i = 0; i < rows.values.size(); ++i) (i % 4 < 3 ? colors : depth).values.push_back(rows.values[i]);
+  write_foreign(folder() / "parts.exr", {colors, depth});
+  const ProcessResult parts = run({"compare", "rows.exr", "parts.exr", "--fail", "0"});
+  EXPECT_EQ(parts.exit_code, 0) << parts.out << parts.err;
+
+  // Another part's name goes before its channels' names.
   const std::vector<ForeignPart> eyes = {{"left", {"R", "G", "B"}, numbers(3)}, {"right", {"R", "G", "B"}, numbers(3)}};
   std::vector<ForeignPart> other_eyes = eyes;
   other_eyes[1].values[4] += 0.25F;
@@ -306,7 +294,6 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
 
 TEST_F(ExrCliTest, OptionsOfExrsWantOne) {
   for (const OptionValues& option : {OptionValues{"--half"},
-                                     {"--multipart"},
                                      {"--compression", "piz"},
                                      {"--compression", "zip"},
                                      {"--depth", "plane"},

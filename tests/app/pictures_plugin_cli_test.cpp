@@ -70,8 +70,7 @@ TEST_F(PicturesPluginCliTest, WhatReadsNoUnusualPictureDoesWithoutIt) {
         OptionValues{"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--quiet"},
         OptionValues{"render", "square.gltf", "--size", "8", "8", "--explain", "4", "4"},
         OptionValues{"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "-o", "a.png"},
-        OptionValues{"render", "square.gltf", "--size", "8", "8", "--aov", "depth,normal", "--multipart", "-o",
-                     "b.exr"}}) {
+        OptionValues{"render", "square.gltf", "--size", "8", "8", "--aov", "depth,normal", "-o", "b.exr"}}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 0) << testing::PrintToString(arguments) << result.err;
   }

@@ -122,9 +122,9 @@ TEST_F(TypedWordsTest, HelpAndVersionAreWordsToo) {
 
 TEST_F(TypedWordsTest, SizesAreReadInEveryForm) {
   const std::pair<const char*, uvec2> sizes[] = {
-      {"64x48", {64, 48}},      {"64 48", {64, 48}}, {"64,48", {64, 48}},      {"64", {64, 0}},
-      {"x48", {0, 48}},         {"64*48", {64, 48}}, {"64\u00d748", {64, 48}}, {"hd", {1280, 720}},
-      {"fullhd", {1920, 1080}}, {"4k", {3840, 2160}}};
+      {"64x48", {64, 48}},      {"64 48", {64, 48}},  {"64,48", {64, 48}},      {"64", {64, 0}},
+      {"x48", {0, 48}},         {"64*48", {64, 48}},  {"64\u00d748", {64, 48}}, {"hd", {1280, 720}},
+      {"fullhd", {1920, 1080}}, {"4k", {3840, 2160}}, {"720p", {1280, 720}}};
   for (const auto& [words, size] : sizes) {
     parse(std::string("promin render a.glb --size ") + words);
     EXPECT_EQ(pictures_.view.size, size) << words;

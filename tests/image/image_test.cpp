@@ -211,7 +211,7 @@ TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
       {"a.png", {}, {}},
       {"a.webp", {}, {}},
       {"a.tif", {}, {}},
-      {"parts.exr", {depth}, {.compression = ExrCompression::kNone, .is_multipart = true}}};
+      {"deep.exr", {depth}, {.compression = ExrCompression::kNone}}};
   for (const auto& [name, channels, exr] : kinds) {
     const fs::path file = folder_ / name;
     write_image(file, make_ramp(4, 4));
