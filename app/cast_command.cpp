@@ -85,21 +85,17 @@ class Answers {
 /// A hit for each ray: the nearest, or any.
 class OneHitEach : public Answers {
  public:
-  OneHitEach(const CastOptions& options, Caster& caster, const Scene& scene, uint64_t ray_count)
-      : caster_(caster), scene_(scene), query_(options.query()), writer_(*options.output, ray_count) {}
+  OneHitEach(const CastOptions& options, Caster& caster, uint64_t ray_count)
+      : caster_(caster), query_(options.query()), writer_(*options.output, ray_count) {}
   double trace(std::span<const Ray> rays, bool /*is_last*/, const ProgressCallback& progress) override {
     hits_.resize(rays.size());
     return caster_.cast(rays, hits_, query_, progress);
   }
-  void write() override {
-    number_as_in_file(scene_, hits_);
-    writer_.write(hits_);
-  }
+  void write() override { writer_.write(hits_); }
   void commit() override { writer_.commit(); }
 
  private:
   Caster& caster_;
-  const Scene& scene_;
   HitQuery query_;
   HitWriter writer_;
   std::vector<Hit> hits_;
@@ -125,8 +121,8 @@ class Counts : public Answers {
 /// The hits are written while they are listed, because a chunk may have any number of them.
 class Lists : public Answers {
  public:
-  Lists(const CastOptions& options, Caster& caster, const Scene& scene, uint64_t ray_count)
-      : caster_(caster), scene_(scene), hit_writer_(*options.output), offset_writer_(*options.offsets, ray_count + 1) {
+  Lists(const CastOptions& options, Caster& caster, uint64_t ray_count)
+      : caster_(caster), hit_writer_(*options.output), offset_writer_(*options.offsets, ray_count + 1) {
     offset_writer_.write(std::array{uint64_t{0}});
   }
   double trace(std::span<const Ray> rays, bool is_last, const ProgressCallback& progress) override {
@@ -143,13 +139,7 @@ class Lists : public Answers {
  private:
   void write(const HitList& list) {
     const Stopwatch writing;
-    if (scene_.object_numbers.empty()) {
-      hit_writer_.write(list.hits);
-    } else {
-      hits_.assign(list.hits.begin(), list.hits.end());
-      number_as_in_file(scene_, hits_);
-      hit_writer_.write(hits_);
-    }
+    hit_writer_.write(list.hits);
     offsets_.assign(list.offsets.begin() + 1, list.offsets.end());
     for (uint64_t& offset : offsets_) offset += hit_count_;
     offset_writer_.write(offsets_);
@@ -158,7 +148,6 @@ class Lists : public Answers {
   }
 
   Caster& caster_;
-  const Scene& scene_;
   HitWriter hit_writer_;
   OffsetWriter offset_writer_;
   uint64_t hit_count_ = 0;
@@ -167,11 +156,10 @@ class Lists : public Answers {
   std::vector<uint64_t> offsets_;
 };
 
-std::unique_ptr<Answers> make_answers(const CastOptions& options, Caster& caster, const Scene& scene,
-                                      uint64_t ray_count) {
-  if (options.is_all) return std::make_unique<Lists>(options, caster, scene, ray_count);
+std::unique_ptr<Answers> make_answers(const CastOptions& options, Caster& caster, uint64_t ray_count) {
+  if (options.is_all) return std::make_unique<Lists>(options, caster, ray_count);
   if (options.is_count) return std::make_unique<Counts>(options, caster, ray_count);
-  return std::make_unique<OneHitEach>(options, caster, scene, ray_count);
+  return std::make_unique<OneHitEach>(options, caster, ray_count);
 }
 
 /// `rays` is the first chunk. Throws Cancelled if a signal asks for the end.
@@ -236,7 +224,7 @@ void cast(const CastOptions& options, const CLI::App& command) {
 
   // Results are written immediately, to temporary files that must not remain after a signal.
   const DeferredSignals while_writing;
-  const std::unique_ptr<Answers> answers = make_answers(options, caster, scene, reader.count());
+  const std::unique_ptr<Answers> answers = make_answers(options, caster, reader.count());
   try {
     answer_all(std::move(rays), chunks, *answers, options, stats, console, while_writing);
   } catch (const Cancelled&) {

@@ -193,9 +193,7 @@ class RayPieces : public PieceMaker {
       const auto take = [&](const HitList& list) {
         const uint64_t before = bytes.size() / sizeof(Hit);
         for (const uint64_t end : list.offsets.subspan(1)) ends_.push_back(before + end);
-        hits_.assign(list.hits.begin(), list.hits.end());
-        number_as_in_file(job_.scene_, hits_);
-        append(std::span(std::as_const(hits_)), bytes);
+        append(list.hits, bytes);
       };
       caster_->list(rays, take, Caster::kListBytes, progress);
     } else if (query == HitQuery::kCount) {
@@ -205,7 +203,6 @@ class RayPieces : public PieceMaker {
     } else {
       hits_.resize(rays.size());
       caster_->cast(rays, hits_, query, progress);
-      number_as_in_file(job_.scene_, hits_);
       append(std::span(std::as_const(hits_)), bytes);
     }
   }
@@ -339,13 +336,6 @@ class HitFiles {
 };
 
 }  // namespace
-
-void number_as_in_file(const Scene& scene, std::span<Hit> hits) {
-  if (scene.object_numbers.empty()) return;
-  for (Hit& hit : hits) {
-    if (hit.object >= 0) hit.object = static_cast<int32_t>(object_number(scene, static_cast<uint32_t>(hit.object)));
-  }
-}
 
 std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App& command, const Console& console,
                                       std::shared_ptr<RaySource> rays) {

@@ -21,9 +21,6 @@ namespace promin::app {
 /// The kind of a job whose pieces are results of rays.
 inline constexpr std::string_view kRayJob = "cast";
 
-/// Replaces object indices in hits by the numbers of the scene's file.
-void number_as_in_file(const Scene& scene, std::span<Hit> hits);
-
 /// Returns the job of rays for a command's checked options. If `rays` is null, they are read from the file that the
 /// options name. Throws InputError, and UsageError for more pieces than rays.
 std::unique_ptr<PlannedJob> plan_rays(const CastOptions& options, const CLI::App& command, const Console& console,

@@ -78,11 +78,7 @@ PieceDifference compare_parts(const PicturePart& there, const PicturePart& anew,
   return difference;
 }
 
-HitComparison::HitComparison(const Scene& scene) : scene_(world::flatten(scene, world::Purpose::kHits)) {
-  for (uint32_t i = 0; i < scene_.objects.size(); ++i) {
-    objects_[static_cast<int32_t>(object_number(scene, i))].push_back(i);
-  }
-}
+HitComparison::HitComparison(const Scene& scene) : scene_(world::flatten(scene, world::Purpose::kHits)) {}
 
 void HitComparison::compare(std::span<const Ray> rays, std::span<const Hit> there, std::span<const Hit> anew) {
   for (size_t i = 0; i < rays.size(); ++i) take(difference_of(rays[i], there[i], anew[i]));
@@ -111,22 +107,15 @@ double HitComparison::difference_of(const Ray& ray, const Hit& there, const Hit&
 }
 
 double HitComparison::scale_of(const Ray& ray, const Hit& hit) const {
-  const auto found = objects_.find(hit.object);
-  if (found == objects_.end()) return 0.0;
+  if (static_cast<uint32_t>(hit.object) >= scene_.objects.size()) return 0.0;
   const dvec3 origin(ray.origin);
-  double scale = 0.0;
-  for (const size_t object : found->second) {
-    const world::Shape& shape = scene_.objects[object].shape;
-    if (const auto* plane = std::get_if<world::Plane>(&shape)) {
-      const double way = std::abs(double{hit.t}) * glm::length(dvec3(ray.direction));
-      scale = std::max(scale, glm::distance(origin, dvec3(plane->point)) + way);
-    }
-    const Bounds box = bounds_of(shape, static_cast<uint32_t>(hit.primitive));
-    if (box.is_empty()) continue;
-    scale =
-        std::max(scale, glm::distance(origin, dvec3(box.center())) + 0.5 * glm::distance(dvec3(box.lo), dvec3(box.hi)));
+  const world::Shape& shape = scene_.objects[static_cast<uint32_t>(hit.object)].shape;
+  if (const auto* plane = std::get_if<world::Plane>(&shape)) {
+    return glm::distance(origin, dvec3(plane->point)) + std::abs(double{hit.t}) * glm::length(dvec3(ray.direction));
   }
-  return scale;
+  const Bounds box = bounds_of(shape, static_cast<uint32_t>(hit.primitive));
+  if (box.is_empty()) return 0.0;
+  return glm::distance(origin, dvec3(box.center())) + 0.5 * glm::distance(dvec3(box.lo), dvec3(box.hi));
 }
 
 void HitComparison::take(double difference) {

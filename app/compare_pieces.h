@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -66,8 +65,6 @@ class HitComparison {
   void take(double difference);
 
   world::Scene scene_;
-  /// Objects by the file's numbers; several may have the same number.
-  std::map<int32_t, std::vector<size_t>> objects_;
   PieceDifference difference_;
 };
 

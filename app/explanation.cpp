@@ -39,7 +39,7 @@ Json json_of(const Ray& ray, const Scene& scene) {
 /// Writes the members that any hit has, a blocker too; json_of(ExplainedRay) adds those of the hits on the path.
 Json json_of(const Hit& hit, const Scene& scene) {
   if (hit.object < 0) return nullptr;
-  return {{"object", object_number(scene, static_cast<uint32_t>(hit.object))},
+  return {{"object", hit.object},
           {"primitive", hit.primitive},
           {"t", json_of(hit.t)},
           {"u", json_of(hit.u)},
@@ -114,8 +114,7 @@ std::string text_of_place(const vec3& place, const Scene& scene) {
 std::string text_of(const Hit& hit, const Scene& scene) {
   const auto object = static_cast<uint32_t>(hit.object);
   return fmt::format("{} primitive {} at t {:.6g}",
-                     with_name(fmt::format("object {}", object_number(scene, object)), scene.objects[object].name),
-                     hit.primitive, hit.t);
+                     with_name(fmt::format("object {}", object), scene.objects[object].name), hit.primitive, hit.t);
 }
 
 std::string text_of(const ExplainedSource& source, const Scene& scene) {

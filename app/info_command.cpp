@@ -40,10 +40,7 @@ std::string describe_objects(const SceneCounts& counts, const Scene& scene) {
     if (counts.objects[i] > 0) kinds.push_back(fmt::format("{}: {}", name, counts.objects[i]));
   }
   if (kinds.empty()) return "0";
-  std::string text = fmt::format("{} ({})", scene.objects.size(), fmt::join(kinds, ", "));
-  // Numbers ascend.
-  if (!scene.object_numbers.empty()) text += fmt::format("; the file's own: {}", scene.object_numbers.back() + 1);
-  return text;
+  return fmt::format("{} ({})", scene.objects.size(), fmt::join(kinds, ", "));
 }
 
 std::string count_lights(const std::vector<Light>& lights) {

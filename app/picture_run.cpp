@@ -111,11 +111,4 @@ PixelWindow window_of(const View& view) {
   return view.crop.value_or(PixelWindow{uvec2(0), view.size});
 }
 
-void number_as_in_file(const Scene& scene, Aovs& aovs) {
-  if (scene.object_numbers.empty()) return;
-  for (uint32_t& object : aovs.object) {
-    if (object != Aovs::kNoId) object = object_number(scene, object);
-  }
-}
-
 }  // namespace promin::app

@@ -61,7 +61,4 @@ Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& fra
 /// Returns the rendered window of the whole picture.
 PixelWindow window_of(const View& view);
 
-/// Replaces object indices of pixels by the numbers of the scene's file.
-void number_as_in_file(const Scene& scene, Aovs& aovs);
-
 }  // namespace promin::app

@@ -167,7 +167,6 @@ class FrameRendering {
       stats_.view->samples_per_pixel = result.samples_per_pixel;
     }
     check_validation(device_, stats_);
-    number_as_in_file(scene_, result.aovs);
     stats_.rays += result.rays;
     if (result.error) {
       if (!error_) error_.emplace(PictureError{.target = result.error->target});

@@ -79,7 +79,6 @@ class PicturePieces : public PieceMaker {
     view.crop = job_.parts_[piece % job_.parts_.size()];
     TracedFrame traced = trace(*renderer_, view, options, std::nullopt, progress);
     check_validation(device_, stats_);
-    number_as_in_file(job_.run_.scene, traced.result.aovs);
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);
     const AovHeader aovs = describe_aovs(job_.run_.scene, options.aovs, options.hides_unlit, view.depth_kind);

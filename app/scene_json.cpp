@@ -137,7 +137,7 @@ Json list_objects(const Scene& scene) {
     const Object& object = scene.objects[i];
     const bool is_drawn = object.geometry != Object::kNoGeometry;
     list.push_back({{"name", object.name},
-                    {"number", object_number(scene, i)},
+                    {"number", i},
                     {"geometry", is_drawn ? geometries[object.geometry] : Json()},
                     {"material", is_drawn ? Json(object.material) : Json()},
                     {"world_from_object", is_drawn ? describe(object.world_from_object) : Json()}});

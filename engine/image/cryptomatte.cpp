@@ -105,7 +105,7 @@ Cryptomatte make_cryptomatte(const Scene& scene, const Aovs& aovs) {
   std::vector<std::string> objects;
   for (uint32_t i = 0; i < scene.objects.size(); ++i) {
     const std::string& name = scene.objects[i].name;
-    objects.push_back(name.empty() ? "object " + std::to_string(object_number(scene, i)) : name);
+    objects.push_back(name.empty() ? "object " + std::to_string(i) : name);
   }
   std::vector<std::string> materials;
   for (const Material& material : scene.materials) {

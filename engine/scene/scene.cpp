@@ -129,10 +129,6 @@ uint32_t primitive_count(const Scene& scene, const Object& object) {
   return object.geometry == Object::kNoGeometry ? 0 : primitive_count(geometry_of(scene, object));
 }
 
-uint32_t object_number(const Scene& scene, uint32_t object) {
-  return object < scene.object_numbers.size() ? scene.object_numbers[object] : object;
-}
-
 bool shows_same(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
          a.ymag == b.ymag && a.near == b.near;

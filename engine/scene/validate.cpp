@@ -534,10 +534,6 @@ std::vector<Problem> validate(const Scene& scene) {
   validation.check_lights(scene.lights);
   validation.check_cameras(scene.cameras);
   validation.check_environment(scene.environment);
-  validation.check(scene.object_numbers.empty() || scene.object_numbers.size() == scene.objects.size(),
-                   "there are " + std::to_string(scene.object_numbers.size()) + " numbers for " +
-                       std::to_string(scene.objects.size()) + " objects",
-                   "object_numbers", "give none, or one for each");
   for (size_t i = 0; i < scene.geometries.size(); ++i) validation.check_geometry(scene, i);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].geometry == Object::kNoGeometry) continue;

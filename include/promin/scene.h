@@ -63,9 +63,6 @@ struct Scene {
   std::vector<Geometry> geometries;
   /// The objects in the order by which hits and AOVs number them.
   std::vector<Object> objects;
-  /// For each object its number in the file, if one object of the file becomes several here, as in NFF; promin's
-  /// commands print these numbers. Empty if the file numbers its objects as they are here.
-  std::vector<uint32_t> object_numbers;
   /// The materials; not empty if there are objects with a geometry.
   std::vector<Material> materials;
   /// The images of textures. Not null; shared, because images are large.
@@ -102,9 +99,6 @@ PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 /// Returns the number of an object's primitives: that of its geometry, or 0 without one. Throws InputError if the
 /// object refers to a geometry that does not exist.
 PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
-
-/// Returns the number of the object at this index in the scene's file (Scene::object_numbers).
-PROMIN_EXPORT uint32_t object_number(const Scene& scene, uint32_t object);
 
 /// Returns the number of bounces that suits a scene (View::max_depth); it is larger for scenes with glass.
 PROMIN_EXPORT uint32_t default_max_depth(const Scene& scene);

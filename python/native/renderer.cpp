@@ -114,7 +114,6 @@ class SharedRenderer {
                  const nb::object& progress)
       : device_(std::move(device)), aovs_(read_aovs(aovs)) {
     named_.objects = scene.objects;
-    named_.object_numbers = scene.object_numbers;
     named_.materials = scene.materials;
     const gpu::Device& open = device_->get();
     std::unique_ptr<Renderer> renderer;

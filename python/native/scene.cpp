@@ -182,7 +182,6 @@ void bind_scene(nb::module_& module) {
       .def("cameras", [](const Scene& s) { return write_all(s.cameras); })
       .def("environment", [](const Scene& s) { return write(s.environment); })
       .def("objects", &describe_objects)
-      .def("object_numbers", [](const Scene& s) { return s.object_numbers; })
       .def("warnings", [](const Scene& s) { return s.warnings; })
       .def("variants", [](const Scene& s) { return s.variants; })
       .def("center", [](const Scene& s) { return nb::make_tuple(s.center.x, s.center.y, s.center.z); })

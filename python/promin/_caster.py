@@ -38,7 +38,7 @@ class Caster:
     options and the choice of the device, and opens them at its first use. After a fork, every use in the child raises
     RuntimeError."""
 
-    _opened: tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]] | None
+    _opened: tuple[Device, _promin.Caster, NDArray[np.float64]] | None
 
     def __init__(
         self,
@@ -98,12 +98,10 @@ class Caster:
         primitive (-1 on a miss), u and v (weights of a triangle's second and third corner), normal (geometric, unit, as
         wound or outward, never flipped to the ray; 0 on a miss). At equal t the lower (object, primitive) wins; a
         triangle's edges belong to it. Raises UsageError, RunError, Cancelled."""
-        _, native, center, numbers = self._open()
+        _, native, center = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         hits = prepare_answers(out, shape, HIT_DTYPE, packed)
         native.cast(packed, as_bytes(hits), progress)
-        if len(numbers):
-            number_as_in_file(hits.reshape(-1), numbers)
         return hits if out is not None else hits.view(Hits)
 
     def occluded(
@@ -118,7 +116,7 @@ class Caster:
     ) -> NDArray[np.bool_]:
         """Returns for each ray whether it hits anything, as bool (...); this is faster than `cast`. rays to tmax and
         out: as for `cast`."""
-        _, native, center, _ = self._open()
+        _, native, center = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         answers = prepare_answers(out, shape, np.dtype(np.bool_), packed)
         native.occluded(packed, answers.reshape(-1), progress)
@@ -140,7 +138,7 @@ class Caster:
         a silhouette crosses none or two. The count is therefore odd exactly if the ray starts inside
         (include/promin/caster.h has the rule). For `cast` an edge belongs to each of its triangles. Raises UsageError,
         RunError, Cancelled."""
-        _, native, center, _ = self._open()
+        _, native, center = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         counts = prepare_answers(out, shape, np.dtype(np.int32), packed)
         native.count(packed, counts.reshape(-1), progress)
@@ -179,10 +177,10 @@ class Caster:
         n rays in C order; hits is an array of `promin.HIT_DTYPE`. The hits of ray i are hits[splits[i]:splits[i + 1]],
         sorted by t, then by (object, primitive). All of them are kept in memory; see `iter_list`. rays to tmax: as for
         `cast`. Raises as it does."""
-        _, native, center, numbers = self._open()
+        _, native, center = self._open()
         packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         splits, rows = native.list(packed, None, progress)
-        return splits, _to_hits(rows, numbers)
+        return splits, _to_hits(rows)
 
     def iter_list(
         self,
@@ -199,11 +197,11 @@ class Caster:
         of `budget` bytes together, but at least one. progress: receives the progress of each part separately."""
         if not isinstance(budget, (int, np.integer)) or not 0 < budget < 2**63:
             raise UsageError(f"budget is {budget!r:.80}; give a positive number of bytes")
-        _, native, center, numbers = self._open()
+        _, native, center = self._open()
         packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
-        return _list_parts(native, packed, int(budget), numbers, progress)
+        return _list_parts(native, packed, int(budget), progress)
 
-    def _open(self, progress: Progress = None) -> tuple[Device, _promin.Caster, NDArray[np.float64], NDArray[np.int32]]:
+    def _open(self, progress: Progress = None) -> tuple[Device, _promin.Caster, NDArray[np.float64]]:
         opened = self._opened
         if opened is not None:
             return opened
@@ -212,8 +210,7 @@ class Caster:
                 device = find_device(self._chosen)
                 scene = self._scene.native()
                 native = _promin.Caster(device._native, scene, *self._options, progress)
-                numbers = np.array(scene.object_numbers(), np.int32)
-                self._opened = device, native, self._scene.native_center, numbers
+                self._opened = device, native, self._scene.native_center
             return self._opened
 
     def _make_private(self) -> None:
@@ -248,27 +245,19 @@ def as_bytes(hits: NDArray[Any]) -> NDArray[np.uint8]:
     return hits.reshape(-1).view(np.uint8).reshape(hits.size, HIT_DTYPE.itemsize)
 
 
-def number_as_in_file(hits: NDArray[Any], numbers: NDArray[np.int32]) -> None:
-    """Replaces object indices in hits (n,) by the numbers of the scene's file."""
-    is_hit = hits["object"] >= 0
-    hits["object"][is_hit] = numbers[hits["object"][is_hit]]
-
-
-def _to_hits(rows: NDArray[np.uint8], numbers: NDArray[np.int32]) -> NDArray[Any]:
+def _to_hits(rows: NDArray[np.uint8]) -> NDArray[Any]:
     """Returns bytes (n, 32) from the library as hits (n,)."""
     hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1).view(Hits)
-    if len(numbers):
-        number_as_in_file(hits, numbers)
     return hits
 
 
 def _list_parts(
-    native: _promin.Caster, packed: NDArray[np.float32], budget: int, numbers: NDArray[np.int32], progress: Progress
+    native: _promin.Caster, packed: NDArray[np.float32], budget: int, progress: Progress
 ) -> Iterator[tuple[int, NDArray[np.int64], NDArray[Any]]]:
     first, count = 0, _RAYS_AT_A_TIME
     while first < len(packed):
         splits, rows = native.list(packed[first : first + count], budget, progress)
-        yield first, splits, _to_hits(rows, numbers)
+        yield first, splits, _to_hits(rows)
         first += len(splits) - 1
         # Rays whose hits exceed the budget are requested again.
         count = min(2 * (len(splits) - 1), _RAYS_AT_A_TIME)

@@ -358,16 +358,11 @@ class Renderer:
         return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """Returns the AOVs of these names with positions in the world and the file's object numbers."""
+        """Returns the AOVs of these names with positions in the world."""
         if self._moves(names):
             is_hit = (aovs["object"] != _NO_ID)[..., np.newaxis]
             aovs["position"] = np.where(is_hit, aovs["position"] + self._scene.native_center, 0.0)
-        aovs = {name: values for name, values in aovs.items() if name in names}
-        numbers = np.array(self._scene.native().object_numbers(), np.uint32)
-        if "object" in aovs and len(numbers):
-            is_hit = aovs["object"] < len(numbers)
-            aovs["object"][is_hit] = numbers[aovs["object"][is_hit]]
-        return aovs
+        return {name: values for name, values in aovs.items() if name in names}
 
     # The native renderer, which is made when it is first needed.
 

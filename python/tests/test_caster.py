@@ -37,7 +37,7 @@ def test_hits_of_a_file_are_those_of_promin_cast(
             assert caster.cast(rays).tobytes() == expected.tobytes()
 
 
-def test_objects_of_an_nff_file_have_its_numbers(tmp_path: Path, run_promin: Callable[..., None]) -> None:
+def test_hits_equal_those_of_the_program(tmp_path: Path, run_promin: Callable[..., None]) -> None:
     scene = tmp_path / "two.nff"
     scene.write_text(
         "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 32 32\nf 1 0 0 1 0 0 0 1\n"
@@ -47,7 +47,7 @@ def test_objects_of_an_nff_file_have_its_numbers(tmp_path: Path, run_promin: Cal
     np.save(tmp_path / "rays.npy", rays)
     run_promin("cast", scene, tmp_path / "rays.npy", "-o", tmp_path / "hits.npy")
     hits = promin.Caster(promin.Scene.load(scene)).cast(rays)
-    assert set(hits["object"]) == {-1, 0, 1}
+    assert set(hits["object"]) == {-1, 0, 1, 2}
     assert hits.tobytes() == np.load(tmp_path / "hits.npy").tobytes()
 
 

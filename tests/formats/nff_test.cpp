@@ -126,18 +126,16 @@ TEST_F(NffTest, MaterialsAreOfPhong) {
   EXPECT_FALSE(glass.materials[0].phong().fresnel) << "the weights are as they stand";
 }
 
-TEST_F(NffTest, EachMaterialWithShapesIsAnObjectOfTheFile) {
+TEST_F(NffTest, PolygonsOfAMaterialAreOneMesh) {
   const Scene scene = load(kMaterial + kMaterial + "s 0 0 0 1\n" + kSquare + "s 1 0 0 1\n" + kSquare +
                            "l 1 2 3\nc 0 0 0 1 0 1 0 1\n" + kMaterial + kSquare + kMaterial);
   ASSERT_THAT(scene.objects, SizeIs(5));
-  EXPECT_THAT(scene.object_numbers, ElementsAre(0, 0, 0, 0, 1));
   EXPECT_EQ(shape_of<Sphere>(scene, 0).center, dvec3(0.0));
   EXPECT_THAT(shape_of<Mesh>(scene, 1).triangles, SizeIs(4)) << "both polygons, in file order";
   EXPECT_EQ(shape_of<Sphere>(scene, 2).center, dvec3(1, 0, 0));
   EXPECT_TRUE(shape_of<Cylinder>(scene, 3).is_open);
   EXPECT_THAT(shape_of<Mesh>(scene, 4).triangles, SizeIs(2));
   EXPECT_THAT(scene.materials, SizeIs(2)) << "those of shapes";
-  EXPECT_EQ(object_number(scene, 4), 1U);
 }
 
 TEST_F(NffTest, CylindersAndConesAreOpen) {
@@ -228,7 +226,7 @@ TEST_F(NffTest, PatchesHaveNormals) {
 
 TEST_F(NffTest, ShapesBeforeAnyMaterialAreGrey) {
   const Scene scene = load("s 0 0 0 1\n" + kMaterial + "s 0 0 0 2\n");
-  EXPECT_THAT(scene.object_numbers, ElementsAre(0, 1));
+  ASSERT_THAT(scene.objects, SizeIs(2));
   EXPECT_EQ(scene.materials[0].phong().diffuse, vec3(0.8F));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("before the first f")));
 }

@@ -119,7 +119,6 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
       {"cameras[0].near", [](Scene& s) { s.cameras[0].near = -1; }},
       {"cameras[0].resolution", [](Scene& s) { s.cameras[0].resolution = uvec2(512, 0); }},
       {"cameras[0].resolution", [](Scene& s) { s.cameras[0].resolution = uvec2(512, 40000); }},
-      {"object_numbers", [](Scene& s) { s.object_numbers.assign(s.objects.size() + 1, 0); }},
       {"environment.ambient", [](Scene& s) { s.environment.ambient.r = -1; }},
       {"environment.background", [](Scene& s) { s.environment.background.r = kNan; }},
       {"environment.backdrop.bottom", [](Scene& s) { s.environment.backdrop.emplace().bottom.g = -1; }},

@@ -110,7 +110,7 @@ void add_lights(const NffText& text, Scene& scene) {
 }
 
 /// Adds the shapes of a group; its polygons are one mesh, in the place of the first.
-void add_group(const NffText& text, const NffGroup& group, uint32_t number, Scene& scene, LoadReport& report) {
+void add_group(const NffText& text, const NffGroup& group, Scene& scene, LoadReport& report) {
   const auto material = static_cast<uint32_t>(scene.materials.size());
   if (group.material) {
     scene.materials.emplace_back().model = to_phong(*group.material);
@@ -120,10 +120,7 @@ void add_group(const NffText& text, const NffGroup& group, uint32_t number, Scen
   }
   PolygonMesh polygons(text, report);
   std::optional<size_t> mesh_geometry;
-  const auto add = [&](Geometry geometry) {
-    scene.add("", std::move(geometry), material);
-    scene.object_numbers.push_back(number);
-  };
+  const auto add = [&](Geometry geometry) { scene.add("", std::move(geometry), material); };
   for (const NffShape& shape : group.shapes) {
     if (const auto* polygon = std::get_if<NffPolygon>(&shape)) {
       if (!mesh_geometry) {
@@ -156,9 +153,7 @@ Scene load_nff(const LoadOptions& /*options*/, LoadReport& report) {
   scene.cameras = text.cameras;
   scene.environment.background = text.background.value_or(vec3(0.0F));
   add_lights(text, scene);
-  for (size_t i = 0; i < text.groups.size(); ++i) {
-    add_group(text, text.groups[i], static_cast<uint32_t>(i), scene, report);
-  }
+  for (const NffGroup& group : text.groups) add_group(text, group, scene, report);
   report.throw_if_refused();
   scene.warnings = report.warnings();
   return scene;

@@ -8,9 +8,8 @@
 namespace promin {
 
 /// Reads the report's file as NFF, Eric Haines' Neutral File Format of the Standard Procedural Databases: views, point
-/// sources without falloff, Phong materials, spheres, open cylinders and cones, polygons. The scene is classic. Each f
-/// statement with shapes is an object of the file (Scene::object_numbers): its polygons form one mesh, in file order,
-/// and each other shape becomes an object here. Throws InputError.
+/// sources without falloff, Phong materials, spheres, open cylinders and cones, polygons. The scene is classic. The
+/// polygons after an f statement form one mesh, in file order, and each other shape is an object. Throws InputError.
 Scene load_nff(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin
