@@ -86,7 +86,7 @@ std::optional<uint64_t> parse_shape(std::string_view text) {
 }
 
 /// Prepares text of the file for a message: without what would move a terminal's cursor, and no longer than a line.
-std::string quote(std::string_view text) {
+std::string make_printable(std::string_view text) {
   constexpr size_t kMost = 60;
   std::string quoted(text.substr(0, kMost));
   std::replace_if(
@@ -113,7 +113,7 @@ RayArray parse_header(std::string_view header, const fs::path& file) {
   const std::string_view type = trim(entries->at("descr"));
   const bool is_double = type == "'<f8'" || type == "\"<f8\"";
   if (!is_double && type != "'<f4'" && type != "\"<f4\"") {
-    throw InputError({"the array's type is " + quote(type) + ", not '<f4' or '<f8'", file.string(), kCure});
+    throw InputError({"the array's type is " + make_printable(type) + ", not '<f4' or '<f8'", file.string(), kCure});
   }
   if (trim(entries->at("fortran_order")) != "False") {
     throw InputError({"the array is in Fortran order", file.string(), kCure});
@@ -121,7 +121,7 @@ RayArray parse_header(std::string_view header, const fs::path& file) {
   const std::optional<uint64_t> count = parse_shape(entries->at("shape"));
   if (!count) {
     throw InputError(
-        {"the array's shape is " + quote(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
+        {"the array's shape is " + make_printable(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
   }
   return {*count, 8 * (is_double ? sizeof(double) : sizeof(float))};
 }
