@@ -10,7 +10,7 @@
 namespace promin::app {
 namespace {
 
-/// The push constants of shaders/display.frag.
+/// The push constants of shaders/window/display.frag.
 struct DisplayConstants {
   uvec4 size;
   vec4 scale;

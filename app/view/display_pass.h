@@ -11,7 +11,7 @@
 
 namespace promin::app {
 
-/// Draws a picture, scaled to the whole window, whenever the window is drawn (shaders/display.frag).
+/// Draws a picture, scaled to the whole window, whenever the window is drawn (shaders/window/display.frag).
 class DisplayPass {
  public:
   /// Throws vk::SystemError.

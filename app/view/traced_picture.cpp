@@ -8,7 +8,7 @@
 
 #include "core/divide_up.h"
 #include "encode_film.spv.h"
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin::app {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
-/// Constants and bindings of shaders/encode_film.comp.
+/// Constants and bindings of shaders/window/encode_film.comp.
 constexpr uint32_t kToneMapping = 0;
 constexpr uint32_t kDithers = 2;
 constexpr uint32_t kHasUnlit = 3;

@@ -17,8 +17,9 @@
 
 namespace promin::app {
 
-/// Makes what encodes the pixels of a film, as `display` shows them, to words of a buffer (shaders/encode_film.comp).
-/// `exposure` holds the factor of the exposure, a float. `has_unlit` as ProgressivePicture::has_unlit.
+/// Makes what encodes the pixels of a film, as `display` shows them, to words of a buffer
+/// (shaders/window/encode_film.comp). `exposure` holds the factor of the exposure, a float. `has_unlit` as
+/// ProgressivePicture::has_unlit.
 gpu::ComputePipeline make_encoder(const gpu::Device& device, const gpu::Buffer& film, const gpu::Buffer& encoded,
                                   const gpu::Buffer& exposure, const DisplayTransform& display, bool has_unlit);
 

@@ -6,7 +6,7 @@
 
 #include "bvh/builder.h"
 #include "core/unset_vector.h"
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin {
 

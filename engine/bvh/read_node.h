@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "layout.h"
 #include "promin/math.h"
+#include "shared/layout.h"
 
 // Host functions that read the data of pack_tree and pack_scene as the shaders do, for checks, tests and builders.
 namespace promin {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "bvh/builder.h"
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin {
 

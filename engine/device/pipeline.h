@@ -18,7 +18,7 @@ namespace promin::gpu {
 class Buffer;
 class Device;
 
-/// A buffer at a binding (BINDING_* of shaders/layout.h).
+/// A buffer at a binding (BINDING_* of shaders/shared/layout.h).
 struct BoundBuffer {
   uint32_t binding = 0;
   vk::DescriptorType type = vk::DescriptorType::eStorageBuffer;

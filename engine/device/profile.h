@@ -22,7 +22,7 @@ struct DeviceTraits {
   uint64_t texel_buffer_bytes = 0;
 };
 
-/// How shaders/traversal.glsl traverses trees. Hits have the same bits for every form.
+/// How shaders/trace/traversal.glsl traverses trees. Hits have the same bits for every form.
 struct TraversalForm {
   /// Number of node steps that all lanes take together before those at leaves test them; 0 lets each lane step until it
   /// reaches a leaf.

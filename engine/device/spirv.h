@@ -8,7 +8,7 @@
 
 namespace promin::gpu {
 
-/// A specialisation constant: `id` is a CONSTANT_* of shaders/layout.h.
+/// A specialisation constant: `id` is a CONSTANT_* of shaders/shared/layout.h.
 struct SpecializationConstant {
   uint32_t id = 0;
   uint32_t value = 0;

@@ -26,7 +26,8 @@ uint32_t bits_of(float value) {
   return std::bit_cast<uint32_t>(value);
 }
 
-/// Packs corners as corner0, corner1 and corner2 of shaders/primitives/triangle.glsl and triangle_corners read them.
+/// Packs corners as corner0, corner1 and corner2 of shaders/trace/primitives/triangle.glsl and triangle_corners read
+/// them.
 Primitive pack(const TrianglePart& part) {
   const auto& [a, b, c] = part;
   return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),

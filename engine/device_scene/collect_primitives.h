@@ -8,10 +8,10 @@
 
 #include "bvh/primitive_numbers.h"
 #include "core/unset_vector.h"
-#include "layout.h"
 #include "promin/error.h"
 #include "promin/math.h"
 #include "scene/world_scene.h"
+#include "shared/layout.h"
 
 namespace promin {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {

@@ -7,9 +7,9 @@
 
 namespace promin {
 
-// Tables that materials look up (shaders/shading_records.glsl): a record for each cell between four entries, row by row
-// of roughness, in it the entries at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). tools/make_lobe_table.py defines
-// the entries.
+// Tables that materials look up (shaders/shade/shading_records.glsl): a record for each cell between four entries, row
+// by row of roughness, in it the entries at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). tools/make_lobe_table.py
+// defines the entries.
 
 /// Returns the table for metallic-roughness materials: how a lobe reflects light from all directions.
 std::vector<glm::uvec4> make_lobe_table();

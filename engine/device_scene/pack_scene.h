@@ -17,13 +17,13 @@
 #include "core/unset_vector.h"
 #include "device_scene/collect_primitives.h"
 #include "device_scene/drop_copies.h"
-#include "layout.h"
 #include "promin/error.h"
 #include "scene/world_scene.h"
+#include "shared/layout.h"
 #include "textures/pack_images.h"
 
-// Packs a scene's geometry and its surfaces into the device layout of shaders/layout.h. Both follow the order of the
-// tree's leaves. Does not use Vulkan.
+// Packs a scene's geometry and its surfaces into the device layout of shaders/shared/layout.h. Both follow the order of
+// the tree's leaves. Does not use Vulkan.
 namespace promin {
 
 /// The data of primitives for shading, in leaf order: material numbers and vertices.

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "layout.h"
 #include "promin/lights.h"
 #include "promin/scene.h"
+#include "shared/layout.h"
 #include "textures/pack_images.h"
 
-// Packs the data for shading other than primitives into the layout of shaders/layout.h. Each kind is packed separately,
-// because each changes separately.
+// Packs the data for shading other than primitives into the layout of shaders/shared/layout.h. Each kind is packed
+// separately, because each changes separately.
 namespace promin {
 
 /// Tables of textures, which materials refer to.

@@ -15,7 +15,7 @@ uvec4 counts_of(const SceneConstants& scene) {
   return {scene.first_unbounded, scene.unbounded_count, scene.light_count, layout::LOOP_CHECK_TURNS};
 }
 
-/// As shaders/glass.glsl keeps the media that a ray is in.
+/// As shaders/shade/glass.glsl keeps the media that a ray is in.
 uvec2 media_around(const SceneConstants& scene, const vec3& eye) {
   uint64_t media = 0;
   if (scene.glass_solids == nullptr) return uvec2(0);
@@ -40,7 +40,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   const double pixel = 2.0 * half_height / view.size.y;
   const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
   const dvec3 up = dvec3(camera.up) * pixel;
-  // A sample's share of a pixel, along a side (shaders/textures.glsl).
+  // A sample's share of a pixel, along a side (shaders/shade/textures.glsl).
   const uint32_t samples = view.error_target ? view.error_target->max_samples : view.samples_per_pixel;
   const auto cone = static_cast<float>(pixel / std::sqrt(static_cast<double>(samples)));
   // A ray's interval is open, but what lies on the viewport itself is drawn.

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "layout.h"
 #include "promin/scene.h"
 #include "promin/view.h"
 #include "scene/glass_solids.h"
+#include "shared/layout.h"
 
 // The blocks of constants that shaders read. One function computes each complete block from its arguments. Does not use
 // Vulkan.

@@ -8,7 +8,7 @@
 
 // The map of all directions onto a square: directions are projected onto an octahedron, whose upper half is viewed from
 // above and whose lower half is unfolded. Coordinates are 0...1, (0.5, 0.5) is +Y, the corners are -Y, x of the square
-// goes with +X and y with +Z. It needs one division and no angles; shaders/environment.glsl has the same map.
+// goes with +X and y with +Z. It needs one division and no angles; shaders/shade/environment.glsl has the same map.
 namespace promin {
 
 /// Takes a direction of any length but 0.

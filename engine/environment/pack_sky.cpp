@@ -13,7 +13,7 @@
 #include "environment/shrink_panorama.h"
 #include "environment/sky_map.h"
 #include "environment/sky_radiance.h"
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {
@@ -28,7 +28,7 @@ struct Level {
 };
 constexpr Level kLevels[] = {
 #define PROMIN_SKY_LEVEL(ROUGHNESS, SHIFT) {ROUGHNESS, SHIFT},
-#include "sky_levels.def"
+#include "shade/sky_levels.def"
 };
 constexpr uint32_t kLevelCount = std::size(kLevels);
 

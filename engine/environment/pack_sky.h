@@ -11,13 +11,13 @@
 
 namespace promin {
 
-/// A sky in the form that shaders/environment.glsl reads.
+/// A sky in the form that shaders/shade/environment.glsl reads.
 struct PackedSky {
   /// Side of the sharpest level in texels, a power of two from 128 to 512; 0 if there is no sky.
   uint32_t side = 0;
-  /// The levels of shaders/sky_levels.def one after the other, each with side + 2 rows of side + 1 entries: its texels
-  /// with a border of one (environment/sky_map.h), two neighbours of a row in an entry, each texel as three half floats
-  /// from the lowest bits on.
+  /// The levels of shaders/shade/sky_levels.def one after the other, each with side + 2 rows of side + 1 entries: its
+  /// texels with a border of one (environment/sky_map.h), two neighbours of a row in an entry, each texel as three half
+  /// floats from the lowest bits on.
   std::vector<glm::uvec4> texels;
   /// Coefficients of the irradiance divided by pi; w is 0. With the unit normal (x, y, z) they are those of 1, y, z, x,
   /// xy, yz, 3zz - 1, zx and xx - yy.

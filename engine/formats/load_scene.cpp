@@ -43,7 +43,7 @@ bool has_anything_to_draw(const Scene& scene) {
                      [&](const Object& object) { return primitive_count(scene, object) > 0; });
 }
 
-/// A triangle's area in the sheared plane must be a normal float (shaders/primitives/triangle.glsl).
+/// A triangle's area in the sheared plane must be a normal float (shaders/trace/primitives/triangle.glsl).
 constexpr float kSmallestMesh = 1e-18F;
 
 /// Warns of meshes that are not refused for their size, but are too small to be hit.

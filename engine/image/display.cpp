@@ -15,7 +15,7 @@ namespace {
 /// Larger values are clamped to this: beyond it the curves are flat, and products cannot overflow.
 constexpr double kMostRadiance = 1e9;
 
-/// As shaders/tone_mapping.glsl has it.
+/// As shaders/window/tone_mapping.glsl has it.
 dvec3 map_neutral(dvec3 c) {
   const double least = std::min({c.x, c.y, c.z});
   c -= least < 0.08 ? least - 6.25 * least * least : 0.04;

@@ -62,7 +62,7 @@ ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t 
   };
 }
 
-/// Returns a power of two that scales the direction into the shader's range (shaders/make_ray.glsl); mostly 1.
+/// Returns a power of two that scales the direction into the shader's range (shaders/trace/make_ray.glsl); mostly 1.
 float scale_of(const vec3& direction) {
   // Neither max_abs_component nor glm::abs is used: the calls of std::fmax in the one took a seventh of the time of
   // `promin cast`, and the other is compiled to a branch for each sign, which nothing foretells.

@@ -9,7 +9,8 @@
 namespace promin {
 
 struct TunedCasterOptions : CasterOptions {
-  /// SPIR-V of another kernel with the bindings of shaders/cast_bindings.glsl, only for cast(); empty for promin's own.
+  /// SPIR-V of another kernel with the bindings of shaders/cast/cast_bindings.glsl, only for cast(); empty for promin's
+  /// own.
   std::span<const uint32_t> spirv = {};
   /// A BVH file to share with other processes (pack_scene_sharing), unless `bvh` names a file.
   std::optional<std::filesystem::path> shared_bvh = std::nullopt;

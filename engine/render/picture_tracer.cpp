@@ -6,7 +6,7 @@
 #include "core/shared_progress.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
-#include "layout.h"
+#include "shared/layout.h"
 #include "trace/cut_loops.h"
 #include "trace/explain_pixel.h"
 #include "trace/progressive_picture.h"

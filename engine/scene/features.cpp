@@ -7,12 +7,12 @@
 #include <string_view>
 
 #include "core/rounding.h"
-#include "layout.h"
 #include "scene/alpha.h"
 #include "scene/glass.h"
 #include "scene/layers.h"
 #include "scene/light_kinds.h"
 #include "scene/texture_slots.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {
@@ -30,7 +30,7 @@ constexpr auto kSceneFeatures = [] {
 #include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) names[BIT] = NAME;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
-#include "features.def"
+#include "shared/features.def"
   return names;
 }();
 
@@ -45,7 +45,7 @@ constexpr bool are_bits_distinct() {
 #include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) ++uses[BIT];
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) ++uses[BIT];
-#include "features.def"
+#include "shared/features.def"
   for (uint bit = 0; bit < 8; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
   return std::ranges::all_of(uses, [](int count) { return count <= 1; });
 }
@@ -248,7 +248,7 @@ FeatureMask all_features() {
 #include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
-#include "features.def"
+#include "shared/features.def"
   return features;
 }
 

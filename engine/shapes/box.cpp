@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "layout.h"
 #include "shapes/shapes.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 
-#include "layout.h"
 #include "shapes/shapes.h"
+#include "shared/layout.h"
 
 namespace promin {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "layout.h"
 #include "shapes/shapes.h"
+#include "shared/layout.h"
 
 namespace promin {
 

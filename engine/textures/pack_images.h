@@ -41,7 +41,7 @@ struct PlacedImage {
   ImageUse use = ImageUse::kColor;
 };
 
-/// The images of a scene in the form that shaders/textures.glsl reads.
+/// The images of a scene in the form that shaders/shade/textures.glsl reads.
 struct PackedImages {
   UnsetVector<uint32_t> words;
   std::vector<PlacedImage> images;

@@ -6,8 +6,8 @@
 
 namespace promin {
 
-/// Throws RunError if the driver has cut loops (shaders/loop_check.glsl), because the output of the shaders is then
-/// incomplete. All callers that trace use this function.
+/// Throws RunError if the driver has cut loops (shaders/shared/loop_check.glsl), because the output of the shaders is
+/// then incomplete. All callers that trace use this function.
 inline void refuse_cut_loops(bool were_loops_cut) {
   if (!were_loops_cut) return;
   throw RunError({"tracing takes longer than the driver allows: it ends loops after 65535 iterations", "on this device",

@@ -31,7 +31,7 @@ uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View
   return entries;
 }
 
-/// The log of the sample that was traced last, behind the pixel (shaders/ray_log.glsl).
+/// The log of the sample that was traced last, behind the pixel (shaders/picture/ray_log.glsl).
 std::vector<layout::RayLog> read_log(const Film& film) {
   const vk::DeviceSize count_offset = Film::kPixelsOffset + sizeof(uvec4);
   uvec4 count;

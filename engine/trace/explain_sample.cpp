@@ -5,7 +5,7 @@
 #include <bit>
 #include <utility>
 
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "bvh/primitive_numbers.h"
-#include "layout.h"
 #include "promin/explain.h"
+#include "shared/layout.h"
 
 namespace promin {
 

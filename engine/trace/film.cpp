@@ -30,7 +30,7 @@ constexpr size_t kListChunk = 65536;
 /// One for each lane of a block.
 using Counters = std::array<uvec4, kLanes>;
 
-/// Rays and cut loops, then passes (shaders/film.glsl).
+/// Rays and cut loops, then passes (shaders/picture/film.glsl).
 std::array<Counters, 2> lanes_of(std::span<const std::byte> counters) {
   std::array<Counters, 2> lanes;
   assert(counters.size() >= sizeof lanes);

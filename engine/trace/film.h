@@ -41,8 +41,8 @@ struct FilmOptions {
 };
 
 /// The pixels of a picture in device memory, and the pipeline that traces a scene onto them piece by piece in two
-/// stages (shaders/camera_stage.comp, and the stream of paths behind it). A picture is begun, then all of its pieces
-/// run. No function waits for the device unless stated.
+/// stages (shaders/picture/camera_stage.comp, and the stream of paths behind it). A picture is begun, then all of its
+/// pieces run. No function waits for the device unless stated.
 class Film {
  public:
   /// Compiles the pipelines unless the device has already compiled the same. `features` are those of the scene and of
@@ -139,7 +139,7 @@ void average_samples(std::span<const uvec4> records, uint32_t samples, std::span
 
 /// Returns the sum of counters in the form of record_take_counts.
 RayCounts sum_counts(std::span<const std::byte> counters);
-/// Returns whether the driver has cut a lane's loops (shaders/loop_check.glsl), which makes pixels wrong.
+/// Returns whether the driver has cut a lane's loops (shaders/shared/loop_check.glsl), which makes pixels wrong.
 bool were_loops_cut(std::span<const std::byte> counters);
 
 }  // namespace promin

@@ -6,7 +6,7 @@
 #include <bit>
 
 #include "core/parallel.h"
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {

@@ -13,7 +13,7 @@
 #include "scene/features.h"
 #include "trace/pixel_estimate.h"
 
-// Decodes a film's records of pixels (shaders/layout.h, from AOV_* on). Does not use Vulkan.
+// Decodes a film's records of pixels (shaders/shared/layout.h, from AOV_* on). Does not use Vulkan.
 namespace promin {
 
 /// The layout of a pixel's records on a film with these features; they lie `pixel_count` apart.

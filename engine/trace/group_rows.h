@@ -11,7 +11,7 @@
 namespace promin {
 
 /// Returns the workgroups to dispatch, across and down: at least `groups` in at most `most_rows` rows, which take the
-/// work in turns (shaders/group_rows.glsl). No row is without work. Both arguments are >= 1.
+/// work in turns (shaders/shared/group_rows.glsl). No row is without work. Both arguments are >= 1.
 inline uvec2 arrange_in_rows(uint32_t groups, uint32_t most_rows) {
   const uint32_t rows = std::min(groups, most_rows);
   return {divide_up(groups, rows), rows};

@@ -21,7 +21,7 @@ namespace {
 using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
-/// Behind the lists (shaders/stream.glsl).
+/// Behind the lists (shaders/picture/stream.glsl).
 constexpr uint64_t kBinBytes = sizeof(uint32_t) * 2 * layout::STREAM_LISTS * layout::STREAM_BINS;
 
 /// Behind a film's pixels.

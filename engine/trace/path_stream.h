@@ -6,13 +6,13 @@
 #include <span>
 
 #include "device/pipeline.h"
-#include "layout.h"
 #include "scene/features.h"
+#include "shared/layout.h"
 #include "trace/picture_shaders.h"
 
 namespace promin {
 
-/// The layout and size of the stream of a film (shaders/stream.glsl).
+/// The layout and size of the stream of a film (shaders/picture/stream.glsl).
 struct StreamShape {
   /// Returns the stream for a scene of this number of lights and at most this number of paths, within kMostBytes; with
   /// glass for pictures of this depth.

@@ -10,10 +10,10 @@
 
 #include "device/profile.h"
 #include "device_scene/device_scene.h"
-#include "layout.h"
 #include "promin/progress.h"
 #include "promin/ray.h"
 #include "scene/features.h"
+#include "shared/layout.h"
 
 namespace promin {
 
@@ -21,14 +21,14 @@ namespace gpu {
 class Device;
 }
 
-/// Returns the SPIR-V of shaders/cast.comp, for the nearest hit and any hit.
+/// Returns the SPIR-V of shaders/cast/cast.comp, for the nearest hit and any hit.
 std::span<const uint32_t> cast_spirv();
-/// Returns the SPIR-V of shaders/crossings.comp, for counts and lists.
+/// Returns the SPIR-V of shaders/cast/crossings.comp, for counts and lists.
 std::span<const uint32_t> crossings_spirv();
 
 struct RayKernelOptions {
-  /// Another kernel with the bindings of shaders/cast_bindings.glsl, for tests and measurements; its workgroups take
-  /// their work from shaders/group_rows.glsl. Empty for promin's own kernel of the query.
+  /// Another kernel with the bindings of shaders/cast/cast_bindings.glsl, for tests and measurements; its workgroups
+  /// take their work from shaders/shared/group_rows.glsl. Empty for promin's own kernel of the query.
   std::span<const uint32_t> spirv = {};
   FeatureMask features = all_features();
   HitQuery query = HitQuery::kNearest;

@@ -5,16 +5,16 @@
 #include <cstdint>
 
 #include "device_scene/scene_constants.h"
-#include "layout.h"
 #include "promin/view.h"
 #include "scene/features.h"
+#include "shared/layout.h"
 
 namespace promin {
 
 /// One sample of each pixel of some blocks: one dispatch of the camera stage and of the stages after it.
 struct TileSample {
   layout::Dispatch dispatch{};
-  /// Workgroups of shaders/camera_stage.comp; y = rows.
+  /// Workgroups of shaders/picture/camera_stage.comp; y = rows.
   uvec2 group_count{0};
   /// The largest number of rays that follow a camera ray.
   uint32_t steps = 0;
@@ -54,7 +54,7 @@ struct TileOptions {
 };
 
 /// Returns the largest number of rays that a surface transmits, in addition to its mirror ray: one for glass, or one
-/// for each color (shaders/tree.glsl).
+/// for each color (shaders/picture/tree.glsl).
 uint32_t refracted_rays(FeatureMask features);
 
 /// Returns the largest number of rays of a sample after the camera ray: mirror rays, refracted rays, and continuations

@@ -8,8 +8,8 @@
 
 #include "device/pipeline.h"
 #include "device/profile.h"
-#include "layout.h"
 #include "scene/features.h"
+#include "shared/layout.h"
 
 namespace promin {
 

@@ -9,10 +9,12 @@
 
 #include "promin/export.h"
 #include "promin/math.h"
-
-// The shapes of promin/kinds/primitives.def, each in a header of its own.
-#define PROMIN_SHAPE_SOURCES
-#include "promin/kinds/primitives.def"
+#include "promin/shapes/box.h"
+#include "promin/shapes/capsule.h"
+#include "promin/shapes/cone.h"
+#include "promin/shapes/cylinder.h"
+#include "promin/shapes/plane.h"
+#include "promin/shapes/sphere.h"
 
 namespace promin {
 

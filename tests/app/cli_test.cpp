@@ -460,8 +460,8 @@ TEST_F(CliTest, AFileSizeLimitIsAFailureWhateverItStops) {
   }
 }
 
-// Lavapipe makes constants of uniforms (shaders/bindings.glsl) and then compiles for every scene, where the kernel is
-// small with every dispatch.
+// Lavapipe makes constants of uniforms (shaders/shared/bindings.glsl) and then compiles for every scene, where the
+// kernel is small with every dispatch.
 TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {
   options_.environment["MESA_SHADER_CACHE_DIR"] = "cache";
   options_.environment["MESA_DISK_CACHE_MULTI_FILE"] = "true";

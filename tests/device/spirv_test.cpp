@@ -19,9 +19,9 @@
 #include "device/branches.h"
 #include "follow_paths.spv.h"
 #include "gpu/spirv_module.h"
-#include "layout.h"
 #include "list_rays.spv.h"
 #include "place_rays.spv.h"
+#include "shared/layout.h"
 #include "support/process.h"
 #include "support/thorough.h"
 #include "trace_shadow_rays.spv.h"
@@ -139,7 +139,7 @@ TEST(SpecializeTest, UsesOfOneSceneShareTheKernelsThatDoNotDiffer) {
   std::vector<uint64_t> masks = {kScene};
 #define PROMIN_FEATURE(NAME, BIT, LABEL)
 #define PROMIN_REQUEST(NAME, BIT, LABEL) masks.push_back(kScene | uint64_t{1} << (BIT));
-#include "features.def"
+#include "shared/features.def"
   for (uint64_t debug_view = 1; debug_view <= layout::DEBUG_VIEW_STEPS; ++debug_view) {
     masks.push_back(kScene | debug_view << (32 + layout::DEBUG_VIEW_SHIFT));
   }

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// Row of the i-th sample, as shaders/camera.glsl has it.
+/// Row of the i-th sample, as shaders/picture/camera.glsl has it.
 uint32_t row_of(uint32_t index, uint32_t count, uint32_t generator) {
   return static_cast<uint32_t>((static_cast<uint64_t>(generator) * (index + 1)) % (count + 1)) - 1;
 }

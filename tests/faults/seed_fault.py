@@ -7,6 +7,7 @@ seed_fault.py FAULT SHADERS INCLUDE GLSLANG OUT KERNEL...: copies the folder SHA
 puts the fault in, and compiles the kernels to OUT/*.spv, with the tables in INCLUDE. A fault whose place is gone is an
 error."""
 
+import os
 import pathlib
 import re
 import shutil
@@ -32,25 +33,25 @@ float fused(float a, float b, float c) {
 # By name, pairs of a regular expression and what replaces it, by file.
 FAULTS = {
     "unpadded_boxes": {
-        "make_ray.glsl": [
+        "trace/make_ray.glsl": [
             (r"BOX_PADDING = [^;]*;", "BOX_PADDING = 0.0;"),
             (r"ORIGIN_PADDING = [^;]*;", "ORIGIN_PADDING = 0.0;"),
         ]
     },
-    "fixed_epsilon": {"secondary.glsl": [(r"position \+ lift \*", "position + 1e-4 *")]},
+    "fixed_epsilon": {"shade/secondary.glsl": [(r"position \+ lift \*", "position + 1e-4 *")]},
     "one_sided_fma": {
-        "primitives/triangle.glsl": [
+        "trace/primitives/triangle.glsl": [
             (r"(ShearedTriangle shear_triangle)", FUSED + r"\1"),
             (r"= c2\.x \* b2\.y - c2\.y \* b2\.x;", "= fused(c2.x, b2.y, -(c2.y * b2.x));"),
             (r"= a2\.x \* c2\.y - a2\.y \* c2\.x;", "= fused(a2.x, c2.y, -(a2.y * c2.x));"),
             (r"= b2\.x \* a2\.y - b2\.y \* a2\.x;", "= fused(b2.x, a2.y, -(b2.y * a2.x));"),
         ]
     },
-    "nothing_precise": {"primitives/triangle.glsl": [(r"\bprecise ", "")]},
+    "nothing_precise": {"trace/primitives/triangle.glsl": [(r"\bprecise ", "")]},
     # Of pictures (tests/gpu/boards_test.cpp).
-    "srgb_is_linear": {"textures.glsl": [(r"return vec3\(code\.x <= 0\.04045[^;]*;", "return code;")]},
+    "srgb_is_linear": {"shade/textures.glsl": [(r"return vec3\(code\.x <= 0\.04045[^;]*;", "return code;")]},
     "srgb_after_filter": {
-        "textures.glsl": [
+        "shade/textures.glsl": [
             (r"if \(has_flag\(slot, TEXTURE_IS_SRGB\)\) numbers.xyz = decode_srgb\(numbers.xyz\);", ""),
             (
                 r"(precise vec4 result = upper [^;]*;)",
@@ -58,53 +59,53 @@ FAULTS = {
             ),
         ]
     },
-    "wraps_swapped": {"textures.glsl": [(r"mode == WRAP_REPEAT \? repeated", "mode == WRAP_MIRRORED ? repeated")]},
-    "one_uv_set": {"textures.glsl": [(r"is_second \? place\.uvs\.zw : place\.uvs\.xy", "place.uvs.xy")]},
-    "transform_transposed": {"textures.glsl": [(r"slot\.to_u\.y \* st\.y", "slot.to_v.x * st.y")]},
+    "wraps_swapped": {"shade/textures.glsl": [(r"mode == WRAP_REPEAT \? repeated", "mode == WRAP_MIRRORED ? repeated")]},
+    "one_uv_set": {"shade/textures.glsl": [(r"is_second \? place\.uvs\.zw : place\.uvs\.xy", "place.uvs.xy")]},
+    "transform_transposed": {"shade/textures.glsl": [(r"slot\.to_u\.y \* st\.y", "slot.to_v.x * st.y")]},
     "green_flipped": {
-        "shading.glsl": [(r"scaled\.y \* across", "-scaled.y * across")],
+        "shade/shading.glsl": [(r"scaled\.y \* across", "-scaled.y * across")],
     },
-    "normals_unscaled": {"shading.glsl": [(r"\(2\.0 \* texel\.xy - 1\.0\) \* scale", "2.0 * texel.xy - 1.0")]},
+    "normals_unscaled": {"shade/shading.glsl": [(r"\(2\.0 \* texel\.xy - 1\.0\) \* scale", "2.0 * texel.xy - 1.0")]},
     "occlusion_dims_sources": {
-        "materials/metallic_roughness.glsl": [(r"albedo_of\(point\) \* INVERSE_PI", "point.occlusion * \\g<0>")]
+        "shade/materials/metallic_roughness.glsl": [(r"albedo_of\(point\) \* INVERSE_PI", "point.occlusion * \\g<0>")]
     },
-    "cutoff_excluded": {"cutouts.glsl": [(r"< material\.cover\.y", "<= material.cover.y")]},
-    "masks_in_shadows_alone": {"cutouts.glsl": [(r"if \(!has\(FEATURE_HOLES\)", "if (passes_backs || !has(FEATURE_HOLES)")]},
-    "shadows_without_holes": {"cutouts.glsl": [(r"if \(!has\(FEATURE_HOLES\)", "if (!passes_backs || !has(FEATURE_HOLES)")]},
-    "fronts_culled": {"cutouts.glsl": [(r"facing > 0\.0", "facing < 0.0")]},
-    "alpha_premultiplied": {"path.glsl": [(r"weight = coverage \* weight;", ";")]},
-    "edges_counted_twice": {"cutouts.glsl": [(r"&& is_on_open_edge &&", "&& false &&")]},
-    "equal_t_passed": {"packet.glsl": [(r"t < passed_t\[slot\] \|\|", "t <= passed_t[slot] ||")]},
+    "cutoff_excluded": {"shade/cutouts.glsl": [(r"< material\.cover\.y", "<= material.cover.y")]},
+    "masks_in_shadows_alone": {"shade/cutouts.glsl": [(r"if \(!has\(FEATURE_HOLES\)", "if (passes_backs || !has(FEATURE_HOLES)")]},
+    "shadows_without_holes": {"shade/cutouts.glsl": [(r"if \(!has\(FEATURE_HOLES\)", "if (!passes_backs || !has(FEATURE_HOLES)")]},
+    "fronts_culled": {"shade/cutouts.glsl": [(r"facing > 0\.0", "facing < 0.0")]},
+    "alpha_premultiplied": {"picture/path.glsl": [(r"weight = coverage \* weight;", ";")]},
+    "edges_counted_twice": {"shade/cutouts.glsl": [(r"&& is_on_open_edge &&", "&& false &&")]},
+    "equal_t_passed": {"trace/packet.glsl": [(r"t < passed_t\[slot\] \|\|", "t <= passed_t[slot] ||")]},
     "coat_bent_by_normals": {
-        "shading.glsl": [(r"point\.coat = seen_coat\(point\.coat, direction\);",
+        "shade/shading.glsl": [(r"point\.coat = seen_coat\(point\.coat, direction\);",
                           "{ Coat bent = point.coat; bent.normal = point.normal; point.coat = seen_coat(bent, direction); }")]
     },
     # Of levels (tests/gpu/levels_test.cpp).
-    "levels_of_fronts": {"textures.glsl": [(r" / max\(abs\(facing\), 1\.0 / 64\.0\)", "")]},
-    "levels_a_little_fine": {"textures.glsl": [(r"log2_about\(texels\)\);", "log2_about(texels)) - 0.005;")]},
-    "mirrors_keep_cones": {"path.glsl": [(r"path\.cone_spread = spread;", ";")]},
-    "mirrored_masks_anew": {"follow_paths.comp": [(r"sight_width = load_record[^;]*;", "sight_width = 0.0;")]},
+    "levels_of_fronts": {"shade/textures.glsl": [(r" / max\(abs\(facing\), 1\.0 / 64\.0\)", "")]},
+    "levels_a_little_fine": {"shade/textures.glsl": [(r"log2_about\(texels\)\);", "log2_about(texels)) - 0.005;")]},
+    "mirrors_keep_cones": {"picture/path.glsl": [(r"path\.cone_spread = spread;", ";")]},
+    "mirrored_masks_anew": {"picture/follow_paths.comp": [(r"sight_width = load_record[^;]*;", "sight_width = 0.0;")]},
     "shadows_take_levels": {
-        "camera_stage.comp": [(r"sight_width = 0\.0;\s*sight_spread = 0\.0;", "sight_width = CAMERA.look.w + 0.05;")]
+        "picture/camera_stage.comp": [(r"sight_width = 0\.0;\s*sight_spread = 0\.0;", "sight_width = CAMERA.look.w + 0.05;")]
     },
     # Of what few materials have (tests/gpu/oracle_picture_test.cpp).
     "behind_seen_from_front": {
-        "shading.glsl": [(r"lift_off\(point\.position, -point", "lift_off(point.position, point")]
+        "shade/shading.glsl": [(r"lift_off\(point\.position, -point", "lift_off(point.position, point")]
     },
-    "films_seen_from_above": {"shading.glsl": [(r"put_film\(point, cosine\)", "put_film(point, 1.0)")]},
-    "grain_unbent": {"anisotropy.glsl": [(r"max_abs\(bent\) == 0\.0 \? point\.normal : bent", "point.normal")]},
-    "sky_behind_in_front": {"materials/metallic_roughness.glsl": [(r"ambient_at\(-point", "ambient_at(point")]},
-    "grain_turned": {"anisotropy.glsl": [(r"vec2\(along, across\)", "vec2(across, along)")]},
+    "films_seen_from_above": {"shade/shading.glsl": [(r"put_film\(point, cosine\)", "put_film(point, 1.0)")]},
+    "grain_unbent": {"shade/anisotropy.glsl": [(r"max_abs\(bent\) == 0\.0 \? point\.normal : bent", "point.normal")]},
+    "sky_behind_in_front": {"shade/materials/metallic_roughness.glsl": [(r"ambient_at\(-point", "ambient_at(point")]},
+    "grain_turned": {"shade/anisotropy.glsl": [(r"vec2\(along, across\)", "vec2(across, along)")]},
     # Of glass (tests/gpu/oracle_picture_test.cpp).
-    "absorption_per_face": {"glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
-    "colors_swapped": {"glass.glsl": [(r"color == RED \? -", "color == BLUE ? -")]},
-    "glass_seen_from_outside": {"faces.glsl": [(r"face\.from <= face\.to \? cosine : beyond", "cosine")]},
-    "media_kept": {"glass.glsl": [(r"= leave\(media, medium\);", "= media;")]},
-    "nested_faces_bend": {"glass.glsl": [(r"if \(is_last \|\|[^)]*\)\) \{", "{")]},
-    "refraction_inverted": {"faces.glsl": [(r"float ratio = face\.from / face\.to;", "float ratio = face.to / face.from;")]},
-    "shadows_untinted": {"light_way.glsl": [(r"coverage \* share_through\([^)]*\)", "coverage")]},
-    "total_reflection_dark": {"faces.glsl": [(r"\) mirror \+= record\.transmission\.xyz;", ") ;")]},
-    "through_unweighted": {"tree.glsl": [(r"= path\.weight \* point\.glass\.through;", "= path.weight;")]},
+    "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
+    "colors_swapped": {"shade/glass.glsl": [(r"color == RED \? -", "color == BLUE ? -")]},
+    "glass_seen_from_outside": {"shade/faces.glsl": [(r"face\.from <= face\.to \? cosine : beyond", "cosine")]},
+    "media_kept": {"shade/glass.glsl": [(r"= leave\(media, medium\);", "= media;")]},
+    "nested_faces_bend": {"shade/glass.glsl": [(r"if \(is_last \|\|[^)]*\)\) \{", "{")]},
+    "refraction_inverted": {"shade/faces.glsl": [(r"float ratio = face\.from / face\.to;", "float ratio = face.to / face.from;")]},
+    "shadows_untinted": {"shade/light_way.glsl": [(r"coverage \* share_through\([^)]*\)", "coverage")]},
+    "total_reflection_dark": {"shade/faces.glsl": [(r"\) mirror \+= record\.transmission\.xyz;", ") ;")]},
+    "through_unweighted": {"picture/tree.glsl": [(r"= path\.weight \* point\.glass\.through;", "= path.weight;")]},
 }
 
 
@@ -114,9 +115,10 @@ def main():
     folder = out / "shaders"
     shutil.rmtree(out, ignore_errors=True)
     shutil.copytree(shaders, folder)
-    for kernel in kernels:
-        if kernel.parent.resolve() != shaders.resolve():
-            shutil.copy(kernel, folder)
+    sources = [folder / os.path.relpath(kernel, shaders) for kernel in kernels]
+    for i, kernel in enumerate(kernels):
+        if not sources[i].exists():
+            sources[i] = pathlib.Path(shutil.copy(kernel, folder))
     for file, changes in FAULTS[fault].items():
         text = (folder / file).read_text()
         for pattern, replacement in changes:
@@ -124,9 +126,9 @@ def main():
             if count == 0:
                 sys.exit(f"seed_fault.py: error: {file} has no {pattern} for the fault {fault}; mend the pattern")
         (folder / file).write_text(text)
-    for source in (folder / kernel.name for kernel in kernels):
+    for source in sources:
         spirv = out / (source.stem + ".spv")
-        options = ["--quiet", "-V", "--target-env", "vulkan1.1", "-I" + str(include)]
+        options = ["--quiet", "-V", "--target-env", "vulkan1.1", f"-I{folder}", f"-I{include}"]
         subprocess.run([glslang, *options, "-o", spirv, source], check=True)
 
 

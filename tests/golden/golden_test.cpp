@@ -12,12 +12,12 @@
 #include <limits>
 
 #include "gpu/device_fixture.h"
-#include "layout.h"
 #include "measure/compare_images.h"
 #include "promin/image.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
 #include "render/renderer_impl.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {

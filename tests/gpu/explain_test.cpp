@@ -10,13 +10,13 @@
 #include "core/rounding.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "layout.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
 #include "render/caster_access.h"
 #include "render/renderer_impl.h"
+#include "shared/layout.h"
 #include "support/thorough.h"
 
 namespace promin {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "layout.h"
+#include "shared/layout.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

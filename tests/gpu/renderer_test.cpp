@@ -17,10 +17,10 @@
 #include "device_scene/device_scene.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "layout.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
 #include "render/renderer_impl.h"
+#include "shared/layout.h"
 #include "support/thorough.h"
 
 namespace promin {

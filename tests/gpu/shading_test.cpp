@@ -12,9 +12,9 @@
 #include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "layout.h"
 #include "promin/renderer.h"
 #include "render/renderer_impl.h"
+#include "shared/layout.h"
 #include "trace/ray_kernel.h"
 
 namespace promin {

@@ -7,25 +7,25 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "layout.h"
+#include "shared/layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
-#include "bindings.glsl"
-#include "cast_bindings.glsl"
-#include "math.glsl"
-#include "ray.glsl"
-#include "make_ray.glsl"
-#include "primitives.glsl"
-#include "packet.glsl"
-#include "no_cutouts.glsl"
-#include "packet_shapes.glsl"
-#include "packet_triangles.glsl"
-#include "family.glsl"
-#include "node_boxes.glsl"
-#include "traversal.glsl"
-#include "secondary.glsl"
-#include "group_rows.glsl"
+#include "shared/bindings.glsl"
+#include "cast/cast_bindings.glsl"
+#include "shared/math.glsl"
+#include "trace/ray.glsl"
+#include "trace/make_ray.glsl"
+#include "trace/primitives.glsl"
+#include "trace/packet.glsl"
+#include "trace/no_cutouts.glsl"
+#include "trace/packet_shapes.glsl"
+#include "trace/packet_triangles.glsl"
+#include "trace/family.glsl"
+#include "trace/node_boxes.glsl"
+#include "trace/traversal.glsl"
+#include "shade/secondary.glsl"
+#include "shared/group_rows.glsl"
 
 void main() {
   uint index = first_ray() + group_number() * BLOCK_SIZE * BLOCK_SIZE + gl_LocalInvocationIndex;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "layout.h"
 #include "measure/meshes.h"
 #include "measure/random.h"
 #include "measure/ray_sets.h"
@@ -17,6 +16,7 @@
 #include "promin/device.h"
 #include "promin/ray.h"
 #include "scene/world_scene.h"
+#include "shared/layout.h"
 #include "trace/ray_kernel.h"
 
 namespace promin::hard {
@@ -109,7 +109,7 @@ class Lab {
   std::vector<layout::HitRecord> cast_packed(const PackedScene& packed, FeatureMask features, std::span<const Ray> rays,
                                              double* time_ms = nullptr) const;
 
-  /// SPIR-V of shaders/cast.comp, or the one of PROMIN_TEST_KERNELS.
+  /// SPIR-V of shaders/cast/cast.comp, or the one of PROMIN_TEST_KERNELS.
   static std::span<const uint32_t> cast_kernel();
   /// SPIR-V of tests/hard/bounce.comp, or the one of PROMIN_TEST_KERNELS.
   static std::span<const uint32_t> bounce_kernel();

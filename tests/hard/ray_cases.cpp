@@ -180,7 +180,7 @@ void run_intervals(Lab& lab) {
   for (const auto& [name, scene] : scenes) {
     std::vector<Ray> rays;
     for (int i = 0; i < 6000; ++i) {
-      // A sixth from where rays start nearer by for the tree's sake (shaders/make_ray.glsl).
+      // A sixth from where rays start nearer by for the tree's sake (shaders/trace/make_ray.glsl).
       const double distance = i % 6 != 0 ? 4.0 : std::pow(10.0, 4.0 + 3.0 * random.uniform(0.0, 1.0));
       const dvec3 origin = distance * random.direction();
       Ray ray = ray_towards(origin, 0.8 * random.direction());

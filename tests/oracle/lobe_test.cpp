@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "layout.h"
+#include "shared/layout.h"
 
 namespace promin::oracle {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "layout.h"
 #include "promin/shapes.h"
 #include "promin/validate.h"
 #include "scene/features.h"
+#include "shared/layout.h"
 
 namespace promin {
 namespace {

@@ -14,7 +14,7 @@ import sys
 from figures import join, markdown_table
 from stats import read_figures
 
-# The methods of the kernels and their sources; shaders/primitives/*.glsl have the reasons.
+# The methods of the kernels and their sources; shaders/trace/primitives/*.glsl have the reasons.
 METHODS = {
     "sphere": (
         "around the closest approach, corrected once; discriminant (r - |p|)(r + |p|) in units of r",

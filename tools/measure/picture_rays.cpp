@@ -41,7 +41,7 @@ struct Point {
   uint32_t material = 0;
 };
 
-/// The rules of shaders/shading.glsl, lights.glsl and path.glsl as far as they decide which rays there are.
+/// The rules of shaders/shade/shading.glsl, lights.glsl and path.glsl as far as they decide which rays there are.
 class PictureRules {
  public:
   PictureRules(const world::Scene& scene, const View& view) : scene_(scene), view_(view) {
@@ -141,7 +141,7 @@ class PictureRules {
     for (int i = 0; i < 3; ++i) sum += weights[i] * side * mesh.normals[corners[i]];
     if (!(glm::length(sum) > 0.0F)) return;
     point.normal = glm::normalize(sum);
-    // As lift_to_curve of shaders/shading.glsl.
+    // As lift_to_curve of shaders/shade/shading.glsl.
     vec3 lifted(0.0F);
     for (int i = 0; i < 3; ++i) {
       const vec3 normal = side * mesh.normals[corners[i]];

@@ -13,7 +13,7 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer Film {
   uvec4 pixels[];
 };
 
-#include "dispatch.glsl"
+#include "shared/dispatch.glsl"
 
 // x = passes, y = refracted rays, z = primary rays with a hit.
 void add_passes(uvec3 counts) {

@@ -4,14 +4,14 @@
 // workgroups for the remainder of the turn. Each lane sums all bins before its own, because lanes share no memory.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "layout.h"
+#include "shared/layout.h"
 
 layout(local_size_x = STREAM_LANES) in;
 
-#include "bindings.glsl"
-#include "film.glsl"
-#include "stream.glsl"
-#include "stream_records.glsl"
+#include "shared/bindings.glsl"
+#include "picture/film.glsl"
+#include "picture/stream.glsl"
+#include "picture/stream_records.glsl"
 
 // Returns the workgroups for this number of lanes, in rows (engine/trace/group_rows.h).
 uvec4 groups_of(uint lanes) {

@@ -4,7 +4,7 @@
 // and tone mapping, and encodes to 8-bit sRGB.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "layout.h"
+#include "shared/layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
@@ -20,9 +20,9 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   uvec4 pixels[];
 };
 
-#include "dispatch.glsl"
-#include "tone_mapping.glsl"
-#include "dither.glsl"
+#include "shared/dispatch.glsl"
+#include "window/tone_mapping.glsl"
+#include "window/dither.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
 // The factor of the exposure, which the window can change without another pipeline.
 layout(std430, set = 0, binding = 1) readonly buffer Exposure { float exposure_factor; };

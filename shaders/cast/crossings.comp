@@ -7,21 +7,21 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define ASKS_FOR_ALL true
-#include "layout.h"
-#include "bindings.glsl"
-#include "cast_bindings.glsl"
-#include "math.glsl"
-#include "ray.glsl"
-#include "make_ray.glsl"
-#include "primitives.glsl"
-#include "packet.glsl"
-#include "no_cutouts.glsl"
-#include "packet_crossings.glsl"
-#include "family.glsl"
-#include "node_boxes.glsl"
-#include "traversal.glsl"
-#include "group_rows.glsl"
-#include "loop_check.glsl"
+#include "shared/layout.h"
+#include "shared/bindings.glsl"
+#include "cast/cast_bindings.glsl"
+#include "shared/math.glsl"
+#include "trace/ray.glsl"
+#include "trace/make_ray.glsl"
+#include "trace/primitives.glsl"
+#include "trace/packet.glsl"
+#include "trace/no_cutouts.glsl"
+#include "trace/packet_crossings.glsl"
+#include "trace/family.glsl"
+#include "trace/node_boxes.glsl"
+#include "trace/traversal.glsl"
+#include "shared/group_rows.glsl"
+#include "shared/loop_check.glsl"
 
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;

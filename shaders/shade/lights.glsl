@@ -11,8 +11,10 @@ struct LightSample {
   float strength;
 };
 
-#define PROMIN_LIGHT_SOURCES
-#include "promin/kinds/lights.def"
+#include "shade/lights/point.glsl"
+#include "shade/lights/directional.glsl"
+#include "shade/lights/spot.glsl"
+#include "shade/lights/headlight.glsl"
 
 LightSample sample_light(LightRecord light, vec3 position) {
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)            \

@@ -3,7 +3,7 @@
 // The convex hull of two spheres: both spheres, and the frustum of the cone that touches them, between its circles of
 // contact. The hull and each of the three parts are convex, so a ray is inside from the first entry to the last exit,
 // and no seam can leak.
-#include "primitives/frustum.glsl"
+#include "trace/primitives/frustum.glsl"
 
 struct Capsule {
   vec3 center;  // halfway between the centres of the spheres

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // A cylinder, closed by two disks or open: a frustum of slope 0.
-#include "primitives/frustum.glsl"
+#include "trace/primitives/frustum.glsl"
 
 Frustum cylinder_of(Primitive p) { return Frustum(p.a.xyz, p.b.xyz, p.b.w, p.a.w, 0.0, is_frustum_open(p)); }
 

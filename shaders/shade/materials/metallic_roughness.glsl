@@ -9,9 +9,9 @@ const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12: the light comes from 
 const float LEAST_ALPHA = 0.002;                 // of sources, whose images would be points (glTF B.3.2 forbids 0)
 const float INVERSE_PI = 0.318309886;
 
-#include "sheen.glsl"
-#include "thin_film.glsl"
-#include "anisotropy.glsl"
+#include "shade/sheen.glsl"
+#include "shade/thin_film.glsl"
+#include "shade/anisotropy.glsl"
 
 // Between these roughnesses reflected objects fade until only the environment remains.
 const float SHARPEST_BLUR = 0.1;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // A cone or frustum, closed by its disks or open.
-#include "primitives/frustum.glsl"
+#include "trace/primitives/frustum.glsl"
 
 Frustum cone_of(Primitive p) {
   float radius_bottom = p.a.w;

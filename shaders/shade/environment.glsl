@@ -73,7 +73,7 @@ vec3 environment_radiance(vec3 direction, float roughness) {
     rougher_roughness = ROUGHNESS;                                     \
   }                                                                    \
   level.first += (level.side + 1u) * (level.side + 2u);
-#include "sky_levels.def"
+#include "shade/sky_levels.def"
   vec2 place = octahedral_place(direction);
   vec3 radiance = look_up_sky_level(sharper, place);
   if (roughness > sharper_roughness) {

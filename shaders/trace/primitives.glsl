@@ -9,8 +9,13 @@ struct SurfacePoint {
   float lift;   // how far along the normal a secondary ray must start so that rounding cannot bring it back
 };
 
-#define PROMIN_SHAPE_SOURCES
-#include "promin/kinds/primitives.def"
+#include "trace/primitives/triangle.glsl"
+#include "trace/primitives/sphere.glsl"
+#include "trace/primitives/plane.glsl"
+#include "trace/primitives/cylinder.glsl"
+#include "trace/primitives/cone.glsl"
+#include "trace/primitives/box.glsl"
+#include "trace/primitives/capsule.glsl"
 
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \

@@ -9,7 +9,7 @@ layout(std430, set = 0, binding = BINDING_HITS) buffer Hits {
   HitRecord hits[];
 };
 
-#include "dispatch.glsl"
+#include "shared/dispatch.glsl"
 
 RayRecord load_ray(uint index) {
   if (FETCHES_TEXELS == 0u) return rays[index];

@@ -36,7 +36,7 @@ void enter_part(inout Path path, uint part) {
 // Whether each path has its own number of bounces, which may differ from that of the turn.
 const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 
-#include "light_parts.glsl"
+#include "picture/light_parts.glsl"
 
 // Applies the medium's absorption on the way to a hit, from the surface that the ray passed before.
 void absorb(inout Path path, Ray ray, Hit hit) {

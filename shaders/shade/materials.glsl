@@ -11,8 +11,9 @@
 //   mirror_normal     the unit normal about which it is mirrored
 //   mirror_roughness  the roughness at which a mirror ray that meets nothing sees the environment, or NO_ENVIRONMENT
 
-#define PROMIN_MATERIAL_SOURCES
-#include "promin/kinds/materials.def"
+#include "shade/materials/phong.glsl"
+#include "shade/materials/metallic_roughness.glsl"
+#include "shade/materials/unlit.glsl"
 
 uint model_of(ShadingPoint point) { return flags_of(point.material) & MATERIAL_MODEL_MASK; }
 

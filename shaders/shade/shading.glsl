@@ -66,15 +66,15 @@ struct ShadingPoint {
   Anisotropy anisotropy;  // with FEATURE_ANISOTROPY
 };
 
-#include "glass.glsl"
+#include "shade/glass.glsl"
 
 // Whether some faces split light depending on the angle.
 const bool HAS_FACES = (FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_FRESNEL)) != 0u;
 
-#include "materials.glsl"
-#include "textures.glsl"
-#include "texture_slots.glsl"
-#include "cutouts.glsl"
+#include "shade/materials.glsl"
+#include "shade/textures.glsl"
+#include "shade/texture_slots.glsl"
+#include "shade/cutouts.glsl"
 
 bool is_extended(MaterialRecord material) { return slot_number(material.d.x) != 0u; }
 ExtensionRecord extension_of(MaterialRecord material) {
@@ -367,7 +367,7 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
   return Sheen(sheen.color, sheen.roughness, load_sheen_share(max(cosine, LEAST_COSINE), sheen.roughness));
 }
 
-#include "faces.glsl"
+#include "shade/faces.glsl"
 
 // `direction` is the ray's unit direction; `cone_width` is the width of its pixel's cone at the hit; `media` are the
 // media that contain the ray, which is refracted as this color of light. The point is an out parameter and not

@@ -44,7 +44,7 @@ LAYOUT_CONSTANT FEATURE_WORDS = 2u;
 #include "promin/kinds/materials.def"
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) LAYOUT_FEATURE(FEATURE_##FEATURE, BIT)
-#include "features.def"
+#include "shared/features.def"
 
 // The kind of a picture: light, or a debug view. The number of the view is stored in the second word of features.
 LAYOUT_CONSTANT DEBUG_VIEW_NONE = 0u;

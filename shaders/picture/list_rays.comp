@@ -3,15 +3,15 @@
 // Writes the lists of a turn of the stream from the requests of the previous turn.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "layout.h"
+#include "shared/layout.h"
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
-#include "bindings.glsl"
-#include "film.glsl"
-#include "stream.glsl"
-#include "stream_records.glsl"
-#include "group_rows.glsl"
+#include "shared/bindings.glsl"
+#include "picture/film.glsl"
+#include "picture/stream.glsl"
+#include "picture/stream_records.glsl"
+#include "shared/group_rows.glsl"
 
 uint place_of(uint kind, uint ask) {
   return load_word(places_of_bins(kind) + (ask & (STREAM_BINS - 1u))) + (ask >> STREAM_BIN_BITS);
