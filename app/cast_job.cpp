@@ -18,7 +18,7 @@
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"
-#include "render/caster_access.h"
+#include "trace/render/caster_access.h"
 #include "tracing_run.h"
 
 namespace promin::app {

@@ -16,9 +16,9 @@
 #include "promin/renderer.h"
 #include "promin/scene.h"
 #include "promin/view.h"
-#include "render/renderer_impl.h"
 #include "render_options.h"
 #include "run_stats.h"
+#include "trace/render/renderer_impl.h"
 #include "tracing_run.h"
 
 namespace promin::app {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <span>
 
-#include "trace/refinement.h"
+#include "trace/film/refinement.h"
 
 namespace promin::app {
 

@@ -27,11 +27,11 @@
 #include "progress.h"
 #include "promin/error.h"
 #include "promin/image.h"
-#include "render/renderer_impl.h"
 #include "render_help.h"
 #include "render_job.h"
 #include "standard_output.h"
-#include "trace/refinement.h"
+#include "trace/film/refinement.h"
+#include "trace/render/renderer_impl.h"
 #include "tracing_run.h"
 
 namespace promin::app {

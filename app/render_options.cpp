@@ -23,7 +23,7 @@
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "promin/view.h"
-#include "trace/refinement.h"
+#include "trace/film/refinement.h"
 #include "typed_words.h"
 
 namespace promin::app {

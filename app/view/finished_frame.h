@@ -17,7 +17,7 @@ struct StageTimes {
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
-  /// Whether the driver has cut loops (trace/film.h), so that pixels are wrong.
+  /// Whether the driver has cut loops (trace/film/film.h), so that pixels are wrong.
   bool has_cut_loops = false;
   /// The units of tracing (ProgressivePicture::record).
   double units = 0.0;

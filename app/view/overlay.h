@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "trace/progressive_picture.h"
+#include "trace/film/progressive_picture.h"
 #include "view/file_dialog.h"
 #include "view/finished_frame.h"
 #include "view/overlay_scale.h"

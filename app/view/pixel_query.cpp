@@ -6,8 +6,8 @@
 
 #include <utility>
 
-#include "render/renderer_impl.h"
-#include "trace/explain_pixel.h"
+#include "trace/film/explain_pixel.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::app {
 

@@ -10,8 +10,8 @@
 #include "formats/source_file.h"
 #include "promin/error.h"
 #include "promin/validate.h"
-#include "render/renderer_impl.h"
 #include "scene/features.h"
+#include "trace/render/renderer_impl.h"
 #include "view_setup.h"
 
 namespace promin::app {

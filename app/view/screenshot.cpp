@@ -16,7 +16,7 @@
 #include "picture_files.h"
 #include "promin/error.h"
 #include "render_options.h"
-#include "trace/film.h"
+#include "trace/film/film.h"
 
 namespace promin::app {
 namespace fs = std::filesystem;

@@ -11,7 +11,7 @@
 #include "device/buffer.h"
 #include "device/pipeline.h"
 #include "promin/display.h"
-#include "trace/progressive_picture.h"
+#include "trace/film/progressive_picture.h"
 #include "view/device_work.h"
 #include "view/finished_frame.h"
 

@@ -53,10 +53,10 @@ struct DeviceProfile {
   double target_dispatch_ms = 25.0;
   /// A device counts as lost if it does not answer for this number of seconds.
   double most_silence_s = 120.0;
-  /// Largest number of rows of workgroups in a dispatch (trace/group_rows.h).
+  /// Largest number of rows of workgroups in a dispatch (trace/kernels/group_rows.h).
   uint32_t most_group_rows = 1;
-  /// Whether the driver may end loops of too many iterations (trace/cut_loops.h); callers that trace then check whether
-  /// it did.
+  /// Whether the driver may end loops of too many iterations (trace/kernels/cut_loops.h); callers that trace then check
+  /// whether it did.
   bool may_cut_loops = false;
 
   // Pictures.
@@ -64,8 +64,8 @@ struct DeviceProfile {
   uint32_t pixel_packet_size = 1;
   /// With fewer samples each lane traces one pixel: that kernel compiles faster and traces slower.
   uint64_t samples_that_repay_packets = 0;
-  /// Largest number of pixels whose paths are traced together, bounce by bounce (trace/path_stream.h): enough to fill
-  /// the device at late bounces too.
+  /// Largest number of pixels whose paths are traced together, bounce by bounce (trace/kernels/path_stream.h): enough
+  /// to fill the device at late bounces too.
   uint32_t most_stream_paths = 1U << 18;
 
   // Casting rays.

@@ -13,8 +13,8 @@
 namespace promin {
 
 /// If there are more identical primitives than this, the tree contains only the first: a ray that hits one hits all,
-/// and drivers end loops of so many iterations (trace/cut_loops.h). Smaller groups are kept, so that the trees of other
-/// scenes do not change.
+/// and drivers end loops of so many iterations (trace/kernels/cut_loops.h). Smaller groups are kept, so that the trees
+/// of other scenes do not change.
 inline constexpr uint32_t kMostCopies = 1024;
 
 /// The primitives that were left out as copies of others.

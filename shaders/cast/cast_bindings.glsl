@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The buffers, in addition to the scene, of a kernel that casts rays and writes records (engine/trace/ray_kernel.h).
+// The buffers, in addition to the scene, of a kernel that casts rays and writes records (engine/trace/kernels/ray_kernel.h).
 
 layout(std430, set = 0, binding = BINDING_RAYS) readonly buffer Rays { RayRecord rays[]; };
 layout(set = 0, binding = BINDING_RAY_TEXELS) uniform usamplerBuffer ray_texels;

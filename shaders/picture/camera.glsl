@@ -26,7 +26,7 @@ Ray ray_through(uvec2 pixel, vec2 place) {
 Ray camera_ray(uvec2 window_pixel) { return ray_through(window_corner() + window_pixel, sample_point()); }
 
 // Returns the ray for a record of the film that the host has written, with FEATURE_LISTED_SAMPLES
-// (engine/trace/film.h).
+// (engine/trace/film/film.h).
 Ray listed_ray(uint record) {
   uvec4 listed = pixels[record];
   return ray_through(uvec2(listed.z & 0xFFFFu, listed.z >> 16), uintBitsToFloat(listed.xy));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // llvmpipe gives each thread one run of workgroups, first across, then down. There is therefore a row of workgroups for
-// each thread (engine/trace/group_rows.h), and the rows take the work in turns: all threads take equally long, and
+// each thread (engine/trace/kernels/group_rows.h), and the rows take the work in turns: all threads take equally long, and
 // consecutive work of a thread is close together.
 
 // Returns the number of the piece of work that this group takes.

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "trace/cut_loops.h"
+#include "trace/kernels/cut_loops.h"
 
 namespace promin::app {
 namespace {

@@ -19,7 +19,7 @@
 #include "measure/step_counts.h"
 #include "promin/caster.h"
 #include "promin/load_scene.h"
-#include "render/caster_access.h"
+#include "trace/render/caster_access.h"
 
 namespace promin {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "device_scene/pack_scene.h"
-#include "render/copied_hits.h"
+#include "trace/render/copied_hits.h"
 
 namespace promin {
 namespace {

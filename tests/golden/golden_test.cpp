@@ -16,8 +16,8 @@
 #include "promin/image.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
 #include "shared/layout.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -16,8 +16,8 @@
 #include "gpu/ways_of_tracing.h"
 #include "promin/setup_stats.h"
 #include "promin/validate.h"
-#include "render/caster_access.h"
-#include "render/renderer_impl.h"
+#include "trace/render/caster_access.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

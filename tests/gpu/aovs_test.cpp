@@ -10,9 +10,9 @@
 
 #include "device_fixture.h"
 #include "device_scene/sampling.h"
-#include "render/renderer_impl.h"
 #include "support/thorough.h"
 #include "test_scenes.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

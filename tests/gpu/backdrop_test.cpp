@@ -6,7 +6,7 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/display.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

@@ -17,7 +17,7 @@
 #include "gpu/test_scenes.h"
 #include "promin/image.h"
 #include "promin/validate.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

@@ -14,8 +14,8 @@
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "promin/renderer.h"
-#include "render/caster_access.h"
-#include "render/renderer_impl.h"
+#include "trace/render/caster_access.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

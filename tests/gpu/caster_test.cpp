@@ -20,10 +20,10 @@
 #include "promin/error.h"
 #include "promin/renderer.h"
 #include "rays/ray_tiles.h"
-#include "render/caster_access.h"
-#include "render/renderer_impl.h"
-#include "trace/ray_kernel.h"
-#include "trace/tracing_kernel.h"
+#include "trace/kernels/ray_kernel.h"
+#include "trace/kernels/tracing_kernel.h"
+#include "trace/render/caster_access.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -28,9 +28,9 @@
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "promin/setup_stats.h"
-#include "render/caster_access.h"
 #include "support/temp_folder.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
+#include "trace/render/caster_access.h"
 
 namespace promin {
 namespace {

@@ -15,9 +15,9 @@
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
-#include "render/renderer_impl.h"
 #include "support/thorough.h"
-#include "trace/pixel_estimate.h"
+#include "trace/film/pixel_estimate.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

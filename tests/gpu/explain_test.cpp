@@ -14,10 +14,10 @@
 #include "promin/error.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
-#include "render/caster_access.h"
-#include "render/renderer_impl.h"
 #include "shared/layout.h"
 #include "support/thorough.h"
+#include "trace/render/caster_access.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

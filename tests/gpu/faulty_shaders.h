@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/renderer_impl.h"
 #include "support/read_spirv.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 

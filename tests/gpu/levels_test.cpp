@@ -23,7 +23,7 @@
 #include "gpu/test_scenes.h"
 #include "oracle/compare_picture.h"
 #include "oracle/texture.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

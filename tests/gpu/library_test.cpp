@@ -19,9 +19,9 @@
 #include "promin/framing.h"
 #include "promin/renderer.h"
 #include "promin/validate.h"
-#include "render/renderer_impl.h"
 #include "support/file_size_limit.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

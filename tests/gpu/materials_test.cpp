@@ -16,7 +16,7 @@
 #include "oracle/lobe.h"
 #include "oracle/picture.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

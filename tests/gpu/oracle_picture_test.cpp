@@ -17,9 +17,9 @@
 #include "oracle/sky.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
 #include "scene/glass.h"
 #include "support/thorough.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/path_stream.h"
+#include "trace/kernels/path_stream.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "device_scene/sampling.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

@@ -19,9 +19,9 @@
 #include "gpu/test_scenes.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
-#include "render/renderer_impl.h"
 #include "shared/layout.h"
 #include "support/thorough.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

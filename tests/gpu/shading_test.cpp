@@ -13,9 +13,9 @@
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
 #include "shared/layout.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -10,7 +10,7 @@
 #include "gpu/test_scenes.h"
 #include "promin/lighting.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

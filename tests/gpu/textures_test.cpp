@@ -11,7 +11,7 @@
 #include "gpu/test_scenes.h"
 #include "gpu/ways_of_tracing.h"
 #include "promin/validate.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 namespace {

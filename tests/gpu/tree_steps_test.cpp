@@ -8,7 +8,7 @@
 #include "device_scene/pack_scene.h"
 #include "gpu/device_fixture.h"
 #include "support/pipes.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
 
 namespace promin {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 

@@ -9,7 +9,7 @@
 #include "promin/device.h"
 #include "promin/ray.h"
 #include "scene/world_scene.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
 
 namespace promin::hard {
 

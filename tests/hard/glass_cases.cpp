@@ -11,7 +11,7 @@
 #include "core/rounding.h"
 #include "hard/hard_case.h"
 #include "oracle/glass.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::hard {
 namespace {

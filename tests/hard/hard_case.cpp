@@ -18,8 +18,8 @@
 #include "core/rounding.h"
 #include "hard/figures.h"
 #include "promin/caster.h"
-#include "render/caster_access.h"
 #include "support/read_spirv.h"
+#include "trace/render/caster_access.h"
 
 namespace promin::hard {
 namespace {

@@ -17,7 +17,7 @@
 #include "promin/ray.h"
 #include "scene/world_scene.h"
 #include "shared/layout.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
 
 namespace promin::hard {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/cut_loops.h"
+#include "trace/kernels/cut_loops.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/film.h"
+#include "trace/film/film.h"
 
 #include <gtest/gtest.h>
 
 #include "device/device.h"
 #include "gpu/device_fixture.h"
 #include "gpu/test_scenes.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/refinement.h"
+#include "trace/film/refinement.h"
 
 #include <gtest/gtest.h>
 

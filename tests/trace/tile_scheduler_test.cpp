@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/tile_scheduler.h"
+#include "trace/kernels/tile_scheduler.h"
 
 #include <gtest/gtest.h>
 

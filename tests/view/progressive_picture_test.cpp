@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/progressive_picture.h"
+#include "trace/film/progressive_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "gpu/test_scenes.h"
 #include "promin/error.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -16,7 +16,7 @@
 #include "promin/device.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
-#include "render/caster_access.h"
+#include "trace/render/caster_access.h"
 
 namespace promin::lab {
 namespace {

@@ -20,8 +20,8 @@
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
-#include "trace/pixel_estimate.h"
-#include "trace/refinement.h"
+#include "trace/film/pixel_estimate.h"
+#include "trace/film/refinement.h"
 
 namespace promin::lab {
 namespace {

@@ -11,7 +11,7 @@
 #include "measure/picture_rays.h"
 #include "measure/samples.h"
 #include "rays/npy.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin::lab {
 namespace {

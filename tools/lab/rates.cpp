@@ -13,7 +13,7 @@
 #include "measure/meshes.h"
 #include "measure/samples.h"
 #include "measure/step_counts.h"
-#include "render/caster_access.h"
+#include "trace/render/caster_access.h"
 
 namespace promin::lab {
 namespace {

@@ -19,12 +19,12 @@
 #include "measure/samples.h"
 #include "promin/error.h"
 #include "promin/image.h"
-#include "render/caster_access.h"
-#include "render/renderer_impl.h"
 #include "textbook_camera_stage.spv.h"
 #include "textbook_cast.spv.h"
 #include "textbook_follow_paths.spv.h"
 #include "textbook_trace_shadow_rays.spv.h"
+#include "trace/render/caster_access.h"
+#include "trace/render/renderer_impl.h"
 #include "tracing_options.h"
 
 namespace promin::lab {

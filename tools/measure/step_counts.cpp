@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
 
 namespace promin::measure {
 

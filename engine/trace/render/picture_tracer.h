@@ -10,10 +10,10 @@
 
 #include "core/unset_vector.h"
 #include "promin/renderer.h"
-#include "render/renderer_impl.h"
-#include "trace/film.h"
-#include "trace/film_records.h"
-#include "trace/refinement.h"
+#include "trace/film/film.h"
+#include "trace/film/film_records.h"
+#include "trace/film/refinement.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 

@@ -11,7 +11,7 @@
 #include "promin/aovs.h"
 #include "promin/view.h"
 #include "scene/features.h"
-#include "trace/pixel_estimate.h"
+#include "trace/film/pixel_estimate.h"
 
 // Decodes a film's records of pixels (shaders/shared/layout.h, from AOV_* on). Does not use Vulkan.
 namespace promin {

@@ -7,8 +7,8 @@
 #include "device/device.h"
 #include "device_scene/drop_copies.h"
 #include "promin/validate.h"
-#include "render/picture_tracer.h"
-#include "render/renderer_impl.h"
+#include "trace/render/picture_tracer.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/pixel_estimate.h"
+#include "trace/film/pixel_estimate.h"
 
 #include <algorithm>
 #include <bit>

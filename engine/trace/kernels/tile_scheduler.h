@@ -35,7 +35,7 @@ struct TileOptions {
 
   /// The number of pixels that a lane of the camera stage traces together (PACKET_SIZE): 1, 2 or 4.
   uint32_t packet_size = 1;
-  /// See trace/group_rows.h.
+  /// See trace/kernels/group_rows.h.
   uint32_t most_group_rows = 1;
   /// The smallest and the largest piece, at most kMaxBlocks.
   uint32_t least_blocks = kLeastBlocks;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/stopwatch.h"
 #include "device/device.h"
-#include "render/renderer_impl.h"
+#include "trace/render/renderer_impl.h"
 
 namespace promin {
 namespace {

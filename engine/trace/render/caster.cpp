@@ -19,10 +19,10 @@
 #include "promin/validate.h"
 #include "rays/ray_order.h"
 #include "rays/ray_tiles.h"
-#include "render/caster_access.h"
-#include "render/copied_hits.h"
 #include "scene/features.h"
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
+#include "trace/render/caster_access.h"
+#include "trace/render/copied_hits.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/refining_picture.h"
+#include "trace/film/refining_picture.h"
 
 #include <algorithm>
 #include <bit>

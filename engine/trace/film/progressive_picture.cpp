@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/progressive_picture.h"
+#include "trace/film/progressive_picture.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include "core/divide_up.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
-#include "trace/cut_loops.h"
+#include "trace/kernels/cut_loops.h"
 
 namespace promin {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "promin/image.h"
 #include "promin/view.h"
-#include "trace/film.h"
-#include "trace/refining_picture.h"
+#include "trace/film/film.h"
+#include "trace/film/refining_picture.h"
 
 namespace promin {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/film.h"
+#include "trace/film/film.h"
 
 #include <algorithm>
 #include <array>

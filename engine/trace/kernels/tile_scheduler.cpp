@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/tile_scheduler.h"
+#include "trace/kernels/tile_scheduler.h"
 
 #include <algorithm>
 #include <cassert>
@@ -8,7 +8,7 @@
 
 #include "core/divide_up.h"
 #include "device_scene/sampling.h"
-#include "trace/group_rows.h"
+#include "trace/kernels/group_rows.h"
 
 namespace promin {
 

@@ -10,8 +10,8 @@
 #include "device_scene/device_scene.h"
 #include "promin/renderer.h"
 #include "scene/features.h"
-#include "trace/film.h"
-#include "trace/picture_shaders.h"
+#include "trace/film/film.h"
+#include "trace/kernels/picture_shaders.h"
 
 // Access to the implementation of Renderer, for the window, which records its frames itself, and for tests and
 // measurements.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/film_records.h"
+#include "trace/film/film_records.h"
 
 #include <algorithm>
 #include <bit>

@@ -10,7 +10,7 @@
 #include "device_scene/scrambled_points.h"
 #include "promin/renderer.h"
 #include "promin/view.h"
-#include "trace/pixel_estimate.h"
+#include "trace/film/pixel_estimate.h"
 
 namespace promin {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/explain_sample.h"
+#include "trace/film/explain_sample.h"
 
 #include <bit>
 #include <utility>

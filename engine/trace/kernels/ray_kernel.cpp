@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/ray_kernel.h"
+#include "trace/kernels/ray_kernel.h"
 
 #include <algorithm>
 #include <array>
@@ -15,9 +15,9 @@
 #include "crossings.spv.h"
 #include "device/device.h"
 #include "device_scene/device_scene.h"
-#include "trace/cut_loops.h"
-#include "trace/group_rows.h"
-#include "trace/tracing_kernel.h"
+#include "trace/kernels/cut_loops.h"
+#include "trace/kernels/group_rows.h"
+#include "trace/kernels/tracing_kernel.h"
 
 namespace promin {
 namespace {

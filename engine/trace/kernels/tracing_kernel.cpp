@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/tracing_kernel.h"
+#include "trace/kernels/tracing_kernel.h"
 
 #include <algorithm>
 

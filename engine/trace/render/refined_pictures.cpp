@@ -5,7 +5,7 @@
 
 #include "core/stopwatch.h"
 #include "promin/error.h"
-#include "render/picture_tracer.h"
+#include "trace/render/picture_tracer.h"
 
 // Pictures with an error target.
 namespace promin {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/copied_hits.h"
+#include "trace/render/copied_hits.h"
 
 #include <algorithm>
 #include <tuple>

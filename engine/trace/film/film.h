@@ -12,12 +12,12 @@
 #include "device_scene/device_scene.h"
 #include "promin/ray_counts.h"
 #include "scene/features.h"
-#include "trace/film_records.h"
-#include "trace/path_stream.h"
-#include "trace/picture_shaders.h"
-#include "trace/refinement.h"
-#include "trace/tile_scheduler.h"
-#include "trace/tracing_kernel.h"
+#include "trace/film/film_records.h"
+#include "trace/film/refinement.h"
+#include "trace/kernels/path_stream.h"
+#include "trace/kernels/picture_shaders.h"
+#include "trace/kernels/tile_scheduler.h"
+#include "trace/kernels/tracing_kernel.h"
 
 namespace promin {
 

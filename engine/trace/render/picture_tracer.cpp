@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "render/picture_tracer.h"
+#include "trace/render/picture_tracer.h"
 
 #include "core/parallel.h"
 #include "core/shared_progress.h"
 #include "core/stopwatch.h"
 #include "device/device.h"
 #include "shared/layout.h"
-#include "trace/cut_loops.h"
-#include "trace/explain_pixel.h"
-#include "trace/progressive_picture.h"
+#include "trace/film/explain_pixel.h"
+#include "trace/film/progressive_picture.h"
+#include "trace/kernels/cut_loops.h"
 
 namespace promin {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/path_stream.h"
+#include "trace/kernels/path_stream.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include "device/device.h"
 #include "list_rays.spv.h"
 #include "place_rays.spv.h"
-#include "trace/tile_scheduler.h"
-#include "trace/tracing_kernel.h"
+#include "trace/kernels/tile_scheduler.h"
+#include "trace/kernels/tracing_kernel.h"
 
 namespace promin {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "promin/renderer.h"
 #include "promin/view.h"
-#include "trace/film.h"
-#include "trace/refinement.h"
+#include "trace/film/film.h"
+#include "trace/film/refinement.h"
 
 namespace promin {
 

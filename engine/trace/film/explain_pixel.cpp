@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/explain_pixel.h"
+#include "trace/film/explain_pixel.h"
 
 #include <array>
 #include <bit>
@@ -8,10 +8,10 @@
 #include "device/device.h"
 #include "device_scene/device_scene.h"
 #include "promin/error.h"
-#include "trace/cut_loops.h"
-#include "trace/explain_sample.h"
-#include "trace/film.h"
-#include "trace/tile_scheduler.h"
+#include "trace/film/explain_sample.h"
+#include "trace/film/film.h"
+#include "trace/kernels/cut_loops.h"
+#include "trace/kernels/tile_scheduler.h"
 
 namespace promin {
 namespace {

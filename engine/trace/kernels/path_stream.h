@@ -8,7 +8,7 @@
 #include "device/pipeline.h"
 #include "scene/features.h"
 #include "shared/layout.h"
-#include "trace/picture_shaders.h"
+#include "trace/kernels/picture_shaders.h"
 
 namespace promin {
 
