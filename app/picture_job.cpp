@@ -341,8 +341,7 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
     part.display.tone_mapping = choice_of<ToneMapping>(json.at("tone_mapping"), tone_mapping_names().size());
     part.display.dithers = json.at("dithers");
     const Json& exr = json.at("exr");
-    part.exr = {exr.at(0).get<bool>(), choice_of<ExrCompression>(exr.at(1), exr_compression_names().size()),
-                exr.at(2).get<bool>()};
+    part.exr = {exr.at(0).get<bool>(), choice_of<ExrCompression>(exr.at(1), exr_compression_names().size())};
     part.metadata = json.at("metadata").get<Metadata>();
     for (const Json& channel : json.at("channels")) {
       part.channels.push_back({channel.at("name"), channel.at("is_integer"), {}, channel.contains("is_hidden")});
