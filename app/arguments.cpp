@@ -93,12 +93,13 @@ void refuse_leftovers(const CLI::App& program) {
   const auto option = std::find_if(leftovers.begin(), leftovers.end(), is_option);
   const CLI::App& command = deepest_command(program);
   const std::string path = path_of(command);
-  if (option != leftovers.end()) {
+  // A program without commands is one itself.
+  const bool lacks_command = &command == &program && !commands_of(program).empty();
+  const bool begins_with_word = lacks_command && option != leftovers.begin();
+  if (option != leftovers.end() && !begins_with_word) {
     const std::string name = option->substr(0, option->find('='));
     throw UsageError({"unknown option " + name, kWhere, cure_for(path, nearest_option(name, command))});
   }
-  // A program without commands is one itself.
-  const bool lacks_command = &command == &program && !commands_of(program).empty();
   const std::string& word = leftovers.front();
   if (!lacks_command) {
     const bool is_output = is_writable_format(word) && command.get_option_no_throw("--output") != nullptr;

@@ -141,7 +141,8 @@ Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio) {
 const Camera* find_file_camera(const Scene& scene, const ViewOptions& options) {
   if (options.given_camera) return nullptr;
   if (options.camera) return &find_camera(scene, *options.camera);
-  return scene.cameras.empty() || options.pose.from || options.frames_scene ? nullptr : &scene.cameras.front();
+  const bool is_framed = options.pose.from || options.pose.fit || options.frames_scene;
+  return scene.cameras.empty() || is_framed ? nullptr : &scene.cameras.front();
 }
 
 Framing choose_framing(const Scene& scene, const PoseOptions& pose) {
@@ -166,9 +167,6 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
 
 Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pose, const uvec2& size,
                    const Console& console) {
-  if (pose.fit) {
-    throw UsageError({"--fit has no effect on the scene's own camera", kWhere, "give --from as well"});
-  }
   Camera camera = widen_camera(own, size);
   if (pose.eye) camera.eye = vec3(*pose.eye - scene.center);
   face(camera, find_direction(pose, camera, scene.center), pose.up);
@@ -192,9 +190,21 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
   if (bounds_of(scene).is_empty()) return "";  // what has read it says so
   const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
   return fmt::format(
-      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} looks at its middle, and "
-      "--from three-quarter shows all of it",
+      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} in place of any direction looks at its "
+      "middle, and --from three-quarter in place of all other words of the camera shows all of it",
       middle.x, middle.y, middle.z);
+}
+
+std::string describe_small_model(const Scene& scene, const ViewOptions& options, const View& view) {
+  // An author's camera that shows the model this small surprises people who want to see the model.
+  constexpr double kSmall = 0.4;
+  if (options.camera || options.pose.any() || find_file_camera(scene, options) == nullptr) return "";
+  const double share =
+      covered_share(scene, view.camera, static_cast<float>(view.size.x) / static_cast<float>(view.size.y));
+  if (share >= kSmall || bounds_of(scene).is_empty()) return "";
+  return fmt::format(
+      "the file's camera shows the model on {:.0f} % of the picture's side; --from three-quarter frames it",
+      100.0 * share);
 }
 
 void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,

@@ -27,13 +27,15 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
 
 /// Returns a file's camera as changed by the options for a picture of this size, which shows at least what its author
 /// saw. An orthographic camera with a field of view becomes perspective, with a note. Throws UsageError for parallel
-/// directions, and if the options frame the scene.
+/// directions.
 Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& pose, const uvec2& size,
                    const Console& console);
 
 /// Returns a sentence if none of the cameras sees anything of the scene in pictures of this size, with options that
 /// show the scene. Returns an empty text if one of them may see something.
 std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size);
+/// Returns a sentence if the camera is the file's, unchanged, and shows the model small; else an empty text.
+std::string describe_small_model(const Scene& scene, const ViewOptions& options, const View& view);
 /// Warns with that sentence.
 void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,
                             const Console& console);

@@ -49,6 +49,10 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
                                  const JobSteps& steps, const Console& console) {
   const std::vector<size_t> missing = jobs::find_missing(job, share);
   if (missing.empty()) return 0;
+  const size_t all = job.piece_count();
+  if (share.is_all() && missing.size() < all) {
+    console.note(fmt::format("the job continues: {} of {} pieces are there", all - missing.size(), all));
+  }
   // A signal ends the work after the current piece is written, and the program at the end of this function.
   const DeferredSignals while_working;
   const gpu::DeviceHandle device = steps.open_device();

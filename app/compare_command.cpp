@@ -41,6 +41,7 @@ struct CompareOptions {
   std::optional<double> fail_percent;
   double pixels_per_degree = kPixelsPerDegree;
   bool prints_json = false;
+  bool is_quiet = false;
 };
 
 PictureEncoding common_encoding(const CompareOptions& options) {
@@ -194,7 +195,7 @@ void compare(const CompareOptions& options) {
   if (options.difference) write_difference(*options.difference, first, second, difference);
   if (options.prints_json) {
     print_json(difference, others);
-  } else {
+  } else if (!options.is_quiet) {
     print_rows(difference, fail);
     print_channels(others, fail);
   }
@@ -233,6 +234,7 @@ Command add_compare_command(CLI::App& program) {
                         options->pixels_per_degree),
             [=](const OptionValues& words) { options->pixels_per_degree = words.real(0, 1.0, 1000.0); });
   table.add_flag("--json", "Print JSON", options->prints_json);
+  table.add_flag("--quiet", "Print no figures", options->is_quiet);
   add_examples(command, {{"promin compare before.png after.png", "prints how much they differ"},
                          {"promin compare before.png after.png -o where.png", "shows where they differ"},
                          {"promin compare before.png after.png --fail 2/255 --fail-percent 0.1",

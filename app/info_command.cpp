@@ -208,6 +208,20 @@ void print_json(Scene scene, const EnvironmentChoice& surroundings) {
   fmt::print("{}", write_json(json));
 }
 
+/// Returns the number of materials, and the names of the first.
+std::string describe_materials(const Scene& scene) {
+  constexpr size_t kMostNames = 12;
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) {
+    if (!material.name.empty()) names.push_back(material.name);
+  }
+  std::string text = std::to_string(scene.materials.size());
+  if (names.empty()) return text;
+  const bool is_cut = names.size() > kMostNames;
+  names.resize(std::min(names.size(), kMostNames));
+  return fmt::format("{} ({}{})", text, fmt::join(names, ", "), is_cut ? ", ..." : "");
+}
+
 void print_table(Scene scene, const std::filesystem::path& file, const EnvironmentChoice& surroundings) {
   const SceneCounts counts = count_scene(scene);
   const uint64_t image_bytes = packed_image_bytes(scene.images, scene.textures);
@@ -219,7 +233,7 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
   print_row("objects", describe_objects(counts, scene));
   print_row("primitives", std::to_string(counts.primitives));
   print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
-  print_row("materials", std::to_string(scene.materials.size()));
+  print_row("materials", describe_materials(scene));
   print_row("textures", describe_textures(scene, image_bytes));
   if (!scene.variants.empty()) print_rows("variants", scene.variants);
   print_row("lights", lights);

@@ -43,9 +43,11 @@ PictureRun prepare_pictures(const RenderOptions& given, std::vector<PlannedFrame
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
   warn_of_empty_pictures(scene, cameras_of(run), stats.view->size, console);
+  if (const std::string small = describe_small_model(scene, view, *stats.view); !small.empty()) console.note(small);
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
-  const AssumedLight assumed = light_up(scene, view.look, surroundings);
+  AssumedLight assumed = light_up(scene, view.look, surroundings);
+  if (options.aovs.alpha) assumed.has_background = false;  // no picture shows it
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
   // With errors measured as displayed it affects the bits of an EXR, too.

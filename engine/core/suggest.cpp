@@ -15,14 +15,19 @@ char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
+/// Returns the number of letters to insert, remove, replace or swap with the next one (optimal string alignment).
 size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
+  std::vector<size_t> above = row;
+  const auto is_same = [&](size_t i, size_t j) { return lower_case(a[i]) == lower_case(b[j]); };
   for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = std::exchange(row[0], i);
+    const std::vector<size_t> two_above = std::exchange(above, row);
+    row[0] = i;
     for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (lower_case(a[i - 1]) == lower_case(b[j - 1]) ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({replaced, row[j] + 1, row[j - 1] + 1}));
+      row[j] = std::min({above[j - 1] + (is_same(i - 1, j - 1) ? 0 : 1), above[j] + 1, row[j - 1] + 1});
+      const bool is_swap = i > 1 && j > 1 && is_same(i - 1, j - 2) && is_same(i - 2, j - 1);
+      if (is_swap) row[j] = std::min(row[j], two_above[j - 2] + 1);
     }
   }
   return row[b.size()];

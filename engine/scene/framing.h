@@ -23,6 +23,10 @@ inline dvec3 middle_of(const Bounds& bounds) {
 /// Returns the bounds of an object that has a geometry; empty if it is not finite. Throws as bounds_of() does.
 Bounds bounds_of(const Scene& scene, const Object& object);
 
+/// Returns how much of a picture's width or height, whichever is more, the box frame_of(scene) covers; infinite if the
+/// camera is in it or before it.
+double covered_share(const Scene& scene, const Camera& camera, float aspect_ratio);
+
 /// Returns a box of size 2, to look at if nothing is finite.
 Bounds bounds_around(const vec3& center);
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "promin/framing.h"
 #include "scene/facets.h"
+#include "scene/framing.h"
 
 namespace promin {
 namespace {
@@ -34,6 +36,15 @@ class Frustum {
     const double height = half_height_ * growth;
     const auto bit = [](bool is_beyond, uint32_t place) { return is_beyond ? 1U << place : 0U; };
     return bit(depth <= near_, 0) | bit(x < -width, 1) | bit(x > width, 2) | bit(y < -height, 3) | bit(y > height, 4);
+  }
+
+  /// Returns where a picture from -1 to 1 on both sides shows a point; infinite for one at the eye or behind it.
+  dvec2 place_of(const dvec3& point) const {
+    const dvec3 v = point - eye_;
+    const double depth = glm::dot(v, look_);
+    if (depth <= 0.0) return dvec2(std::numeric_limits<double>::infinity());
+    const double growth = is_parallel_ ? 1.0 : depth;
+    return {glm::dot(v, right_) / (half_width_ * growth), glm::dot(v, up_) / (half_height_ * growth)};
   }
 
   /// Whether a ray of the picture meets a plane. Which side of it rays go to changes on a line of the picture, so that
@@ -92,6 +103,21 @@ bool may_see(const Scene& scene, const Camera& camera, float aspect_ratio) {
     for (const dvec3& corner : facet.corners) beyond &= frustum.sides_beyond(corner);
     return beyond == 0;
   });
+}
+
+double covered_share(const Scene& scene, const Camera& camera, float aspect_ratio) {
+  const Frustum frustum(camera, static_cast<double>(aspect_ratio));
+  const Bounds box = frame_of(scene);
+  dvec2 lo(std::numeric_limits<double>::infinity());
+  dvec2 hi = -lo;
+  for (uint32_t corner = 0; corner < 8; ++corner) {
+    const glm::bvec3 is_high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
+    const dvec2 place = frustum.place_of(glm::mix(dvec3(box.lo), dvec3(box.hi), is_high));
+    lo = glm::min(lo, place);
+    hi = glm::max(hi, place);
+  }
+  const double share = 0.5 * std::max(hi.x - lo.x, hi.y - lo.y);
+  return std::isnan(share) ? std::numeric_limits<double>::infinity() : share;
 }
 
 }  // namespace promin

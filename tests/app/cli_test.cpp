@@ -132,6 +132,7 @@ TEST_F(CliTest, AFileAloneIsRendered) {
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
   const std::pair<OptionValues, std::string> cases[] = {
       {{"rendr"}, "unknown command rendr, on the command line; did you mean render?"},
+      {{"rendr", "square.gltf", "-o", "a.png"}, "unknown command rendr, on the command line; did you mean render?"},
       {{"paint"}, "unknown command paint, on the command line; see promin --help"},
       {{"render", "square.gltf", "--aov", "depth,normel"}, "not \"normel\", on the command line; did you mean normal?"},
       {{"render", "square.gltf", "--filter", "bx"}, "not \"bx\", on the command line; did you mean box?"},

@@ -57,6 +57,8 @@ TEST_F(CompareCliTest, TellsTheFigures) {
 
 TEST_F(CompareCliTest, MoreThanTheLimitIsFive) {
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.375"}).exit_code, 0);
+  const ProcessResult quiet = compare({"a.exr", "b.exr", "--fail", "0.25", "--quiet"});
+  EXPECT_EQ(std::pair(quiet.exit_code, quiet.out), std::pair(5, std::string()));
   const ProcessResult over = compare({"a.exr", "b.exr", "--fail", "0.25"});
   EXPECT_EQ(over.exit_code, 5);
   EXPECT_THAT(over.err, HasSubstr("promin: error: 1 pixel differs by more than 0.25, the most at pixel 9 7 by 0.375, "

@@ -231,6 +231,7 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   expect_done(result);
   EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
   EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr("promin: note: the job continues: 1 of 4 pieces are there"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now"));
   EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
 }

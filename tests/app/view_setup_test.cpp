@@ -394,7 +394,32 @@ TEST(ViewSetupTest, ACameraOfTheFileIsTurnedAndZoomed) {
   EXPECT_NEAR(glm::length(right.eye - vec3(2, 0, 3)), 0.0F, 1e-6F) << "around (0, 0, 3)";
   const Camera near = camera_of(scene, {.zoom = 2.0});
   EXPECT_NEAR(std::tan(0.5F * near.yfov), 0.5F * std::tan(0.35F), 1e-6F);
-  EXPECT_THROW(camera_of(scene, {.fit = 0.5F}), UsageError);
+}
+
+TEST(ViewSetupTest, AShareFramesTheSceneEvenIfItHasACamera) {
+  Scene scene = make_ball();
+  const Camera framed = camera_of(scene, {.fit = 0.5F});
+  scene.cameras = make_scene().cameras;
+  EXPECT_EQ(camera_of(scene, {.fit = 0.5F}).eye, framed.eye);
+}
+
+TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
+  Scene scene = make_ball();
+  const auto sentence_of = [&](const ViewOptions& options) {
+    return describe_small_model(scene, options, make_view(scene, options, kSilent));
+  };
+  EXPECT_EQ(sentence_of({}), "") << "promin frames it";
+  Camera far;
+  far.eye = vec3(1.0F, 2.0F, 23.0F);
+  far.look = vec3(0.0F, 0.0F, -1.0F);
+  far.up = vec3(0.0F, 1.0F, 0.0F);
+  far.yfov = 2.0F * std::atan(0.5F);
+  scene.cameras = {far};
+  EXPECT_THAT(sentence_of({}), HasSubstr("shows the model on 11 % of the picture's side; --from three-quarter"))
+      << "a box of size 2, its front 19 away";
+  EXPECT_EQ(sentence_of({.camera = "0"}), "") << "the user's choice";
+  scene.cameras[0].eye.z = 6.0F;
+  EXPECT_EQ(sentence_of({}), "");
 }
 
 TEST(ViewSetupTest, ACameraOfTheFileShowsAtLeastWhatItShowedItsAuthor) {
@@ -415,8 +440,10 @@ TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
     return testing::internal::GetCapturedStderr();
   };
   EXPECT_EQ(warning_of({}), "");
-  EXPECT_THAT(warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
-              HasSubstr("the picture shows nothing of the scene; --look-at 1 2 3 looks at its middle"));
+  EXPECT_THAT(
+      warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
+      HasSubstr(
+          "the picture shows nothing of the scene; --look-at 1 2 3 in place of any direction looks at its middle"));
 }
 
 }  // namespace

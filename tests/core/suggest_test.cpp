@@ -16,6 +16,7 @@ TEST(Suggest, FindsTheNameWithAFewWrongLetters) {
   EXPECT_EQ(nearest_name("Cilynder", kKnown), "cylinder");
   EXPECT_EQ(nearest_name("CONE", kKnown), "cone");
   EXPECT_EQ(nearest_name("cones", kKnown), "cone");
+  EXPECT_EQ(nearest_name("cnoe", kKnown), "cone") << "two letters that changed places count as one";
 }
 
 TEST(Suggest, StaysSilentWhereNothingIsNear) {

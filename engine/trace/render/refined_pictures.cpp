@@ -18,7 +18,7 @@ constexpr double kListedCost = 1.5;
 /// A picture is refined if reaching its first error leaves at least half of the time.
 constexpr double kTimesFirstError = 2.0;
 /// The part of the remaining time planned for a picture of fixed samples.
-constexpr double kPlannedShare = 0.85;
+constexpr double kPlannedShare = 0.95;
 /// A picture that takes longer than this factor of the limit, or is estimated to, is abandoned.
 constexpr double kLongest = 1.15;
 /// The traced part of a picture from which its total time is estimated.
