@@ -12,7 +12,7 @@
 #include "promin/validate.h"
 #include "render/renderer_impl.h"
 #include "scene/features.h"
-#include "view_setup.h"
+#include "work/view_setup.h"
 
 namespace promin::app {
 namespace {
