@@ -14,21 +14,24 @@
 #include <string>
 #include <vector>
 
-#include "cast_job.h"
 #include "cast_options.h"
-#include "command_job.h"
 #include "console.h"
 #include "core/count_of.h"
 #include "core/file.h"
 #include "core/rounding.h"
 #include "core/stopwatch.h"
 #include "deferred_signals.h"
+#include "job_run.h"
 #include "outputs.h"
 #include "progress.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"
-#include "tracing_run.h"
+#include "spec_options.h"
+#include "tracing_options.h"
+#include "work/cast_job.h"
+#include "work/check_spec.h"
+#include "work/tracing_run.h"
 
 namespace promin::app {
 namespace {
@@ -85,7 +88,7 @@ class Answers {
 /// A hit for each ray: the nearest, or any.
 class OneHitEach : public Answers {
  public:
-  OneHitEach(const CastOptions& options, Caster& caster, uint64_t ray_count)
+  OneHitEach(const CastSpec& options, Caster& caster, uint64_t ray_count)
       : caster_(caster), query_(options.query()), writer_(*options.output, ray_count) {}
   double trace(std::span<const Ray> rays, bool /*is_last*/, const ProgressCallback& progress) override {
     hits_.resize(rays.size());
@@ -103,7 +106,7 @@ class OneHitEach : public Answers {
 
 class Counts : public Answers {
  public:
-  Counts(const CastOptions& options, Caster& caster, uint64_t ray_count)
+  Counts(const CastSpec& options, Caster& caster, uint64_t ray_count)
       : caster_(caster), writer_(*options.output, ray_count) {}
   double trace(std::span<const Ray> rays, bool /*is_last*/, const ProgressCallback& progress) override {
     counts_.resize(rays.size());
@@ -121,7 +124,7 @@ class Counts : public Answers {
 /// The hits are written while they are listed, because a chunk may have any number of them.
 class Lists : public Answers {
  public:
-  Lists(const CastOptions& options, Caster& caster, uint64_t ray_count)
+  Lists(const CastSpec& options, Caster& caster, uint64_t ray_count)
       : caster_(caster), hit_writer_(*options.output), offset_writer_(*options.offsets, ray_count + 1) {
     offset_writer_.write(std::array{uint64_t{0}});
   }
@@ -156,14 +159,14 @@ class Lists : public Answers {
   std::vector<uint64_t> offsets_;
 };
 
-std::unique_ptr<Answers> make_answers(const CastOptions& options, Caster& caster, uint64_t ray_count) {
+std::unique_ptr<Answers> make_answers(const CastSpec& options, Caster& caster, uint64_t ray_count) {
   if (options.is_all) return std::make_unique<Lists>(options, caster, ray_count);
   if (options.is_count) return std::make_unique<Counts>(options, caster, ray_count);
   return std::make_unique<OneHitEach>(options, caster, ray_count);
 }
 
 /// `rays` is the first chunk. Throws Cancelled if a signal asks for the end.
-void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, const CastOptions& options, RunStats& stats,
+void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, const CastSpec& options, RunStats& stats,
                 const Console& console, const DeferredSignals& signals) {
   const uint32_t repeats = options.tracing.repeat_count;
   stats.trace_ms.assign(repeats, 0.0);
@@ -187,23 +190,24 @@ void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, cons
 }
 
 /// Continues a job, and writes its files if all pieces are done.
-void cast_job(const CastOptions& options, const CLI::App& command, const Console& console) {
+void cast_job(const CastSpec& options, const Console& console) {
   RunStats stats;
   const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
                           .files = options.outputs()};
-  run_job(*plan_rays(options, command, console), options.job, steps, console);
+  run_job(*plan_rays(options, console), options.job, steps, console);
 }
 
-void cast(const CastOptions& options, const CLI::App& command) {
+void cast(const CastSpec& options, bool prints_spec) {
   const Stopwatch total;
   const TracingOptions& tracing = options.tracing;
-  check_cast_options(options);
+  const Console console(verbosity_of(tracing));
+  check_cast_spec(options);
+  if (prints_spec) return print_spec(options);
   std::vector<std::filesystem::path> inputs = input_files(tracing);
   inputs.push_back(options.rays);
   check_outputs(inputs, options.outputs(), tracing.stats);
-  const Console console(tracing.verbosity());
   if (options.job.folder) {
-    cast_job(options, command, console);
+    cast_job(options, console);
     return;
   }
 
@@ -249,9 +253,12 @@ void cast(const CastOptions& options, const CLI::App& command) {
 
 Command add_cast_command(CLI::App& program) {
   CLI::App& command = add_command(program, "cast", "Cast rays from a file at a scene and write their hits");
-  const auto options = std::make_shared<CastOptions>();
+  const auto options = std::make_shared<CastSpec>();
+  const auto prints_spec = std::make_shared<bool>(false);
+  add_spec_option(command, *options);
   add_cast_options(command, *options);
-  return {&command, [options, &command] { cast(*options, command); }};
+  add_print_spec_option(command, *prints_spec);
+  return {&command, [options, prints_spec] { cast(*options, *prints_spec); }};
 }
 
 }  // namespace promin::app

@@ -5,23 +5,14 @@
 #include <fmt/format.h>
 
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include "arguments.h"
-#include "core/file.h"
-#include "promin/error.h"
+#include "job_options.h"
+#include "tracing_options.h"
 
 namespace promin::app {
 
-std::vector<std::filesystem::path> CastOptions::outputs() const {
-  std::vector<std::filesystem::path> files;
-  if (output) files.push_back(*output);
-  if (offsets) files.push_back(*offsets);
-  return files;
-}
-
-void add_cast_options(CLI::App& command, CastOptions& options) {
+void add_cast_options(CLI::App& command, CastSpec& options) {
   OptionTable table(command);
   add_scene_argument(table, options.tracing);
   table.add_required("RAYS.npy", "",
@@ -54,60 +45,6 @@ void add_cast_options(CLI::App& command, CastOptions& options) {
       kMostRayPieces);
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);
-}
-
-namespace {
-
-void check_query(const CastOptions& options) {
-  std::vector<std::string> asked;
-  if (options.is_any) asked.emplace_back("--any");
-  if (options.is_count) asked.emplace_back("--count");
-  if (options.is_all) asked.emplace_back("--all");
-  if (asked.size() > 1) {
-    throw UsageError(
-        {asked[0] + " and " + asked[1] + " contradict each other", "on the command line", "give one of them"});
-  }
-  if (options.is_all && !options.offsets && !options.job.share) {
-    throw UsageError({"--all is given without --offsets", "on the command line",
-                      "add --offsets OFFSETS.npy, which says where the hits of each ray begin"});
-  }
-  if (options.offsets && !options.is_all) {
-    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or leave --offsets out"});
-  }
-}
-
-void check_job_options(const CastOptions& options) {
-  check_has_job(options.job);
-  if (!options.output && !options.job.share) {
-    throw UsageError({"--output is required", "on the command line", "see promin cast --help"});
-  }
-  if (!options.job.folder) return;
-  const std::pair<bool, std::string_view> others[] = {{options.tracing.stats.has_value(), "--stats"},
-                                                      {options.tracing.repeat_count > 1, "--repeat"}};
-  for (const auto& [is_given, name] : others) {
-    if (!is_given) continue;
-    throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
-  }
-  if (options.job.share && !options.outputs().empty()) {
-    throw UsageError({"--piece and --output contradict each other: a share writes no file", "on the command line",
-                      "leave one out; promin merge writes the file when all pieces are made"});
-  }
-}
-
-}  // namespace
-
-void check_arrays(const std::vector<std::filesystem::path>& files) {
-  for (const std::filesystem::path& file : files) {
-    if (lower_case_ending(file) == ".npy") continue;
-    throw UsageError({"unknown output ending \"" + file.extension().string() + "\"", file.string(), "use .npy"});
-  }
-}
-
-void check_cast_options(const CastOptions& options) {
-  check_tracing_options(options.tracing);
-  check_query(options);
-  check_job_options(options);
-  check_arrays(options.outputs());
 }
 
 }  // namespace promin::app

@@ -2,14 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <vector>
-
-#include "job_options.h"
-#include "promin/ray.h"
-#include "tracing_options.h"
+#include "work/cast_spec.h"
+#include "work_names.h"
 
 namespace CLI {
 class App;
@@ -17,43 +11,7 @@ class App;
 
 namespace promin::app {
 
-/// The default for the largest number of rays of a job's piece, without --all and with it, where there may be any
-/// number of hits.
-inline constexpr uint64_t kPieceRays = uint64_t{1} << 22;
-inline constexpr uint64_t kPieceRaysOfAll = uint64_t{1} << 20;
-/// The smallest number of rays of a piece when dividing into kUsualPieces.
-inline constexpr uint64_t kLeastPieceRays = uint64_t{1} << 16;
-inline constexpr uint32_t kMostRayPieces = 1'000'000;
-/// Rays in memory at a time.
-inline constexpr uint64_t kChunkRays = uint64_t{1} << 20;
-
-struct CastOptions {
-  TracingOptions tracing;
-  std::filesystem::path rays;
-  JobOptions job;
-  /// The file for hits, or with --count for counts.
-  std::optional<std::filesystem::path> output;
-  std::optional<std::filesystem::path> offsets;
-  bool is_any = false;
-  bool is_count = false;
-  bool is_all = false;
-
-  HitQuery query() const {
-    if (is_all) return HitQuery::kAll;
-    if (is_count) return HitQuery::kCount;
-    return is_any ? HitQuery::kAny : HitQuery::kNearest;
-  }
-  /// Returns the files of hits and of their offsets, as far as given.
-  std::vector<std::filesystem::path> outputs() const;
-};
-
 /// Adds a row for each option to the command. `options` must outlive the parsing.
-void add_cast_options(CLI::App& command, CastOptions& options);
-
-/// Throws UsageError if options contradict each other or one is missing, and for outputs that are not .npy files.
-void check_cast_options(const CastOptions& options);
-
-/// Throws UsageError for a file of another ending than .npy.
-void check_arrays(const std::vector<std::filesystem::path>& files);
+void add_cast_options(CLI::App& command, CastSpec& options);
 
 }  // namespace promin::app

@@ -24,6 +24,8 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "rows.h"
+#include "work/check_spec.h"
+#include "work_names.h"
 
 namespace promin::app {
 namespace fs = std::filesystem;

@@ -11,6 +11,7 @@
 #include "core/stopwatch.h"
 #include "core/utf8.h"
 #include "promin/error.h"
+#include "run_program.h"
 
 namespace promin::app {
 namespace {
@@ -29,6 +30,10 @@ Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
   }
   if (is_quiet) return Verbosity::kQuiet;
   return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+}
+
+void Console::warn(const Problem& problem) const {
+  warn(message_of(problem));
 }
 
 void Console::detail(const std::string& text) const {

@@ -18,16 +18,17 @@
 #include "device_scene/pack_scene.h"
 #include "device_scene/pack_shading.h"
 #include "environment/pack_sky.h"
-#include "environment_options.h"
 #include "load_options.h"
 #include "promin/load_scene.h"
+#include "render_options.h"
 #include "rows.h"
 #include "run_program.h"
 #include "scene/features.h"
-#include "scene_counts.h"
 #include "scene_json.h"
 #include "textures/pack_images.h"
-#include "view_setup.h"
+#include "work/environment_choice.h"
+#include "work/scene_counts.h"
+#include "work/view_setup.h"
 
 namespace promin::app {
 namespace {

@@ -4,10 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
-#include "promin/error.h"
-
 namespace promin::app {
 namespace {
 
@@ -34,17 +30,6 @@ void add_job_options(OptionTable& table, JobOptions& job, const std::string& pie
             "With --job: make only every N-th piece, starting with piece I, and write no file; promin merge writes the "
             "file when all pieces are made",
             [&](const OptionValues& w) { job.share = read_share(w); });
-}
-
-void check_has_job(const JobOptions& job) {
-  if (job.folder) return;
-  const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.pieces ? "--pieces" : "";
-  if (name.empty()) return;
-  throw UsageError({fmt::format("{} needs a job to divide", name), "on the command line", "give --job as well"});
-}
-
-std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder) {
-  return *job.folder / "trees" / (builder + ".pbvh");
 }
 
 }  // namespace promin::app

@@ -8,14 +8,14 @@
 #include <memory>
 #include <optional>
 
-#include "cast_options.h"
 #include "console.h"
 #include "core/count_of.h"
+#include "job_run.h"
 #include "jobs/job.h"
-#include "merge_job.h"
 #include "outputs.h"
-#include "picture_job.h"
 #include "promin/error.h"
+#include "work/merge_job.h"
+#include "work/picture_job.h"
 
 namespace promin::app {
 namespace {

@@ -49,15 +49,6 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
   return names;
 }
 
-void check_pictures(const std::vector<fs::path>& pictures) {
-  for (const fs::path& picture : pictures) {
-    if (!is_writable_format(picture)) {
-      throw UsageError(
-          {"unknown output ending \"" + picture.extension().string() + "\"", picture.string(), kUseKnownEnding});
-    }
-  }
-}
-
 bool is_picture_of(const fs::path& file, std::string_view scene) {
   using std::string_literals::operator""s;
   constexpr size_t kHeadBytes = size_t{1} << 20;

@@ -13,9 +13,6 @@ namespace promin::app {
 /// Returns the names of the files, for messages.
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 
-/// Throws UsageError for a picture with an ending that write_image does not support.
-void check_pictures(const std::vector<std::filesystem::path>& pictures);
-
 /// Returns whether the file is a PNG or EXR that promin has written from a scene with this file name.
 bool is_picture_of(const std::filesystem::path& file, std::string_view scene);
 

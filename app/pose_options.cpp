@@ -6,22 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
-#include <utility>
 
 #include "arguments.h"
-#include "promin/error.h"
 #include "promin/validate.h"
 
 namespace promin::app {
 namespace {
 
-/// Angles of 0 and 180 degrees show nothing.
-constexpr double kMinFovDeg = 1e-3;
-constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
-constexpr double kMaxTurnDeg = 3600.0;
-constexpr double kMinZoom = 1e-3;
-constexpr double kMaxZoom = 1e3;
 constexpr std::array<std::string_view, 6> kAxes = {"x", "y", "z", "-x", "-y", "-z"};
 
 dvec3 read_up(const OptionValues& words) {
@@ -81,30 +72,6 @@ void add_pose_options(OptionTable& table, PoseOptions& pose) {
             "Distance from the eye in scene units up to which nothing is drawn, in place of the camera's",
             [&](const OptionValues& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
   add_former_options(table);
-}
-
-void check_pose_options(const PoseOptions& pose, bool names_camera) {
-  const auto refuse_beside = [](bool is_given, std::string_view name,
-                                std::initializer_list<std::pair<bool, std::string_view>> others) {
-    for (const auto& [is_other_given, other] : others) {
-      if (!is_given || !is_other_given) continue;
-      throw UsageError(
-          {fmt::format("{} and {} contradict each other", name, other), "on the command line", "leave one out"});
-    }
-  };
-  const bool has_eye = pose.eye.has_value();
-  const bool has_look_at = pose.look_at.has_value();
-  refuse_beside(has_look_at, "--look-at", {{pose.direction.has_value(), "--direction"}});
-  refuse_beside(pose.from.has_value(), "--from",
-                {{names_camera, "--camera"},
-                 {has_eye, "--eye"},
-                 {has_look_at, "--look-at"},
-                 {pose.direction.has_value(), "--direction"}});
-  refuse_beside(pose.fit.has_value(), "--fit",
-                {{names_camera, "--camera"},
-                 {has_eye, "--eye"},
-                 {has_look_at, "--look-at"},
-                 {pose.from == Framing::kInside, "--from inside"}});
 }
 
 }  // namespace promin::app

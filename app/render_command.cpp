@@ -11,7 +11,6 @@
 #include <functional>
 #include <memory>
 
-#include "command_job.h"
 #include "console.h"
 #include "core/count_of.h"
 #include "core/file.h"
@@ -19,20 +18,24 @@
 #include "deferred_signals.h"
 #include "explanation.h"
 #include "formats/file_kind.h"
+#include "job_run.h"
 #include "outputs.h"
-#include "picture_files.h"
-#include "picture_job.h"
-#include "picture_run.h"
 #include "picture_spool.h"
 #include "progress.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "render_help.h"
-#include "render_job.h"
+#include "render_options.h"
+#include "spec_options.h"
 #include "standard_output.h"
 #include "trace/film/refinement.h"
-#include "trace/render/renderer_impl.h"
-#include "tracing_run.h"
+#include "tracing_options.h"
+#include "work/check_spec.h"
+#include "work/picture_files.h"
+#include "work/picture_job.h"
+#include "work/picture_run.h"
+#include "work/render_job.h"
+#include "work/tracing_run.h"
 
 namespace promin::app {
 namespace {
@@ -42,7 +45,7 @@ constexpr double kLateShare = 1.2;
 /// With less than this share of the time limit a picture could have used more of it.
 constexpr double kEarlyShare = 0.67;
 
-PictureHeader make_header(const RenderOptions& options, const Scene& scene, const std::optional<uint32_t>& frame,
+PictureHeader make_header(const RenderSpec& options, const Scene& scene, const std::optional<uint32_t>& frame,
                           const RunStats& stats) {
   const View& view = *stats.view;
   AovHeader aovs = describe_aovs(scene, options.aovs, options.hides_unlit, view.depth_kind);
@@ -102,7 +105,7 @@ void tell_reached(const RunStats& stats, double limit_s, double taken_s, const C
   console.note(describe_reached(stats));
 }
 
-std::string summarize(const RunStats& stats, const RenderOptions& options) {
+std::string summarize(const RunStats& stats, const RenderSpec& options) {
   const std::string frames = stats.frames.empty() ? "" : count_of(stats.frames.size(), "frame") + ", ";
   const std::string time_of = stats.frames.empty() ? "" : " a frame";
   return fmt::format("{}x{}, {}, {}{:.1f} s, {:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}",
@@ -112,14 +115,14 @@ std::string summarize(const RunStats& stats, const RenderOptions& options) {
 }
 
 /// Sets an exposure that is computed from the picture; the first frame of a path determines it for all.
-void expose_by_first(const RenderOptions& options, const RenderResult& result, RunStats& stats) {
+void expose_by_first(const RenderSpec& options, const RenderResult& result, RunStats& stats) {
   const bool is_first = stats.frames.size() <= 1;
   if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
   stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object, result.aovs.unlit);
 }
 
 /// Returns whether a picture is traced by one call, because it is needed as a whole or limited by time.
-bool is_traced_whole(const RenderOptions& options) {
+bool is_traced_whole(const RenderSpec& options) {
   return options.error.time_limit_s || options.view.look.averages_exposure;
 }
 
@@ -128,7 +131,7 @@ bool is_traced_whole(const RenderOptions& options) {
 class FrameRendering {
  public:
   /// `limit_s` is the remaining time of a time limit.
-  FrameRendering(const PlannedFrame& planned, const RenderOptions& options, const std::optional<double>& limit_s,
+  FrameRendering(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
                  const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
                  std::function<void(double)> on_progress)
       : planned_(planned),
@@ -244,7 +247,7 @@ class FrameRendering {
   }
 
   const PlannedFrame& planned_;
-  const RenderOptions& options_;
+  const RenderSpec& options_;
   std::optional<double> limit_s_;
   const gpu::Device& device_;
   const Scene& scene_;
@@ -270,7 +273,7 @@ double writing_s(const View& view, size_t pictures) {
 }
 
 /// Renders all frames after loading once. An error names its frame; the pictures of earlier frames are complete.
-void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions& options, const Stopwatch& total,
+void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& options, const Stopwatch& total,
                    const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
                    const Console& console) {
   Progress progress(console.is_quiet());
@@ -304,7 +307,7 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderOptions&
   }
 }
 
-std::vector<std::filesystem::path> input_files(const RenderOptions& options) {
+std::vector<std::filesystem::path> input_files(const RenderSpec& options) {
   std::vector<std::filesystem::path> files = input_files(options.tracing);
   if (options.path) files.push_back(*options.path);
   if (options.view.environment.panorama) files.push_back(*options.view.environment.panorama);
@@ -340,7 +343,7 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
 }
 
 /// Throws UsageError if several pictures would be written to the standard output.
-void check_standard_output(const RenderOptions& options) {
+void check_standard_output(const RenderSpec& options) {
   const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
   if (count == 0) return;
   const auto refuse = [](const std::string& what) { throw UsageError({what, "on the command line", "name a file"}); };
@@ -350,23 +353,25 @@ void check_standard_output(const RenderOptions& options) {
 }
 
 /// Continues a job, and writes its pictures if all pieces are done. Calls `begin` when all checks have passed.
-void render_job(PictureRun run, const CLI::App& command, const Console& console, const std::function<void()>& begin) {
-  const RenderOptions options = run.options;
+void render_job(const RenderSpec& given, PictureRun run, const Console& console, const std::function<void()>& begin) {
+  const RenderSpec options = run.options;
   RunStats stats;
   const JobSteps steps = {.begin = begin,
                           .open_device = [&] { return open_device_for(options.tracing, stats, console); },
                           .files = options.pictures};
-  run_job(*plan_pictures(std::move(run), command, console), options.job, steps, console);
+  run_job(*plan_pictures(given, std::move(run), console), options.job, steps, console);
 }
 
-void render(const RenderOptions& given, const CLI::App& command) {
+void render(const RenderSpec& given, bool prints_spec) {
   const Stopwatch total;
   const TracingOptions& tracing = given.tracing;
-  check_render_options(given);
+  const Console console(verbosity_of(given.tracing));
+  check_render_spec(given);
+  if (prints_spec) return print_spec(given);
   check_standard_output(given);
   // A file that is not a scene is refused before pictures are named after it.
   check_scene_name(tracing.scene);
-  RenderOptions options = given;
+  RenderSpec options = given;
   const StandardOutput standard_output(options.pictures);
   options.pictures = name_pictures(options);
   check_pictures(options.pictures);
@@ -375,7 +380,6 @@ void render(const RenderOptions& given, const CLI::App& command) {
   if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
   check_outputs(input_files(options), pictures_of(frames), tracing.stats);
-  const Console console(tracing.verbosity());
   if (skipped > 0) {
     console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
                              count_of(skipped + frames.size(), "frame")));
@@ -397,7 +401,7 @@ void render(const RenderOptions& given, const CLI::App& command) {
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
   };
   if (options.job.folder) {
-    render_job(std::move(run), command, console, tell_names);
+    render_job(given, std::move(run), console, tell_names);
     return;
   }
   tell_names();
@@ -429,10 +433,13 @@ void render(const RenderOptions& given, const CLI::App& command) {
 
 Command add_render_command(CLI::App& program) {
   CLI::App& command = add_command(program, "render", "Render a picture of a scene");
-  const auto options = std::make_shared<RenderOptions>();
+  const auto options = std::make_shared<RenderSpec>();
+  const auto prints_spec = std::make_shared<bool>(false);
+  add_spec_option(command, *options);
   add_render_options(command, *options);
+  add_print_spec_option(command, *prints_spec);
   arrange_help(program, command);
-  return {&command, [options, &command] { render(*options, command); }};
+  return {&command, [options, prints_spec] { render(*options, *prints_spec); }};
 }
 
 }  // namespace promin::app

@@ -25,7 +25,7 @@ void arrange_help(CLI::App& program, CLI::App& render) {
        {"Look",
         {"background", "light", "environment", "environment-rotation", "environment-intensity", "light-rotation",
          "exposure", "tone-mapping", "dither", "no-shadows", "lights-off", "variant", "shading"}},
-       {"Jobs", {"job", "pieces", "tiles", "piece"}},
+       {"Jobs", {"job", "pieces", "tiles", "piece", "spec", "print-spec"}},
        {"Expert", {}}});
   add_examples(
       render,

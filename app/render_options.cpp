@@ -10,33 +10,31 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <string>
+#include <type_traits>
 
 #include "arguments.h"
-#include "camera_path.h"
 #include "core/count_of.h"
 #include "core/suggest.h"
 #include "image/color_words.h"
 #include "image/picture_endings.h"
+#include "job_options.h"
 #include "load_options.h"
+#include "pose_options.h"
 #include "promin/aovs.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "promin/view.h"
 #include "trace/film/refinement.h"
+#include "tracing_options.h"
 #include "typed_words.h"
+#include "work/camera_path.h"
+#include "work/spec_json.h"
 
 namespace promin::app {
 namespace {
 
-constexpr uint32_t kMaxFrame = 9999999;
-constexpr double kMaxBackground = 1e9;
-/// Larger values would exceed the range of floats.
-constexpr double kMaxExposureEv = 64.0;
-constexpr uint32_t kMaxTextureMib = 8192;
-/// Seconds.
-constexpr double kMinTimeLimit = 1e-3;
-constexpr double kMaxTimeLimit = 1e6;
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kLinear = "linear:";
 constexpr std::string_view kTransparent = "transparent";
@@ -180,6 +178,15 @@ DebugView read_shading(const OptionValues& words) {
   return read_name<DebugView>(canonical, debug_view_names());
 }
 
+template <typename Number>
+Number read_number(const OptionValues& words, Number min, Number max) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    return static_cast<Number>(words.real(0, static_cast<double>(min), static_cast<double>(max)));
+  } else {
+    return words.whole(0, min, max);
+  }
+}
+
 void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
@@ -215,6 +222,20 @@ void add_look_options(OptionTable& table, LookOptions& look) {
 
 }  // namespace
 
+void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
+  table.add(
+      "--environment", "FILE",
+      "Equirectangular panorama that surrounds the scene, .hdr or .exr; its middle lies at -Z [the scene's own sky]",
+      [&](const OptionValues& w) { options.panorama = w.text(); });
+  table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, in degrees [0]",
+            [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+  table.add("--environment-intensity", "X", "Multiply the sky's radiance by this factor [1]",
+            [&](const OptionValues& w) { options.intensity = w.real(0, 0.0, kMaxIntensity); });
+  table.add("--light-rotation", "DEG",
+            "Turn the sky and directional lights about +Y, from +Z towards +X, in degrees [0]",
+            [&](const OptionValues& w) { options.light_rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+}
+
 void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--size", fmt::format("WxH|{}", fmt::join(size_names(), "|")),
             "Picture size in pixels; 640 alone is a width, and the height follows from the camera's aspect ratio [the "
@@ -223,18 +244,10 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
             "Filter that weights samples by their distance from the pixel's centre [box]",
             [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
-  table.add("--filter-width", "PIXELS",
-            fmt::format("Full width of the filter in pixels, {} to {} [box 1, tent 2, others 3]", kMinFilterWidth,
-                        kMaxFilterWidth),
-            [&](const OptionValues& w) {
-              view.filter_width = static_cast<float>(
-                  w.real(0, static_cast<double>(kMinFilterWidth), static_cast<double>(kMaxFilterWidth)));
-            });
-  table.add(
-      "--max-depth", "N",
-      fmt::format("Largest number of bounces, 0 to {}; 0 traces neither mirror nor refracted rays [{}, with glass {}]",
-                  kMaxDepth, View{}.max_depth, kMaxDepthOfGlass),
-      [&](const OptionValues& w) { view.max_depth = w.whole(0, 0, kMaxDepth); });
+#define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) \
+  table.add(option_of(#NAME), PLACEHOLDER, HELP,                           \
+            [&](const OptionValues& w) { view.NAME = read_number<TYPE>(w, MIN, MAX); });
+#include "work/view_numbers.def"
   table.add("--shading", "NAME", fmt::format("What the picture shows: {} [full]", fmt::join(debug_view_names(), ", ")),
             [&](const OptionValues& w) { view.debug_view = read_shading(w); });
   table.add_flag("--no-shadows", "Trace no shadow rays: nothing casts a shadow", view.has_no_shadows);
@@ -286,10 +299,6 @@ void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
 
 }  // namespace
 
-std::string least_error() {
-  return fmt::format("1/{:g}", 1.0F / kMinTargetError);
-}
-
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help) {
   const auto read_power = [](const OptionValues& w, std::string_view name) {
     const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
@@ -312,88 +321,7 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
             [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
 }
 
-std::span<const std::string_view> error_space_names() {
-  static constexpr std::array kNames = {std::string_view("linear"), std::string_view("display")};
-  return kNames;
-}
-
-std::optional<ErrorTarget> ErrorOptions::error_target() const {
-  if (!is_given()) return {};
-  return target_or(kMinTargetError);
-}
-
-ErrorTarget ErrorOptions::target_or(float error) const {
-  ErrorTarget result;
-  result.error = target.value_or(error);
-  if (target && !time_limit_s) result.min_samples = usual_min_samples(*target);
-  result.min_samples = min_samples.value_or(std::min(result.min_samples, max_samples.value_or(result.min_samples)));
-  result.max_samples = max_samples.value_or(std::max(result.max_samples, result.min_samples));
-  if (space == ErrorSpace::kDisplay) result.display.emplace();
-  return result;
-}
-
-void fit_to_display(ErrorTarget& target, const DisplayTransform& display) {
-  target.white = std::exp2(-display.exposure_ev);
-  if (target.display) target.display = display;
-}
-
-std::string describe_options(const ErrorTarget& target) {
-  return fmt::format("--target-error {} --min-spp {} --max-spp {}{}", target.error, target.min_samples,
-                     target.max_samples, target.display ? " --error-in display" : "");
-}
-
-std::string describe_errors(float least, float most, const ErrorTarget& target) {
-  const std::string to = least == most ? "" : fmt::format(" to {}", most);
-  return fmt::format("error {}{}{}", least, to, target.display ? " as shown" : "");
-}
-
-std::string describe_unmet(const PictureError& error) {
-  if (error.unmet_pixels == 0) return "";
-  return fmt::format(" but for {} of at most {:.3g}", count_of(error.unmet_pixels, "pixel"), error.largest_claim);
-}
-
-namespace {
-
-constexpr uint32_t kHighSamples = 32;
-/// Samples of `best` for pictures without an error target: with a debug shading or --exposure average.
-constexpr uint32_t kBestSamples = 128;
-/// The error of `best`: one code of 8 bits in the shown colours.
-constexpr float kBestError = 1.0F / 256.0F;
-
-std::span<const std::string_view> quality_names() {
-  using std::string_view_literals::operator""sv;
-  static constexpr std::array kNames = {"draft"sv, "normal"sv, "high"sv, "best"sv};
-  return kNames;
-}
-
-}  // namespace
-
-void apply_quality(RenderOptions& options) {
-  std::optional<uint32_t>& samples = options.view.samples_per_pixel;
-  if (options.error.is_given() || samples) return;
-  const bool has_error = options.view.debug_view == DebugView::kNone && !options.view.look.averages_exposure;
-  switch (options.quality.value_or(options.explained_pixel ? Quality::kDraft : Quality::kNormal)) {
-    case Quality::kDraft:
-      samples = 1;
-      break;
-    case Quality::kNormal:
-      samples = kDefaultSamples;
-      break;
-    case Quality::kHigh:
-      samples = kHighSamples;
-      break;
-    case Quality::kBest:
-      if (!has_error) {
-        samples = kBestSamples;
-        break;
-      }
-      options.error.target = kBestError;
-      options.error.space = ErrorSpace::kDisplay;
-      break;
-  }
-}
-
-void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual) {
+void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual) {
   table.add("-s,--spp", "N", fmt::format("Samples per pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
             [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
@@ -403,7 +331,7 @@ void add_sample_options(OptionTable& table, RenderOptions& options, std::string_
             [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
 }
 
-void add_render_options(CLI::App& command, RenderOptions& options) {
+void add_render_options(CLI::App& command, RenderSpec& options) {
   ViewOptions& view = options.view;
   OptionTable table(command);
 
@@ -450,7 +378,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   table.add("--aov", "NAMES",
             fmt::format("Further channels of an EXR, separated by commas, from {},{}", fmt::join(aov_names(), ","),
                         kCryptomatte),
-            [&](const OptionValues& w) { options.aovs = options.aovs | read_aovs(w); });
+            [&](const OptionValues& w) {
+              const bool has_alpha = options.aovs.alpha;
+              options.aovs = read_aovs(w);
+              options.aovs.alpha |= has_alpha;
+            });
   table.add_flag("--alpha",
                  "Write an alpha channel, the part of each pixel that the scene covers, and leave the background out",
                  options.aovs.alpha);
@@ -472,153 +404,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);
-}
-
-std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
-  if (!options.pictures.empty() || options.explained_pixel || options.job.share) return options.pictures;
-  const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
-  return {stem + ".exr", stem + ".png"};
-}
-
-void check_error_target(const ErrorTarget& target) {
-  if (target.min_samples <= target.max_samples) return;
-  throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
-                    "on the command line", "raise --max-spp or lower --min-spp"});
-}
-
-void check_no_camera(const ViewOptions& options, std::string_view name) {
-  if (!options.camera && !options.pose.any()) return;
-  throw UsageError(
-      {fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name),
-       "on the command line", "leave one out"});
-}
-
-namespace {
-
-/// An option, or a group that counts as one, with its name and whether it is given.
-using Given = std::pair<bool, std::string_view>;
-
-void refuse_if(bool holds, const std::string& what, const std::string& cure) {
-  if (holds) throw UsageError({what, "on the command line", cure});
-}
-
-/// Refuses the first of the others that is given beside `name`.
-void refuse_beside(std::string_view name, std::initializer_list<Given> others,
-                   const std::string& cure = "leave one out") {
-  for (const auto& [is_given, other] : others) {
-    refuse_if(is_given, fmt::format("{} and {} contradict each other", name, other), cure);
-  }
-}
-
-}  // namespace
-
-// Checks all contradictions of options of promin render, in the order of reporting.
-void check_render_options(const RenderOptions& options) {
-  const ViewOptions& view = options.view;
-  const ErrorOptions& error = options.error;
-  const JobOptions& job = options.job;
-  const bool averages = view.look.averages_exposure;
-  const bool is_debug = view.debug_view != DebugView::kNone;
-  const bool has_depth_kind = view.depth_kind != DepthKind::kRay;
-  AovSet named = options.aovs;
-  named.alpha = false;
-
-  check_tracing_options(options.tracing);
-  check_pose_options(view.pose, view.camera.has_value());
-  if (options.path) check_no_camera(view, "--path");
-  if (options.explained_pixel) {
-    refuse_beside("--explain", {{!options.pictures.empty(), "--output"},
-                                {options.path.has_value(), "--path"},
-                                {options.aovs.any(), "--aov"},
-                                {view.crop.has_value(), "--crop"},
-                                {is_debug, "--shading"},
-                                {error.target.has_value(), "--target-error"},
-                                {error.time_limit_s.has_value(), "--time-limit"},
-                                {options.tracing.stats.has_value(), "--stats"},
-                                {options.tracing.repeat_count > 1, "--repeat"}});
-  }
-
-  if (options.quality) {
-    refuse_beside("--quality", {{view.samples_per_pixel.has_value(), "--spp"},
-                                {error.target.has_value(), "--target-error"},
-                                {error.time_limit_s.has_value(), "--time-limit"}});
-  }
-
-  // Refuses options that contradict an error target.
-  if (error.is_given()) {
-    const std::string_view name = error.target ? "--target-error" : "--time-limit";
-    refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
-                  "leave one out; --min-spp and --max-spp limit the samples");
-    refuse_beside(name, {{is_debug, "--shading"}});
-    // Each repetition could reach another target, and so another picture.
-    if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
-    refuse_if(
-        error.space == ErrorSpace::kDisplay && averages,
-        "--error-in display and --exposure average contradict each other: the average is known only after tracing",
-        "give --exposure in stops");
-    check_error_target(*error.error_target());
-  } else {
-    refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
-              "--shading and an --aov of light contradict each other: a debug shading computes no light",
-              "leave one out");
-    refuse_if(options.aovs.error && is_debug,
-              "--shading and --aov error contradict each other: a debug shading has no error estimate",
-              "leave one out");
-    for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
-                                         {error.max_samples.has_value(), "--max-spp"},
-                                         {error.space.has_value(), "--error-in"}}) {
-      refuse_if(is_given, fmt::format("{} needs a target error", name), "give --target-error as well");
-    }
-  }
-
-  // A job.
-  check_has_job(job);
-  if (job.folder) {
-    refuse_beside("--job", {{options.explained_pixel.has_value(), "--explain"},
-                            {error.time_limit_s.has_value(), "--time-limit"},
-                            {averages, "--exposure average"},
-                            {options.skips_existing, "--skip-existing"},
-                            {options.tracing.stats.has_value(), "--stats"},
-                            {options.tracing.repeat_count > 1, "--repeat"}});
-    if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
-    refuse_if(job.share && !options.pictures.empty(),
-              "--piece and --output contradict each other: a share writes no picture",
-              "leave one out; promin merge writes the picture when all pieces are made");
-  }
-
-  // Frames.
-  refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing needs the names of the pictures",
-            "give -o as well");
-  refuse_if(options.skips_existing && averages,
-            "--skip-existing and --exposure average contradict each other: the average is that of the first frame",
-            "give --exposure in stops");
-  refuse_if(options.frames && !options.path, "--frames needs a camera path", "give --path as well");
-  refuse_if(options.fps && !options.path, "--fps needs a camera path", "give --path as well");
-
-  // Channels that only an EXR can store; PNG files only have alpha.
-  const auto& pictures = options.pictures;
-  const std::string stem = options.tracing.scene.stem().string();
-  const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
-  for (const auto& [is_given, name] : {Given{named.any(), "--aov"},
-                                       {has_depth_kind, "--depth"},
-                                       {options.exr.is_half, "--half"},
-                                       {options.names_compression, "--compression"}}) {
-    refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
-  }
-  refuse_if(has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth", "give --aov depth as well");
-  if (options.aovs.alpha) {
-    refuse_beside("--alpha", {{is_debug, "--shading"}});
-    refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
-                  "leave one out: --alpha makes the background transparent");
-    refuse_if(std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
-              "write a .png or .exr");
-    refuse_if(std::ranges::any_of(pictures, is_radiance), "a .hdr cannot store the channel of --alpha",
-              "write a .png or .exr");
-  }
-
-  // Options that only affect a PNG.
-  const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
-  refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
 }
 
 }  // namespace promin::app

@@ -2,165 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "environment_options.h"
-#include "job_options.h"
-#include "pose_options.h"
-#include "promin/lighting.h"
-#include "promin/math.h"
-#include "promin/renderer.h"
-#include "tracing_options.h"
+#include "work/render_spec.h"
+#include "work_names.h"
 
 namespace CLI {
 class App;
 }
 
+// The options of `promin render`, which give a RenderSpec.
 namespace promin::app {
 
-/// The background that camera rays see.
-struct BackgroundChoice {
-  /// Whether they see the environment; else the colour.
-  bool is_environment = false;
-  /// Whether the colour is linear light, which is exposed and tone mapped; else it is displayed sRGB, 0 to 1.
-  bool is_linear = false;
-  vec3 color{0.0F};
-
-  bool operator==(const BackgroundChoice&) const = default;
-};
-
-/// The user's choices of light and display. Open choices depend on the scene (promin/lighting.h).
-struct LookOptions {
-  LightChoice light = LightChoice::kAuto;
-  std::optional<BackgroundChoice> background = std::nullopt;
-  /// Exposure in stops.
-  std::optional<float> exposure_ev = std::nullopt;
-  /// Whether the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
-  bool averages_exposure = false;
-  std::optional<ToneMapping> tone_mapping = std::nullopt;
-  bool dithers = false;
-  /// RendererOptions::texture_bytes in MiB.
-  uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
-};
-
-/// The user's choices of the view, from which make_view (view_setup.h) makes a View.
-struct ViewOptions {
-  /// Size in pixels; a side of 0 follows from the camera's aspect ratio.
-  std::optional<uvec2> size;
-  std::optional<PixelWindow> crop;
-  /// Samples per pixel; the default of View if empty.
-  std::optional<uint32_t> samples_per_pixel = std::nullopt;
-  PixelFilter filter = PixelFilter::kBox;
-  /// Width in pixels; the filter's default if empty.
-  std::optional<float> filter_width = std::nullopt;
-  /// Largest number of bounces; depends on the scene if empty.
-  std::optional<uint32_t> max_depth = std::nullopt;
-  DebugView debug_view = DebugView::kNone;
-  DepthKind depth_kind = DepthKind::kRay;
-  bool has_no_shadows = false;
-  LookOptions look;
-  /// Indices of the scene's lights to switch off.
-  std::vector<uint32_t> lights_off;
-  /// The name or number of a camera.
-  std::optional<std::string> camera;
-  /// Whether to frame the scene, and ignore its cameras unless one is named.
-  bool frames_scene = false;
-  /// A camera that replaces those of the scene.
-  std::optional<Camera> given_camera;
-  PoseOptions pose;
-  EnvironmentOptions environment;
-};
-
-/// A range of frame numbers from 0, both included.
-struct FrameRange {
-  uint32_t first = 0;
-  uint32_t last = 0;
-};
-
-/// The default number of samples per pixel. Eight remove the stairs at edges and the noise of small mirrors, and cost
-/// about a second of two cores more at 640x480.
-inline constexpr uint32_t kDefaultSamples = 8;
-
-/// How good a picture is, for people who do not count samples.
-enum class Quality : uint32_t { kDraft, kNormal, kHigh, kBest };
-
-/// The space in which errors are measured: linear light, or as displayed.
-enum class ErrorSpace : uint32_t { kLinear, kDisplay };
-
-/// Returns names for people, indexed by ErrorSpace.
-std::span<const std::string_view> error_space_names();
-
-/// Returns the smallest target error as the text of a fraction.
-std::string least_error();
-
-/// The user's choices of accuracy. Open choices follow from the others.
-struct ErrorOptions {
-  std::optional<float> target;
-  /// Time limit in seconds.
-  std::optional<double> time_limit_s;
-  std::optional<uint32_t> min_samples;
-  std::optional<uint32_t> max_samples;
-  /// The space in which errors are measured.
-  std::optional<ErrorSpace> space;
-
-  bool is_given() const { return target || time_limit_s; }
-  /// Returns the error target; empty for a fixed number of samples.
-  std::optional<ErrorTarget> error_target() const;
-  /// Returns the error target, with this error if none is given. The display transform is not set yet (fit_to_display).
-  ErrorTarget target_or(float error) const;
-};
-
-/// Sets the members of a target that depend on the display: the radiance of white and, if errors are measured as
-/// displayed, the transform.
-void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
-
-/// Returns the options that give exactly this target.
-std::string describe_options(const ErrorTarget& target);
-/// Returns "error 0.015625", "error 0.015625 to 0.125" or one of these with " as shown": the errors reached, measured
-/// as for the target.
-std::string describe_errors(float least, float most, const ErrorTarget& target);
-
-/// Returns " but for 750 pixels of at most 0.0161" for pixels that have missed a target; empty if there are none.
-std::string describe_unmet(const PictureError& error);
-
-struct RenderOptions {
-  TracingOptions tracing;
-  /// If the user names none, those of name_pictures.
-  std::vector<std::filesystem::path> pictures;
-  /// Whether to skip frames whose pictures exist.
-  bool skips_existing = false;
-  ViewOptions view;
-  std::optional<Quality> quality;
-  ErrorOptions error;
-  JobOptions job;
-  /// Further channels of an EXR in addition to R, G and B.
-  AovSet aovs;
-  /// Whether AovSet::unlit is only needed to display the pictures, which is known when the scene is read.
-  bool hides_unlit = false;
-  ExrOptions exr;
-  /// Whether the user has chosen the compression of EXRs, even if it is the default.
-  bool names_compression = false;
-  /// A camera path, and the frames to render; without `frames` all.
-  std::optional<std::filesystem::path> path;
-  std::optional<FrameRange> frames;
-  /// The rate of pictures, as for PathPictures.
-  std::optional<double> fps;
-  /// A pixel to explain in place of writing a picture.
-  std::optional<uvec2> explained_pixel;
-  bool has_all_features = false;
-};
+class OptionTable;
 
 /// Adds the rows that a window has too: the view of the scene and the camera. `view` must outlive the parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 
+/// Adds the rows of the surroundings. `options` must outlive the parsing.
+void add_environment_options(OptionTable& table, EnvironmentOptions& options);
+
 /// Adds the rows of --spp, with this text for its default, and --quality. `options` must outlive the parsing.
-void add_sample_options(OptionTable& table, RenderOptions& options, std::string_view usual);
+void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual);
 
 /// Adds the rows of --target-error, with this help, and of its sample options. `error` must outlive the parsing.
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help);
@@ -168,23 +32,7 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
 /// Adds the row of --fps, for commands that play a path. `fps` must outlive the parsing.
 void add_fps_option(OptionTable& table, std::optional<double>& fps);
 
-/// Sets samples or an error target from the quality.
-void apply_quality(RenderOptions& options);
-
 /// Adds a row for each option to the command. `options` must outlive the parsing.
-void add_render_options(CLI::App& command, RenderOptions& options);
-
-/// Returns the pictures that a command writes: those named or, if none is and no pixel is explained, the scene's name
-/// with .exr and .png in the current folder, with #### for frames of a path.
-std::vector<std::filesystem::path> name_pictures(const RenderOptions& options);
-
-/// Throws UsageError if a camera is given in addition to the option of this name, which has its own cameras.
-void check_no_camera(const ViewOptions& options, std::string_view name);
-
-/// Throws UsageError if the smallest number of samples exceeds the largest.
-void check_error_target(const ErrorTarget& target);
-
-/// Throws UsageError if two options contradict each other.
-void check_render_options(const RenderOptions& options);
+void add_render_options(CLI::App& command, RenderSpec& options);
 
 }  // namespace promin::app

@@ -12,7 +12,8 @@
 
 #include "core/hash.h"
 #include "scene/members.h"
-#include "scene_counts.h"
+#include "work/scene_counts.h"
+#include "work_names.h"
 
 namespace promin::app {
 namespace {

@@ -24,7 +24,9 @@
 #include "render_options.h"
 #include "run_program.h"
 #include "shown_picture.h"
-#include "tracing_run.h"
+#include "tracing_options.h"
+#include "work/check_spec.h"
+#include "work/tracing_run.h"
 
 namespace promin::app {
 namespace fs = std::filesystem;
@@ -59,7 +61,7 @@ gpu::DeviceHandle open_device_of(const TracingOptions& options, const Console& c
   return open_device_for(options, stats, console);
 }
 
-void make_thumbnail(const RenderOptions& options) {
+void make_thumbnail(const RenderSpec& options) {
   check_outputs({options.tracing.scene}, options.pictures, {});
   const Console console(Verbosity::kQuiet);
   const Image image = render_shown(options, *open_device_of(options.tracing, console), console);
@@ -69,7 +71,7 @@ void make_thumbnail(const RenderOptions& options) {
 struct SheetOptions {
   std::vector<fs::path> scenes;
   /// The sheet's file, and the common options of all pictures.
-  RenderOptions each;
+  RenderSpec each;
   std::optional<uint32_t> columns;
 };
 
@@ -116,7 +118,7 @@ Image draw_name(const std::string& name, const fs::path& font, uint32_t width) {
 }
 
 /// Renders a scene of a sheet. After a failure it reports the reason and returns an empty picture of the same size.
-std::optional<Image> render_cell(const RenderOptions& options, const gpu::Device& device, const Console& console) {
+std::optional<Image> render_cell(const RenderSpec& options, const gpu::Device& device, const Console& console) {
   try {
     return render_shown(options, device, Console(console.is_verbose() ? Verbosity::kVerbose : Verbosity::kQuiet));
   } catch (const InputError& error) {
@@ -141,14 +143,13 @@ void check_sheet_size(const uvec2& size) {
 }
 
 void make_sheet(const SheetOptions& options) {
-  check_tracing_options(options.each.tracing);
-  check_render_options(options.each);
+  const Console console(verbosity_of(options.each.tracing));
+  check_render_spec(options.each);
   check_pictures(options.each.pictures);
   check_outputs(options.scenes, options.each.pictures, {});
   const SheetLayout layout(picture_size(options), static_cast<uint32_t>(options.scenes.size()), options.columns);
   check_sheet_size(layout.size());
   Image sheet{layout.size(), std::vector<vec3>(size_t{layout.size().x} * layout.size().y, kPaper)};
-  const Console console(options.each.tracing.verbosity());
   const std::optional<fs::path> font = find_font();
   if (!font) console.warn("the sheet has no names because no font was found; install DejaVu Sans");
   const gpu::DeviceHandle device = open_device_of(options.each.tracing, console);
@@ -157,7 +158,7 @@ void make_sheet(const SheetOptions& options) {
   for (uint32_t i = 0; i < options.scenes.size(); ++i) {
     const std::string name = options.scenes[i].filename().string();
     progress.update(static_cast<double>(i) / static_cast<double>(options.scenes.size()), name);
-    RenderOptions each = options.each;
+    RenderSpec each = options.each;
     each.tracing.scene = options.scenes[i];
     each.view.size = layout.picture();
     const std::optional<Image> picture = render_cell(each, *device, console);
@@ -180,7 +181,7 @@ void make_sheet(const SheetOptions& options) {
 
 Command add_thumbnail_command(CLI::App& program) {
   CLI::App& command = add_command(program, "thumbnail", "Write a thumbnail of a scene, as file managers show it");
-  const auto options = std::make_shared<RenderOptions>();
+  const auto options = std::make_shared<RenderSpec>();
   options->view.size = uvec2(kThumbnailSide);
   options->view.frames_scene = true;
   OptionTable table(command);

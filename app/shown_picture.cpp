@@ -4,13 +4,13 @@
 
 #include <utility>
 
-#include "frame_plan.h"
-#include "picture_run.h"
-#include "tracing_run.h"
+#include "work/frame_plan.h"
+#include "work/picture_run.h"
+#include "work/tracing_run.h"
 
 namespace promin::app {
 
-Image render_shown(const RenderOptions& options, const gpu::Device& device, const Console& console) {
+Image render_shown(const RenderSpec& options, const gpu::Device& device, const Console& console) {
   const PictureRun run = prepare_pictures(options, plan_frames(options), console);
   const View& view = *run.stats.view;
   Renderer renderer =

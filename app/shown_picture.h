@@ -13,6 +13,6 @@ namespace promin::app {
 /// so that write_image without a display transform gives the same sRGB values as `promin render`. options.pictures
 /// names a file, which is not written. Throws InputError, UsageError for references to things that the scene lacks, and
 /// RunError.
-Image render_shown(const RenderOptions& options, const gpu::Device& device, const Console& console);
+Image render_shown(const RenderSpec& options, const gpu::Device& device, const Console& console);
 
 }  // namespace promin::app

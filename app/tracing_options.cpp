@@ -6,7 +6,7 @@
 
 #include "arguments.h"
 #include "load_options.h"
-#include "promin/error.h"
+#include "promin/renderer.h"
 
 namespace promin::app {
 namespace {
@@ -53,19 +53,6 @@ void add_measuring_options(OptionTable& table, TracingOptions& options) {
             [&](const OptionValues& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
   table.add("--stats", "FILE.json", "Write counts and times as JSON",
             [&](const OptionValues& w) { options.stats = w.text(); });
-}
-
-void check_tracing_options(const TracingOptions& options) {
-  options.verbosity();
-  if (options.bvh && options.builder) {
-    throw UsageError({"--bvh and --builder contradict each other", "on the command line", "leave one out"});
-  }
-}
-
-std::vector<std::filesystem::path> input_files(const TracingOptions& options) {
-  std::vector<std::filesystem::path> files = {options.scene};
-  if (options.bvh) files.push_back(*options.bvh);
-  return files;
 }
 
 }  // namespace promin::app

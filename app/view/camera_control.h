@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "camera.h"
 #include "view/motion.h"
+#include "work/camera.h"
 
 namespace promin::app {
 

@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "camera.h"
-#include "quantiles.h"
+#include "work/camera.h"
+#include "work/quantiles.h"
+#include "work_names.h"
 
 namespace promin::app {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "camera_path.h"
 #include "view/finished_frame.h"
+#include "work/camera_path.h"
 
 namespace promin::app {
 

@@ -7,13 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "camera_path.h"
-#include "environment_options.h"
 #include "formats/source_file.h"
 #include "promin/load_scene.h"
 #include "promin/scene.h"
 #include "promin/view.h"
-#include "run_stats.h"
+#include "work/camera_path.h"
+#include "work/environment_choice.h"
+#include "work/run_stats.h"
+#include "work_names.h"
 
 namespace promin::app {
 

@@ -11,8 +11,7 @@
 #include "promin/error.h"
 #include "promin/validate.h"
 #include "scene/features.h"
-#include "trace/render/renderer_impl.h"
-#include "view_setup.h"
+#include "work/view_setup.h"
 
 namespace promin::app {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "device_scene/pack_scene.h"
 #include "device_scene/scene_constants.h"
-#include "environment_options.h"
 #include "promin/renderer.h"
 #include "render_options.h"
 #include "scene/world_scene.h"
@@ -18,6 +17,7 @@
 #include "view/background.h"
 #include "view/scene_watch.h"
 #include "view/traced_picture.h"
+#include "work/environment_choice.h"
 
 namespace promin::app {
 

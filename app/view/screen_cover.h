@@ -5,8 +5,8 @@
 #include <array>
 #include <optional>
 
-#include "camera.h"
 #include "promin/scene.h"
+#include "work/camera.h"
 
 namespace promin::app {
 

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "outputs.h"
-#include "picture_files.h"
 #include "promin/error.h"
 #include "render_options.h"
 #include "trace/film/film.h"
+#include "work/picture_files.h"
 
 namespace promin::app {
 namespace fs = std::filesystem;

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "camera.h"
 #include "view/overlay.h"
+#include "work/camera.h"
 
 namespace promin::app {
 namespace {

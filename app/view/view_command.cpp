@@ -9,16 +9,18 @@
 #include <cstdlib>
 #include <memory>
 
-#include "camera_choice.h"
-#include "camera_path.h"
 #include "load_options.h"
 #include "outputs.h"
 #include "promin/error.h"
 #include "render_options.h"
 #include "run_program.h"
-#include "tracing_run.h"
+#include "tracing_options.h"
 #include "view/viewer.h"
-#include "view_setup.h"
+#include "work/camera_choice.h"
+#include "work/camera_path.h"
+#include "work/check_spec.h"
+#include "work/tracing_run.h"
+#include "work/view_setup.h"
 
 namespace promin::app {
 namespace {
@@ -72,6 +74,7 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
 }
 
 void check_window_options(const WindowOptions& options) {
+  static_cast<void>(verbosity_of(options.tracing));
   check_tracing_options(options.tracing);
   check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.replay) check_no_camera(options.view, "--replay");
@@ -180,7 +183,7 @@ std::shared_ptr<const gpu::Device> open_device(Window& window, const std::option
 void view(const WindowOptions& options) {
   check_window_options(options);
   choose_threads(options.tracing);
-  const Console console(options.tracing.verbosity(), "promin-view");
+  const Console console(verbosity_of(options.tracing), "promin-view");
   ViewerStart start = make_start(options, console);
   Background<OpenedScene> opening;
   opening.start([&start, file = start.file] { return start.open(file); });

@@ -15,7 +15,7 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "run_program.h"
-#include "view_setup.h"
+#include "work/view_setup.h"
 
 namespace promin::app {
 namespace {

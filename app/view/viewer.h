@@ -11,7 +11,6 @@
 #include "console.h"
 #include "deferred_signals.h"
 #include "promin/framing.h"
-#include "run_stats.h"
 #include "view/camera_control.h"
 #include "view/describe_command.h"
 #include "view/display_pass.h"
@@ -26,6 +25,7 @@
 #include "view/screenshot.h"
 #include "view/show_explanation.h"
 #include "view/window.h"
+#include "work/run_stats.h"
 
 namespace promin::app {
 

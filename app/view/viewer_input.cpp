@@ -10,8 +10,8 @@
 #include "outputs.h"
 #include "promin/error.h"
 #include "promin/framing.h"
-#include "tracing_run.h"
 #include "view/viewer.h"
+#include "work/tracing_run.h"
 
 namespace promin::app {
 

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -27,8 +28,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Of manifests and of pieces.
-constexpr int kFormat = 2;
-constexpr std::string_view kMagic = "promin piece 2";
+constexpr int kFormat = 3;
+constexpr std::string_view kMagic = "promin piece 3";
 /// Longer than any header of a piece.
 constexpr size_t kMostHeaderBytes = 1U << 20;
 
@@ -86,8 +87,12 @@ Manifest read_manifest(const fs::path& folder) {
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   try {
     const Json json = Json::parse(text);
-    if (json.at("promin_job") != kFormat)
-      throw InputError({"the job was made by another version of promin", file.string(), cure});
+    const int format = json.at("promin_job").get<int>();
+    if (format < kFormat) {
+      throw InputError({"the job was made by an older version of promin, which this version cannot continue",
+                        file.string(), "make a new job in another folder, or remove this one"});
+    }
+    if (format != kFormat) throw InputError({"the job was made by another version of promin", file.string(), cure});
     Manifest manifest = manifest_of(json);
     // A manifest that was edited no longer matches its pieces.
     if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
@@ -184,6 +189,15 @@ std::string hash_of(std::span<const std::byte> bytes) {
   return Sha256().add(bytes).finish();
 }
 
+/// Reads the first two lines of a piece.
+std::optional<Header> read_header_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string magic;
+  std::string line;
+  if (!std::getline(stream, magic) || !std::getline(stream, line)) return {};
+  return read_header(magic + "\n" + line + "\n");
+}
+
 /// A piece's content, or its fault.
 struct Reading {
   std::optional<Content> content;
@@ -248,11 +262,10 @@ std::string text_of_line(const Json& line) {
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string version_of(const Manifest& manifest) {
-  for (const auto& [name, value] : manifest.options) {
-    if (name == "version") return value;
-  }
-  return "";
+/// Returns whether two makers are expected to give the same bits if their builds do. A program computes no fingerprint.
+bool is_same_device(const Maker& a, const Maker& b) {
+  const bool may_differ = !a.fingerprint.empty() && !b.fingerprint.empty() && a.fingerprint != b.fingerprint;
+  return a.made_on == b.made_on && !may_differ;
 }
 
 }  // namespace
@@ -330,6 +343,18 @@ Content Job::read(size_t piece) const {
   throw InputError({reading.why, file_of(piece).string(), "run the job again to make this piece again"});
 }
 
+std::optional<Maker> Job::maker_of(size_t piece) const {
+  const std::optional<Header> header = read_header_of(file_of(piece));
+  if (!header) return {};
+  try {
+    if (header->json.value("job", std::string()) != id_) return {};
+    const auto word = [&](const char* key) { return header->json.value(key, std::string()); };
+    return Maker{word("made_on"), word("fingerprint"), word("build")};
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+}
+
 Receipt Job::write(size_t piece, const Content& content, double ms, const Maker& maker) const {
   Receipt receipt{.number = piece,
                   .name = manifest_.pieces[piece],
@@ -337,11 +362,14 @@ Receipt Job::write(size_t piece, const Content& content, double ms, const Maker&
                   .size_bytes = content.bytes.size(),
                   .ms = ms,
                   .maker = maker,
-                  .version = version_of(manifest_),
+                  .version = PROMIN_VERSION,
                   .host = host_name(),
                   .pid = getpid()};
   const Json header = {{"job", id_},
                        {"piece", receipt.name},
+                       {"made_on", maker.made_on},
+                       {"fingerprint", maker.fingerprint},
+                       {"build", maker.build},
                        {"size_bytes", receipt.size_bytes},
                        {"sha256", receipt.sha256},
                        {"description", content.description},
@@ -354,6 +382,7 @@ Receipt Job::write(size_t piece, const Content& content, double ms, const Maker&
                {"size_bytes", receipt.size_bytes},
                {"ms", ms},
                {"version", receipt.version},
+               {"build", maker.build},
                {"host", receipt.host},
                {"pid", receipt.pid}});
   append_line(ledger_file(), text_of_line(line), true);
@@ -414,6 +443,27 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
     ++made;
   }
   return made;
+}
+
+std::optional<size_t> find_piece_of_other_build(const Job& job, const Maker& maker) {
+  std::optional<size_t> found;
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    const std::optional<Maker> other = job.maker_of(piece);
+    if (!other || !is_same_device(*other, maker)) continue;
+    if (other->build == maker.build) return {};
+    if (!found && job.state_of(piece) == PieceState::kDone) found = piece;
+  }
+  return found;
+}
+
+std::optional<size_t> check_build(const Job& job, const Maker& maker,
+                                  const std::function<Content(size_t piece)>& make) {
+  const std::optional<size_t> piece = find_piece_of_other_build(job, maker);
+  if (!piece || make(*piece).bytes == job.read(*piece).bytes) return piece;
+  throw UsageError({fmt::format("the job's pieces were made by another build of promin, and this build makes piece {} "
+                                "with other bits",
+                                job.manifest().pieces[*piece]),
+                    job.folder().string(), "continue with the first build, or name another folder"});
 }
 
 std::vector<size_t> find_missing(const Job& job, const Share& share) {

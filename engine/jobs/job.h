@@ -29,7 +29,7 @@ InputFile describe_input(const std::filesystem::path& file);
 struct Manifest {
   /// The kind of the pieces: "render", "cast".
   std::string kind;
-  /// Names and values of all other inputs of their bytes, including the program's version.
+  /// Names and values of all other inputs of their bytes.
   std::vector<std::pair<std::string, std::string>> options;
   std::vector<InputFile> files;
   /// Names of the pieces, all different, of letters, digits, '_' and '-'; by their numbers.
@@ -54,8 +54,12 @@ enum class PieceState {
 struct Maker {
   /// Device and driver in words.
   std::string made_on;
-  /// The hash of its results for a fixed test (app/fingerprint.h); empty if the test was not made.
+  /// The hash of its results for a fixed test (work/fingerprint.h); empty if the test was not made.
   std::string fingerprint;
+  /// The build of its program (work/build_id.h); empty for pieces that a function makes.
+  std::string build = {};
+
+  bool operator==(const Maker&) const = default;
 };
 
 /// The record of a piece that was written.
@@ -101,6 +105,8 @@ class Job {
   PieceState state_of(size_t piece, std::string* why = nullptr) const;
   /// Reads a piece. Throws InputError if it is missing or bad.
   Content read(size_t piece) const;
+  /// Reads who made a piece from the beginning of its file; nothing if it is missing or bad.
+  std::optional<Maker> maker_of(size_t piece) const;
   /// Writes a piece, and its receipt to the ledger. Throws RunError; the piece is then either complete or unchanged.
   Receipt write(size_t piece, const Content& content, double ms, const Maker& maker) const;
 
@@ -153,6 +159,13 @@ using BeforePiece = std::function<bool(const NextPiece& next)>;
 /// Returns the number of pieces made, which is smaller than the number missing if `before` has returned false.
 size_t run_share(const Job& job, const Share& share, const Maker& maker, const BeforePiece& before,
                  const std::function<Content(size_t piece)>& make);
+
+/// Returns a finished piece that this maker has to make again before others, because another build has made it on the
+/// same device. Nothing if there is none, or if this build has made pieces of the job: it has then passed check_build.
+std::optional<size_t> find_piece_of_other_build(const Job& job, const Maker& maker);
+/// Makes such a piece again, if there is one, and writes nothing. Throws UsageError unless its bytes are equal, because
+/// the pieces of the two builds must not be mixed. Returns the piece.
+std::optional<size_t> check_build(const Job& job, const Maker& maker, const std::function<Content(size_t piece)>& make);
 
 /// Returns the pieces of a share that are not done.
 std::vector<size_t> find_missing(const Job& job, const Share& share = {});

@@ -15,15 +15,16 @@
 
 #include "arguments.h"
 #include "bind.h"
-#include "picture_run.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/setup_stats.h"
 #include "records.h"
 #include "render_options.h"
+#include "spec_options.h"
 #include "typed_words.h"
-#include "view_setup.h"
+#include "work/picture_run.h"
+#include "work/view_setup.h"
 
 namespace nb = nanobind;
 
@@ -45,7 +46,7 @@ nb::dict list_choices() {
   choices["compression"] = write_names(names_of(ExrCompression()));
   choices["debug_view"] = write_names(names_of(DebugView()));
   choices["depth"] = write_names(names_of(DepthKind()));
-  choices["error_in"] = write_names(app::error_space_names());
+  choices["error_in"] = write_names(work::error_space_names());
   choices["filter"] = write_names(names_of(PixelFilter()));
   choices["framing"] = write_names(framing_names());
   choices["kind"] = write_names(names_of(LightKind()));
@@ -87,11 +88,11 @@ nb::dict list_defaults() {
   defaults["ErrorTarget"] = write(ErrorTarget());
   defaults["ExrOptions"] = write(ExrOptions());
   defaults["View"] = write(View());
-  defaults["samples"] = app::kDefaultSamples;
+  defaults["samples"] = work::kDefaultSamples;
   defaults["builder"] = RendererOptions().builder;
   defaults["texture_memory"] = RendererOptions().texture_bytes;
-  defaults["aspect_ratio"] = app::kDefaultAspectRatio;
-  defaults["height"] = app::default_size(Camera())->y;
+  defaults["aspect_ratio"] = work::kDefaultAspectRatio;
+  defaults["height"] = work::default_size(Camera())->y;
   defaults["coarse_min_spp"] = kMinRefinedSamples;
   defaults["max_depth_of_glass"] = kMaxDepthOfGlass;
   return defaults;
@@ -100,8 +101,11 @@ nb::dict list_defaults() {
 /// The options and arguments of `promin render`, by the names that messages have.
 std::vector<std::string> list_options() {
   CLI::App command("", "render");
-  app::RenderOptions options;
+  work::RenderSpec options;
+  bool prints_spec = false;
+  app::add_spec_option(command, options);
   app::add_render_options(command, options);
+  app::add_print_spec_option(command, prints_spec);
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;
@@ -115,7 +119,7 @@ using Size = std::pair<uint32_t, uint32_t>;
 
 /// Returns width and height of a camera's pictures where these sides are requested, 0 being open. None: no size fits.
 std::optional<Size> choose_size(const nb::dict& camera, const Size& sides) {
-  const std::optional<uvec2> size = app::size_for({sides.first, sides.second}, read_camera(camera));
+  const std::optional<uvec2> size = work::size_for({sides.first, sides.second}, read_camera(camera));
   if (!size) return {};
   return Size(size->x, size->y);
 }
@@ -132,20 +136,20 @@ double read_time_limit(const std::string& word) {
 
 /// The fields of a view with this debug view that a word of --quality stands for.
 nb::dict read_quality(const std::string& word, const std::string& debug_view) {
-  app::RenderOptions options = read_options({"--quality=" + word, "--shading=" + debug_view});
-  app::apply_quality(options);
+  work::RenderSpec options = read_options({"--quality=" + word, "--shading=" + debug_view});
+  work::apply_quality(options);
   nb::dict fields;
-  fields["spp"] = options.view.samples_per_pixel.value_or(app::kDefaultSamples);
+  fields["spp"] = options.view.samples_per_pixel.value_or(work::kDefaultSamples);
   fields["target_error"] = options.error.target;
   fields["error_in"] = std::string(
-      app::error_space_names()[static_cast<size_t>(options.error.space.value_or(app::ErrorSpace::kLinear))]);
+      work::error_space_names()[static_cast<size_t>(options.error.space.value_or(work::ErrorSpace::kLinear))]);
   return fields;
 }
 
 /// The option that another program's name of one stands for, without dashes; empty where none is known.
 std::string find_option(const std::string& name) {
   CLI::App command("", "promin");
-  app::RenderOptions options;
+  work::RenderSpec options;
   app::add_render_options(command, options);
   const std::string typed = "--" + name;
   const std::string same = app::spell_out(command, {"promin", typed}).back();
@@ -156,16 +160,16 @@ std::string find_option(const std::string& name) {
 /// The ErrorTarget of a view of which `asked` has the fields target_error, time_limit, min_spp, max_spp and error_in,
 /// shown like this, as the command line makes it of its options; None where pixels have samples of a fixed number.
 nb::object error_target(const nb::dict& asked, const nb::dict& display) {
-  app::ErrorOptions options;
+  work::ErrorOptions options;
   options.target = read_real(asked, "target_error");
   options.time_limit_s = read_real(asked, "time_limit");
   options.min_samples = read_whole(asked, "min_spp");
   options.max_samples = read_whole(asked, "max_spp");
   const auto space = nb::cast<std::string>(asked["error_in"]);
-  options.space = static_cast<app::ErrorSpace>(find_name(app::error_space_names(), space, "error_in"));
+  options.space = static_cast<work::ErrorSpace>(find_name(work::error_space_names(), space, "error_in"));
   std::optional<ErrorTarget> target = options.error_target();
   if (!target) return nb::none();
-  app::fit_to_display(*target, read_display(display));
+  work::fit_to_display(*target, read_display(display));
   return write(*target);
 }
 
@@ -190,9 +194,9 @@ UsageError name_keywords(const UsageError& error) {
   return UsageError({name_keywords(problem.what), "", name_keywords(problem.cure)});
 }
 
-app::RenderOptions read_options(const std::vector<std::string>& words) {
+work::RenderSpec read_options(const std::vector<std::string>& words) {
   CLI::App command("", "promin");
-  app::RenderOptions options;
+  work::RenderSpec options;
   app::add_common_options(command);
   app::add_render_options(command, options);
   std::vector<const char*> all{"promin", "SCENE"};
@@ -210,13 +214,13 @@ app::RenderOptions read_options(const std::vector<std::string>& words) {
 Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
                           const gpu::DeviceInfo& device, const std::string& scene_file, const Scene& named,
                           const AovSet& aovs) {
-  app::RunStats stats;
+  work::RunStats stats;
   stats.device = device;
   stats.scene_file = scene_file;
   stats.view = view;
   stats.display = display;
   if (error) stats.errors.push_back(*error);
-  return app::make_metadata(stats, {}, app::describe_aovs(named, aovs, false, view.depth_kind));
+  return work::make_metadata(stats, {}, work::describe_aovs(named, aovs, false, view.depth_kind));
 }
 
 void bind_command_line(nb::module_& module) {

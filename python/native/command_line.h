@@ -17,12 +17,12 @@
 #include "promin/renderer.h"
 #include "promin/scene.h"
 #include "promin/view.h"
-#include "render_options.h"
+#include "work/render_spec.h"
 
 namespace promin::python {
 
 /// Returns the options of `promin render` that these words give, read as on the command line. Throws UsageError.
-app::RenderOptions read_options(const std::vector<std::string>& words);
+work::RenderSpec read_options(const std::vector<std::string>& words);
 
 /// Returns the sentence with Python's keywords in place of the options of `promin render`: look_at for --look-at.
 std::string name_keywords(const std::string& sentence);

@@ -14,18 +14,20 @@
 #include <span>
 
 #include "bind.h"
-#include "command_job.h"
 #include "device.h"
-#include "fingerprint.h"
 #include "in_process.h"
 #include "job_words.h"
 #include "jobs/job.h"
 #include "jobs/sha256.h"
-#include "merge_job.h"
-#include "planned_job.h"
 #include "promin/error.h"
-#include "ray_source.h"
 #include "watched.h"
+#include "work/build_id.h"
+#include "work/fingerprint.h"
+#include "work/job_manifest.h"
+#include "work/merge_job.h"
+#include "work/planned_job.h"
+#include "work/ray_source.h"
+#include "work/spec_job.h"
 
 namespace nb = nanobind;
 namespace fs = std::filesystem;
@@ -37,9 +39,9 @@ using jobs::Job;
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
 /// Python shows warnings of its own and no notes.
-const app::Console& no_console() {
-  static const app::Console console(app::Verbosity::kQuiet);
-  return console;
+const work::Messages& no_messages() {
+  static const work::Messages messages;
+  return messages;
 }
 
 nb::dict describe(const jobs::Receipt& receipt) {
@@ -130,15 +132,15 @@ nb::dict write(const Job& job, size_t piece, const std::string& description, con
 
 void merge(const Job& job, const std::vector<fs::path>& outputs, bool is_mixed,
            const std::optional<std::vector<uint32_t>>& frames, const nb::object& progress) {
-  run_watched(progress, [&](const ProgressCallback& tell) { app::merge_job(job, outputs, tell, is_mixed, frames); });
+  run_watched(progress, [&](const ProgressCallback& tell) { work::merge_job(job, outputs, tell, is_mixed, frames); });
 }
 
 void check_outputs(const Job& job, const std::vector<fs::path>& outputs) {
-  unlocked([&] { app::check_job_files(job, outputs); });
+  unlocked([&] { work::check_job_files(job, outputs); });
 }
 
 /// A job that is read and checked; what opens its pieces has part in it.
-using Plan = std::shared_ptr<app::PlannedJob>;
+using Plan = std::shared_ptr<work::PlannedJob>;
 
 struct SharedPlan {
   Plan plan;
@@ -146,7 +148,7 @@ struct SharedPlan {
 
 /// Rays that Python has: an object with the attributes count, name, size_bytes and sha256, and a method read(first,
 /// count) that returns N x 8 float32. Its lock is taken for each call.
-class PythonRays : public app::RaySource {
+class PythonRays : public work::RaySource {
  public:
   explicit PythonRays(nb::object source)
       : source_(std::move(source)), count_(nb::cast<uint64_t>(source_.attr("count"))) {}
@@ -180,7 +182,7 @@ class PythonRays : public app::RaySource {
   uint64_t count_;
 };
 
-std::shared_ptr<app::RaySource> take_rays(const nb::object& source) {
+std::shared_ptr<work::RaySource> take_rays(const nb::object& source) {
   return source.is_none() ? nullptr : std::make_shared<PythonRays>(source);
 }
 
@@ -188,7 +190,17 @@ SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arg
                     const nb::object& source) {
   Plan plan;
   run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
-    plan = app::plan_job(kind, arguments, folder, no_console(), rays);
+    plan = app::plan_job_of_words(kind, arguments, folder, no_messages(), rays);
+  });
+  return {plan};
+}
+
+/// Plans the job of a specification's text. Files that it names are relative to the current folder.
+SharedPlan plan_spec(const std::string& kind, const std::string& text, const fs::path& folder,
+                     const nb::object& source) {
+  Plan plan;
+  run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
+    plan = work::plan_job_of_text(kind, text, "spec", folder, no_messages(), rays);
   });
   return {plan};
 }
@@ -196,7 +208,7 @@ SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arg
 SharedPlan plan_again(const Job& job, const nb::object& source) {
   Plan plan;
   run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
-    plan = app::plan_again(job, no_console(), rays);
+    plan = work::plan_again(job, no_messages(), rays);
   });
   return {plan};
 }
@@ -214,7 +226,7 @@ std::optional<std::pair<std::string, uint64_t>> stored(const Job& job, size_t pi
 }
 
 Job create(const SharedPlan& shared, const fs::path& folder) {
-  return unlocked([&] { return app::create_job(*shared.plan, folder); });
+  return unlocked([&] { return work::create_job(*shared.plan, folder); });
 }
 
 /// What makes the pieces of one job, for one thread at a time.
@@ -223,27 +235,30 @@ class Runner {
   Runner(std::shared_ptr<OpenDevice> device, const SharedPlan& shared, Job job)
       : device_(std::move(device)), plan_(shared.plan), job_(std::move(job)) {
     const gpu::Device& open = device_->get();
-    made_on_ = app::driver_of(gpu::info_of(open));
-    std::unique_ptr<app::PieceMaker> maker;
+    made_on_ = work::driver_of(gpu::info_of(open));
+    std::unique_ptr<work::PieceMaker> maker;
     run_watched(nb::none(), [&](const ProgressCallback& tell) { maker = plan_->open(open, job_.piece_count(), tell); });
     maker_.emplace(std::move(maker));
   }
 
   nb::dict run(size_t piece, const std::string& fingerprint, const nb::object& progress) {
     check(job_, piece);
-    app::PieceMaker& maker = maker_->get();
+    work::PieceMaker& maker = maker_->get();
     std::optional<jobs::Receipt> receipt;
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
-      receipt = jobs::make_piece(job_, piece, {made_on_, fingerprint},
-                                 [&](size_t number) { return maker.make(number, tell); });
+      const jobs::Maker own{made_on_, fingerprint, work::build_id()};
+      const auto make = [&](size_t number) { return maker.make(number, tell); };
+      if (!is_checked_) jobs::check_build(job_, own, make);
+      is_checked_ = true;
+      receipt = jobs::make_piece(job_, piece, own, make);
     });
     return describe(*receipt);
   }
 
   std::string recompute(size_t piece, const nb::object& progress) {
     check(job_, piece);
-    app::PieceMaker& maker = maker_->get();
+    work::PieceMaker& maker = maker_->get();
     std::string hash;
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
@@ -254,9 +269,9 @@ class Runner {
 
   nb::dict compare(size_t piece, const nb::object& progress) {
     check(job_, piece);
-    app::PieceMaker& maker = maker_->get();
+    work::PieceMaker& maker = maker_->get();
     bool is_equal = false;
-    app::PieceDifference difference;
+    work::PieceDifference difference;
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
       const jobs::Content there = job_.read(piece);
@@ -281,14 +296,16 @@ class Runner {
   Plan plan_;
   Job job_;
   std::string made_on_;
-  std::optional<InProcess<std::unique_ptr<app::PieceMaker>>> maker_;
+  std::optional<InProcess<std::unique_ptr<work::PieceMaker>>> maker_;
   std::timed_mutex mutex_;
+  /// Set after the check that its build may make pieces of the job.
+  bool is_checked_ = false;
 };
 
 std::string fingerprint_of(const OpenDevice& device) {
   const gpu::Device& open = device.get();
   std::string fingerprint;
-  run_watched(nb::none(), [&](const ProgressCallback&) { fingerprint = app::fingerprint_of(open); });
+  run_watched(nb::none(), [&](const ProgressCallback&) { fingerprint = work::fingerprint_of(open); });
   return fingerprint;
 }
 
@@ -299,7 +316,7 @@ void bind_jobs(nb::module_& module) {
       .def_static("create_with", &create_with)
       .def_static("open", [](const fs::path& folder) { return unlocked([&] { return Job::open(folder); }); })
       .def("describe", [](const Job& job) { return describe(job); })
-      .def("arguments", [](const Job& job) { return app::read_arguments(job); })
+      .def("spec", [](const Job& job) { return work::read_job_spec(job); })
       .def("file_of",
            [](const Job& job, size_t piece) {
              // As os.fsdecode has it: the folder's name need not be UTF-8.
@@ -331,6 +348,7 @@ void bind_jobs(nb::module_& module) {
   module.def("fingerprint_of", &fingerprint_of);
   nb::class_<SharedPlan>(module, "PlannedJob")
       .def_static("plan", &plan_job, nb::arg("kind"), nb::arg("arguments"), nb::arg("folder"), nb::arg("rays").none())
+      .def_static("plan_spec", &plan_spec, nb::arg("kind"), nb::arg("text"), nb::arg("folder"), nb::arg("rays").none())
       .def_static("plan_again", &plan_again, nb::arg("job"), nb::arg("rays").none())
       .def("create", &create);
   nb::class_<Runner>(module, "Runner")

@@ -13,17 +13,18 @@
 #include <utility>
 
 #include "bind.h"
-#include "camera_choice.h"
 #include "command_line.h"
-#include "environment_options.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/validate.h"
 #include "records.h"
-#include "view_setup.h"
 #include "watched.h"
+#include "work/camera_choice.h"
+#include "work/check_spec.h"
+#include "work/environment_choice.h"
+#include "work/view_setup.h"
 
 namespace nb = nanobind;
 
@@ -91,12 +92,12 @@ LightChoice read_choice(const std::string& name) {
 
 /// A copy with the light that the choice adds, in the surroundings and before the background of these options.
 Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& words) {
-  app::ViewOptions options = read_options(words).view;
+  work::ViewOptions options = read_options(words).view;
   options.look.light = read_choice(choice);
   Scene lit = scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
-    const app::EnvironmentChoice surroundings(options.environment);
-    app::light_up(lit, options.look, surroundings);
+    const work::EnvironmentChoice surroundings(options.environment);
+    work::light_up(lit, options.look, surroundings);
     lit.warnings = surroundings.warnings();
   });
   return lit;
@@ -110,9 +111,9 @@ void replace_all(std::vector<T>& values, const nb::list& records, const Read& re
 }
 
 /// Poses a camera that is not widened for a picture's size.
-Camera pose_exactly(const Scene& scene, Camera camera, const app::PoseOptions& pose) {
+Camera pose_exactly(const Scene& scene, Camera camera, const work::PoseOptions& pose) {
   const float aspect_ratio = std::exchange(camera.aspect_ratio, 0.0F);
-  camera = app::pose_camera(scene, camera, pose, uvec2(1), app::Console(app::Verbosity::kQuiet));
+  camera = work::pose_camera(scene, camera, pose, uvec2(1), work::Messages());
   camera.aspect_ratio = aspect_ratio;
   return camera;
 }
@@ -121,14 +122,14 @@ Camera pose_exactly(const Scene& scene, Camera camera, const app::PoseOptions& p
 /// no sides are given, the camera is that of a picture of this aspect ratio, and none is widened.
 nb::dict choose_camera(const Scene& scene, const std::vector<std::string>& words, const std::optional<nb::dict>& given,
                        const std::optional<std::pair<uint32_t, uint32_t>>& sides, float aspect_ratio) {
-  app::ViewOptions options = read_options(words).view;
+  work::ViewOptions options = read_options(words).view;
   if (sides && sides != std::pair(0U, 0U)) options.size = uvec2(sides->first, sides->second);
   return write(with_keywords([&] {
-    app::check_pose_options(options.pose, given || options.camera);
+    work::check_pose_options(options.pose, given || options.camera);
     if (given) return pose_exactly(scene, read_camera(*given), options.pose);
-    if (sides) return app::make_view(scene, options, app::Console(app::Verbosity::kQuiet)).camera;
-    const Camera* own = app::find_file_camera(scene, options);
-    if (own == nullptr) return app::make_camera(scene, options, aspect_ratio);
+    if (sides) return work::make_view(scene, options, work::Messages()).camera;
+    const Camera* own = work::find_file_camera(scene, options);
+    if (own == nullptr) return work::make_camera(scene, options, aspect_ratio);
     return pose_exactly(scene, *own, options.pose);
   }));
 }
@@ -136,7 +137,7 @@ nb::dict choose_camera(const Scene& scene, const std::vector<std::string>& words
 /// What is wrong where a picture of this size shows nothing of the scene; empty where it may show something.
 std::string describe_empty_picture(const Scene& scene, const nb::dict& camera, uint32_t width, uint32_t height) {
   const Camera one = read_camera(camera);
-  return name_keywords(app::describe_empty_pictures(scene, {&one, 1}, uvec2(width, height)));
+  return name_keywords(work::describe_empty_pictures(scene, {&one, 1}, uvec2(width, height)));
 }
 
 nb::object bounds(const Scene& scene) {

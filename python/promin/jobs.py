@@ -140,24 +140,31 @@ class RaySource(Protocol):
         tmin, direction, tmax."""
 
 
-def create(kind: str, arguments: Sequence[str], folder: PathLike, *, rays: RaySource | None = None) -> Job:
+def create(
+    kind: str, arguments: Sequence[str] | Mapping[str, Any], folder: PathLike, *, rays: RaySource | None = None
+) -> Job:
     """Creates the job of a command in a folder, or continues the one that exists.
 
     kind: "render" or "cast". arguments: the arguments of this command of promin, without --output, --offsets, --job,
-    --piece and --device; --pieces (or --tiles) divides the work. The scene and all other inputs of pieces are read and
-    hashed. The folder records the arguments with absolute paths, so `open` needs only the folder. rays: for "cast",
-    replaces the file of rays, which the arguments must still name; after opening the job elsewhere, pass it again to
-    `Job.runner`. Raises UsageError for arguments that the command refuses, and if the folder belongs to another job,
+    --piece and --device; --pieces (or --tiles) divides the work. Or a specification, a dict of the members that the
+    command's --print-spec prints, such as {"scene": "a.gltf", "spp": 64}. The scene and all other inputs of pieces are
+    read and hashed. The folder records the specification with absolute paths, so `open` needs only the folder. rays:
+    for "cast", replaces the file of rays, which the arguments must still name; after opening the job elsewhere, pass it
+    again to `Job.runner`. Raises UsageError for arguments that the command refuses, and if the folder belongs to another job,
     with the difference; InputError, RunError."""
     if isinstance(arguments, str):
         raise UsageError(f"arguments are {arguments!r}; give a list of words")
+    name = os.fsdecode(folder)
+    if isinstance(arguments, Mapping):
+        text = json.dumps({f"promin_{kind}_spec": 1, **arguments}, default=os.fsdecode)
+        plan = _promin.PlannedJob.plan_spec(str(kind), text, name, rays)
+        return Job(plan.create(name), name, plan, rays=rays)
     words = [os.fsdecode(word) if isinstance(word, (str, bytes, os.PathLike)) else str(word) for word in arguments]
     for word in words:
         if not _is_utf8(word):
             raise UsageError(
                 f"the argument {word!r} is not UTF-8, so a job cannot record it; rename the file"
             )
-    name = os.fsdecode(folder)
     plan = _promin.PlannedJob.plan(str(kind), words, name, rays)
     return Job(plan.create(name), name, plan, rays=rays)
 
@@ -257,7 +264,7 @@ class Job:
 
     @property
     def options(self) -> dict[str, str]:
-        """The inputs of the pieces' bytes other than files: the program's version and options by name."""
+        """The inputs of the pieces' bytes other than files: the version of results and options by name."""
         return dict(self._options)
 
     @property
@@ -266,9 +273,12 @@ class Job:
         return list(self._files)
 
     @property
-    def arguments(self) -> list[str] | None:
-        """The command's arguments, from which `runner` makes pieces; None for a job of `create_with`."""
-        return self._native.arguments()
+    def spec(self) -> dict[str, Any] | None:
+        """The specification from which `runner` makes pieces: a dict of the members that --print-spec prints, with
+        absolute paths; None for a job of `create_with`."""
+        text = self._native.spec()
+        spec: dict[str, Any] | None = None if text is None else json.loads(text)
+        return spec
 
     def state(self, number: int) -> Literal["done", "missing", "bad"]:
         """Reads and hashes a piece on the disk and returns its state: "done", "missing", or "bad" if it is cut short,
@@ -316,7 +326,7 @@ class Job:
         if told is not None:
             return told
         name = self._pieces[number].name
-        return Receipt(number, name, sha256, size, 0.0, "", "", self._options.get("version", ""), "", 0)
+        return Receipt(number, name, sha256, size, 0.0, "", "", "", "", 0)
 
     def events(self, maker: str | None = None) -> list[dict[str, Any]]:
         """Returns the events of the ledger sorted by time, or those of one maker in their order. Each is a dict with
@@ -351,8 +361,8 @@ class Job:
         device: a Device, a part of a name, an index, or None for the default one. make, rays: as given to `create_with`
         and `create`. tell: receives the name of each long step, such as "loads the scene" or "compiles". The tree of a
         large scene is shared in DIR/trees; the first process that needs it writes it. Raises UsageError if a file or
-        the program has changed, so that the job would be another one now, and names the change; InputError if the
-        folder does not say how pieces are made, or a file is missing; DeviceError, RunError."""
+        the version of results has changed, so that the job would be another one now, and names the change; InputError
+        if the folder does not say how pieces are made, or a file is missing; DeviceError, RunError."""
         make = make or self._make
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
             if self._kind not in ("render", "cast"):
@@ -435,9 +445,12 @@ class Runner:
     def run(self, number: int, stop: Stop | None = None) -> Receipt:
         """Makes and writes a piece unless it is done. Returns the receipt of the new or the existing piece.
 
+        If another build of promin has made the job's pieces, the first call makes one of them again to compare it.
+
         stop: called about twenty times a second; for pieces that a function makes, before and after the function. If it
         returns True, `run` raises Cancelled and nothing is written. Every event is recorded in the ledger. Raises
-        InputError if an input has changed, RunError."""
+        InputError if an input has changed, UsageError if another build of promin has made the job's pieces with other
+        bits, RunError."""
         done = self._job.receipt(number)
         if done is not None:
             return done

@@ -427,7 +427,12 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     words = [str(scene), str(rays), "--pieces", "2"]
     job = jobs.create("cast", words, tmp_path / "job")
     runner = job.runner()
-    assert job.arguments == words
+    assert job.spec == {
+        "promin_cast_spec": 1,
+        "scene": str(scene),
+        "rays": str(rays),
+        "pieces": 2,
+    }
     for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, and 1 now")):
         with pytest.raises(promin.UsageError, match=f"the folder belongs to another job: {what}"):
             jobs.create("cast", other, tmp_path / "job")
@@ -445,9 +450,27 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     scene.unlink()
     with pytest.raises(promin.InputError, match="the file does not exist, .*box.gltf"):
         jobs.open(tmp_path / "job").runner()
-    (tmp_path / "job/command.json").write_text("{}")
-    with pytest.raises(promin.InputError, match="does not name the command .* or it is damaged, .*command.json"):
+    (tmp_path / "job/spec.json").write_text("{}")
+    with pytest.raises(promin.InputError, match='has no member "promin_cast_spec" with the value 1, .*spec.json'):
         jobs.open(tmp_path / "job").runner()
+    (tmp_path / "job/spec.json").unlink()
+    with pytest.raises(promin.InputError, match="does not say how the job's pieces are made, .*spec.json"):
+        jobs.open(tmp_path / "job").runner()
+
+
+def test_a_specification_is_the_job_of_its_words(scene: Path, tmp_path: Path) -> None:
+    words = [str(scene), "--size", "16", "12", "--spp", "2", "--pieces", "2", "--aov", "normal,depth"]
+    spec = {"scene": scene, "size": [16, 12], "spp": 2, "pieces": 2, "aov": ["depth", "normal"]}
+    first = jobs.create("render", words, tmp_path / "job")
+    assert jobs.create("render", spec, tmp_path / "job").id == first.id
+    assert jobs.create("render", first.spec, tmp_path / "other").id == first.id
+    with pytest.raises(promin.InputError, match='a specification has no member "sp".*did you mean spp'):
+        jobs.create("render", {**spec, "sp": 2}, tmp_path / "none")
+    with pytest.raises(promin.InputError, match="spp takes a whole number from 1 to 65535, not 0"):
+        jobs.create("render", {**spec, "spp": 0}, tmp_path / "none")
+    with pytest.raises(promin.UsageError, match="--quality and --spp contradict each other"):
+        jobs.create("render", {**spec, "quality": "high"}, tmp_path / "none")
+    assert not (tmp_path / "none").exists()
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "cli_fixture.h"
-#include "frame_plan.h"
+#include "work/frame_plan.h"
 
 namespace promin {
 namespace {

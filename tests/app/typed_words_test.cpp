@@ -12,7 +12,7 @@
 #include "cast_options.h"
 #include "promin/error.h"
 #include "render_options.h"
-#include "view_setup.h"
+#include "work/view_setup.h"
 
 namespace promin::app {
 namespace {
@@ -50,8 +50,8 @@ class TypedWordsTest : public testing::Test {
   CLI::App program_{"", "promin"};
   CLI::App* render_ = nullptr;
   CLI::App* cast_ = nullptr;
-  RenderOptions pictures_;
-  CastOptions rays_;
+  RenderSpec pictures_;
+  CastSpec rays_;
 };
 
 TEST_F(TypedWordsTest, OtherNamesBecomeTheTables) {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "camera.h"
 #include "hard/hard_case.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
+#include "work/camera.h"
 
 namespace promin::hard {
 namespace {

@@ -31,12 +31,12 @@ namespace fs = std::filesystem;
 
 Manifest make_manifest(size_t pieces = 5) {
   Manifest manifest{
-      .kind = "bytes", .options = {{"version", "1"}, {"--spp", "4"}}, .files = {{"a.gltf", 12, "ab"}}, .pieces = {}};
+      .kind = "bytes", .options = {{"results", "1"}, {"--spp", "4"}}, .files = {{"a.gltf", 12, "ab"}}, .pieces = {}};
   for (size_t i = 0; i < pieces; ++i) manifest.pieces.push_back("part" + std::to_string(i));
   return manifest;
 }
 
-const Maker kMaker{"here", "print"};
+const Maker kMaker{"here", "print", "one"};
 
 Content make_content(size_t piece) {
   Content content{"number " + std::to_string(piece), {}};
@@ -161,7 +161,7 @@ TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
       {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given or has its default value now"},
       {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
        "its --crop is not given or has its default value, and is \"0 0 1 1\" now"},
-      {[](Manifest& m) { m.options[0].second = "2"; }, "its version is \"1\", and \"2\" now"},
+      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", and \"2\" now"},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
       {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
@@ -183,11 +183,62 @@ TEST_F(JobTest, FoldersWithoutAJobAreRefused) {
   EXPECT_THAT(refusal_of<UsageError>([&] { Job::create(job_folder_, make_manifest()); }),
               HasSubstr("the folder has files but no job"));
   EXPECT_EQ(read(job_folder_ / "letter.txt"), "dear");
-  for (const char* text : {"{", "[]", R"({"promin_job": 1})", R"({"promin_job": 2})"}) {
+  for (const char* text : {"{", "[]", R"({"promin_job": 1})", R"({"promin_job": 3})"}) {
     write(job_folder_ / "job.json", text);
     EXPECT_NE(refusal_of<InputError>([&] { Job::open(job_folder_); }), "") << text;
     EXPECT_NE(refusal_of<InputError>([&] { Job::create(job_folder_, make_manifest()); }), "") << text;
   }
+}
+
+TEST_F(JobTest, AFolderOfAnOlderVersionIsRefusedAndSaysSo) {
+  Job::create(job_folder_, make_manifest());
+  std::string text = read(job_folder_ / "job.json");
+  const std::string format = "\"promin_job\": 3";
+  ASSERT_NE(text.find(format), std::string::npos);
+  for (const auto& [other, sentence] : {std::pair("\"promin_job\": 2", "was made by an older version of promin"),
+                                        std::pair("\"promin_job\": 4", "was made by another version of promin")}) {
+    std::string changed = text;
+    changed.replace(changed.find(format), format.size(), other);
+    write(job_folder_ / "job.json", changed);
+    EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr(sentence));
+    EXPECT_THAT(refusal_of<InputError>([&] { Job::create(job_folder_, make_manifest()); }), HasSubstr(sentence));
+  }
+}
+
+TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
+  const Job job = Job::create(job_folder_, make_manifest());
+  make_piece(job, 2, kMaker, make_content);
+  ASSERT_TRUE(job.maker_of(2));
+  EXPECT_EQ(job.maker_of(2)->build, "one");
+  EXPECT_EQ(job.maker_of(0), std::nullopt);
+  std::vector<size_t> made;
+  const auto make_as = [&](std::byte more) {
+    return [&made, more](size_t piece) {
+      made.push_back(piece);
+      Content content = make_content(piece);
+      content.bytes.front() ^= more;
+      return content;
+    };
+  };
+  const auto equal = make_as(std::byte{0});
+  const auto other = make_as(std::byte{1});
+  EXPECT_EQ(check_build(job, kMaker, other), std::nullopt) << "its own pieces need no proof";
+  EXPECT_EQ(check_build(job, {"here", "print", "two"}, equal), 2U);
+  EXPECT_EQ(check_build(job, {"here", "", "two"}, equal), 2U) << "without a fingerprint";
+  EXPECT_EQ(check_build(job, {"elsewhere", "print", "two"}, other), std::nullopt) << "other devices have other bits";
+  EXPECT_EQ(check_build(job, {"here", "other", "two"}, other), std::nullopt);
+  EXPECT_THAT(made, ElementsAre(2U, 2U));
+  EXPECT_THAT(refusal_of<UsageError>([&] {
+                check_build(job, {"here", "print", "two"}, other);
+              }),
+              HasSubstr("were made by another build of promin, and this build makes piece part2 with other bits"));
+  // Once a build has made a piece, its processes need no proof.
+  make_piece(job, 0, {"here", "print", "two"}, make_content);
+  EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);
+  // A bad piece proves nothing.
+  write(job.file_of(0), read(job.file_of(0)) + "more");
+  write(job.file_of(2), read(job.file_of(2)) + "more");
+  EXPECT_EQ(check_build(job, {"here", "print", "three"}, other), std::nullopt);
 }
 
 // As many processes of a queue do, and one that was killed before it had begun.
@@ -238,7 +289,7 @@ TEST_F(JobTest, TheLedgerTellsWhatBeginsAndWhatCameOfIt) {
   const Content content = make_content(1);
   EXPECT_EQ(receipt.sha256, Sha256().add(content.bytes).finish());
   EXPECT_EQ(std::tuple(receipt.number, receipt.name, receipt.size_bytes, receipt.version),
-            std::tuple(1U, "part1", content.bytes.size(), "1"));
+            std::tuple(1U, "part1", content.bytes.size(), PROMIN_VERSION));
   EXPECT_THROW(make_piece(job, 2, kMaker,
                           [](size_t) -> Content {
                             throw RunError({"the device is gone", "", ""});

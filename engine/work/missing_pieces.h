@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "jobs/job.h"
+
+namespace promin::work {
+
+/// Throws RunError if some of these pieces are missing or bad, and names a few with their faults.
+void check_done(const jobs::Job& job, const std::vector<size_t>& pieces);
+/// Does the same for all pieces.
+void check_whole(const jobs::Job& job);
+
+}  // namespace promin::work

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <vector>
+
+#include "image/picture_writer.h"
+#include "promin/aovs.h"
+#include "promin/image.h"
+#include "promin/scene.h"
+#include "promin/view.h"
+
+namespace promin::work {
+
+/// Returns the channels of an EXR for a choice of AOVs, with their values. With `hides_unlit` those of Aovs::unlit are
+/// hidden. AOVs and channels of a wide picture take much memory, so each AOV is freed when its channels are made.
+std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit);
+
+/// Channels and metadata of an EXR's header for these AOVs, without values.
+struct AovHeader {
+  std::vector<Channel> channels;
+  Metadata metadata;
+};
+AovHeader describe_aovs(const Scene& scene, const AovSet& choice, bool hides_unlit, DepthKind depth_kind);
+
+/// Divides a window into bands of whole rows, so that the memory for a band is bounded. `channel_count` is the number
+/// of four-byte values of a pixel.
+std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_count);
+
+/// The files of one picture, written band by band while the next band is traced. Without commit() nothing remains.
+class PictureFiles {
+ public:
+  /// Throws as write_image.
+  PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header);
+  ~PictureFiles();
+  PictureFiles(const PictureFiles&) = delete;
+  PictureFiles& operator=(const PictureFiles&) = delete;
+
+  /// Adds the next rows. Returns before they are written, and throws exceptions from writing earlier rows.
+  void write_rows(Image rows, std::vector<Channel> channels);
+  void commit();
+  /// Waits until all rows are written and their memory is free; throws exceptions from writing them.
+  void wait();
+
+ private:
+  std::vector<PictureWriter> writers_;
+  Image rows_;
+  std::vector<Channel> channels_;
+  std::future<void> writing_;
+};
+
+}  // namespace promin::work

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+#include "promin/scene.h"
+
+namespace promin::work {
+
+/// Names of the kinds of objects in the plural: not drawn, or the alternatives of Geometry in their order.
+inline constexpr auto kObjectNames = [] {
+  std::array<std::string_view, 1 + std::variant_size_v<Geometry>> names{"not_drawn"};
+  for (size_t i = 1; i < names.size(); ++i) names[i] = kGeometryNames[i - 1];
+  return names;
+}();
+
+/// The contents of a scene, for `promin info` and `--stats`.
+struct SceneCounts {
+  /// The number of objects of each kind, in the order of kObjectNames.
+  std::array<uint64_t, kObjectNames.size()> objects{};
+  uint64_t primitives = 0;
+  uint64_t triangles = 0;
+  /// The size of vertices, triangles and shapes in the host's memory.
+  uint64_t geometry_bytes = 0;
+};
+
+SceneCounts count_scene(const Scene& scene);
+
+}  // namespace promin::work
