@@ -11,6 +11,7 @@
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "view/viewer.h"
+#include "work/check_spec.h"
 #include "work/tracing_run.h"
 
 namespace promin::app {

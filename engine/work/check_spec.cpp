@@ -89,83 +89,98 @@ void refuse_beside(std::string_view name, std::initializer_list<Given> others,
   }
 }
 
-}  // namespace
+bool shades_for_debugging(const RenderSpec& options) {
+  return options.view.debug_view != DebugView::kNone;
+}
 
-// Checks all contradictions of options of promin render, in the order of reporting.
-void check_render_spec(const RenderSpec& options) {
-  const ViewOptions& view = options.view;
-  const ErrorOptions& error = options.error;
-  const JobOptions& job = options.job;
-  const bool averages = view.look.averages_exposure;
-  const bool is_debug = view.debug_view != DebugView::kNone;
-  const bool has_depth_kind = view.depth_kind != DepthKind::kRay;
+/// Returns the AOVs that only an EXR can store.
+AovSet named_aovs(const RenderSpec& options) {
   AovSet named = options.aovs;
   named.alpha = false;
+  return named;
+}
 
-  check_tracing_options(options.tracing);
-  check_pose_options(view.pose, view.camera.has_value());
-  if (options.path) check_no_camera(view, "--path");
-  if (options.explained_pixel) {
-    refuse_beside("--explain", {{!options.pictures.empty(), "--output"},
-                                {options.path.has_value(), "--path"},
-                                {options.aovs.any(), "--aov"},
-                                {view.crop.has_value(), "--crop"},
-                                {is_debug, "--shading"},
-                                {error.target.has_value(), "--target-error"},
-                                {error.time_limit_s.has_value(), "--time-limit"},
-                                {options.tracing.stats.has_value(), "--stats"},
-                                {options.tracing.repeat_count > 1, "--repeat"}});
-  }
+void check_explanation(const RenderSpec& options) {
+  const ErrorOptions& error = options.error;
+  const ViewOptions& view = options.view;
+  const bool is_debug = shades_for_debugging(options);
+  if (!options.explained_pixel) return;
+  refuse_beside("--explain", {{!options.pictures.empty(), "--output"},
+                              {options.path.has_value(), "--path"},
+                              {options.aovs.any(), "--aov"},
+                              {view.crop.has_value(), "--crop"},
+                              {is_debug, "--shading"},
+                              {error.target.has_value(), "--target-error"},
+                              {error.time_limit_s.has_value(), "--time-limit"},
+                              {options.tracing.stats.has_value(), "--stats"},
+                              {options.tracing.repeat_count > 1, "--repeat"}});
+}
 
+void check_quality(const RenderSpec& options) {
+  const ErrorOptions& error = options.error;
+  const ViewOptions& view = options.view;
   if (options.quality) {
     refuse_beside("--quality", {{view.samples_per_pixel.has_value(), "--spp"},
                                 {error.target.has_value(), "--target-error"},
                                 {error.time_limit_s.has_value(), "--time-limit"}});
   }
+}
 
-  // Refuses options that contradict an error target.
-  if (error.is_given()) {
-    const std::string_view name = error.target ? "--target-error" : "--time-limit";
-    refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
-                  "leave one out; --min-spp and --max-spp limit the samples");
-    refuse_beside(name, {{is_debug, "--shading"}});
-    // Each repetition could reach another target, and so another picture.
-    if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
-    refuse_if(
-        error.space == ErrorSpace::kDisplay && averages,
-        "--error-in display and --exposure average contradict each other: the average is known only after tracing",
-        "give --exposure in stops");
-    check_error_target(*error.error_target());
-  } else {
-    refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
-              "--shading and an --aov of light contradict each other: a debug shading computes no light",
-              "leave one out");
-    refuse_if(options.aovs.error && is_debug,
-              "--shading and --aov error contradict each other: a debug shading has no error estimate",
-              "leave one out");
-    for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
-                                         {error.max_samples.has_value(), "--max-spp"},
-                                         {error.space.has_value(), "--error-in"}}) {
-      refuse_if(is_given, fmt::format("{} needs a target error", name), "give --target-error as well");
-    }
+/// Refuses options that contradict an error target.
+void check_target(const RenderSpec& options) {
+  const ErrorOptions& error = options.error;
+  const ViewOptions& view = options.view;
+  const bool is_debug = shades_for_debugging(options);
+  const bool averages = view.look.averages_exposure;
+  const std::string_view name = error.target ? "--target-error" : "--time-limit";
+  refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
+                "leave one out; --min-spp and --max-spp limit the samples");
+  refuse_beside(name, {{is_debug, "--shading"}});
+  // Each repetition could reach another target, and so another picture.
+  if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
+  refuse_if(error.space == ErrorSpace::kDisplay && averages,
+            "--error-in display and --exposure average contradict each other: the average is known only after tracing",
+            "give --exposure in stops");
+  check_error_target(*error.error_target());
+}
+
+/// Refuses options that need an error target, or light.
+void check_fixed_samples(const RenderSpec& options) {
+  const ErrorOptions& error = options.error;
+  const bool is_debug = shades_for_debugging(options);
+  const AovSet named = named_aovs(options);
+  refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
+            "--shading and an --aov of light contradict each other: a debug shading computes no light",
+            "leave one out");
+  refuse_if(options.aovs.error && is_debug,
+            "--shading and --aov error contradict each other: a debug shading has no error estimate", "leave one out");
+  for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
+                                       {error.max_samples.has_value(), "--max-spp"},
+                                       {error.space.has_value(), "--error-in"}}) {
+    refuse_if(is_given, fmt::format("{} needs a target error", name), "give --target-error as well");
   }
+}
 
-  // A job.
+void check_job(const RenderSpec& options) {
+  const ErrorOptions& error = options.error;
+  const JobOptions& job = options.job;
+  const bool averages = options.view.look.averages_exposure;
   check_has_job(job);
-  if (job.folder) {
-    refuse_beside("--job", {{options.explained_pixel.has_value(), "--explain"},
-                            {error.time_limit_s.has_value(), "--time-limit"},
-                            {averages, "--exposure average"},
-                            {options.skips_existing, "--skip-existing"},
-                            {options.tracing.stats.has_value(), "--stats"},
-                            {options.tracing.repeat_count > 1, "--repeat"}});
-    if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
-    refuse_if(job.share && !options.pictures.empty(),
-              "--piece and --output contradict each other: a share writes no picture",
-              "leave one out; promin merge writes the picture when all pieces are made");
-  }
+  if (!job.folder) return;
+  refuse_beside("--job", {{options.explained_pixel.has_value(), "--explain"},
+                          {error.time_limit_s.has_value(), "--time-limit"},
+                          {averages, "--exposure average"},
+                          {options.skips_existing, "--skip-existing"},
+                          {options.tracing.stats.has_value(), "--stats"},
+                          {options.tracing.repeat_count > 1, "--repeat"}});
+  if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
+  refuse_if(job.share && !options.pictures.empty(),
+            "--piece and --output contradict each other: a share writes no picture",
+            "leave one out; promin merge writes the picture when all pieces are made");
+}
 
-  // Frames.
+void check_frames(const RenderSpec& options) {
+  const bool averages = options.view.look.averages_exposure;
   refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing needs the names of the pictures",
             "give -o as well");
   refuse_if(options.skips_existing && averages,
@@ -173,8 +188,12 @@ void check_render_spec(const RenderSpec& options) {
             "give --exposure in stops");
   refuse_if(options.frames && !options.path, "--frames needs a camera path", "give --path as well");
   refuse_if(options.fps && !options.path, "--fps needs a camera path", "give --path as well");
+}
 
-  // Channels that only an EXR can store; PNG files only have alpha.
+/// Refuses channels that none of the pictures can store.
+void check_channels(const RenderSpec& options) {
+  const AovSet named = named_aovs(options);
+  const bool has_depth_kind = options.view.depth_kind != DepthKind::kRay;
   const auto& pictures = options.pictures;
   const std::string stem = options.tracing.scene.stem().string();
   const bool has_exr = pictures.empty() || std::ranges::any_of(pictures, has_named_channels);
@@ -185,19 +204,50 @@ void check_render_spec(const RenderSpec& options) {
     refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
   }
   refuse_if(has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth", "give --aov depth as well");
-  if (options.aovs.alpha) {
-    refuse_beside("--alpha", {{is_debug, "--shading"}});
-    refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
-                  "leave one out: --alpha makes the background transparent");
-    refuse_if(std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
-              "write a .png or .exr");
-    refuse_if(std::ranges::any_of(pictures, is_radiance), "a .hdr cannot store the channel of --alpha",
-              "write a .png or .exr");
-  }
+}
 
-  // Options that only affect a PNG.
+void check_alpha(const RenderSpec& options) {
+  const ViewOptions& view = options.view;
+  const bool is_debug = shades_for_debugging(options);
+  const auto& pictures = options.pictures;
+  if (!options.aovs.alpha) return;
+  refuse_beside("--alpha", {{is_debug, "--shading"}});
+  refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
+                "leave one out: --alpha makes the background transparent");
+  refuse_if(std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
+            "write a .png or .exr");
+  refuse_if(std::ranges::any_of(pictures, is_radiance), "a .hdr cannot store the channel of --alpha",
+            "write a .png or .exr");
+}
+
+/// Refuses options that only affect a PNG.
+void check_dither(const RenderSpec& options) {
+  const ViewOptions& view = options.view;
+  const auto& pictures = options.pictures;
+  const std::string stem = options.tracing.scene.stem().string();
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
   refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
+}
+
+}  // namespace
+
+// The order is that of reporting.
+void check_render_spec(const RenderSpec& options) {
+  check_tracing_options(options.tracing);
+  check_pose_options(options.view.pose, options.view.camera.has_value());
+  if (options.path) check_no_camera(options.view, "--path");
+  check_explanation(options);
+  check_quality(options);
+  if (options.error.is_given()) {
+    check_target(options);
+  } else {
+    check_fixed_samples(options);
+  }
+  check_job(options);
+  check_frames(options);
+  check_channels(options);
+  check_alpha(options);
+  check_dither(options);
 }
 
 namespace {

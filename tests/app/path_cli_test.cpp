@@ -70,8 +70,8 @@ TEST_F(PathCliTest, RangesPickFramesAndNamesTakeTheirNumbers) {
   EXPECT_THAT(files(), testing::Contains("one.exr"));
   EXPECT_EQ(run({"render", "square.gltf", "--size", "8", "8", "-o", "x.#.exr"}).exit_code, 0);
   EXPECT_THAT(files(), testing::Contains("x.#.exr")) << "an ordinary name without a path";
-  EXPECT_EQ(app::number_file("a/f##.#.exr", 123), "a/f##.123.exr");
-  EXPECT_EQ(app::number_file("a#/f.exr", 1), "a#/f.exr");
+  EXPECT_EQ(work::number_file("a/f##.#.exr", 123), "a/f##.123.exr");
+  EXPECT_EQ(work::number_file("a#/f.exr", 1), "a#/f.exr");
 }
 
 TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {

@@ -10,6 +10,7 @@
 
 #include "arguments.h"
 #include "cast_options.h"
+#include "console.h"
 #include "promin/error.h"
 #include "render_options.h"
 #include "work/view_setup.h"
