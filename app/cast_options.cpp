@@ -65,32 +65,34 @@ void check_query(const CastOptions& options) {
   if (options.is_all) asked.emplace_back("--all");
   if (asked.size() > 1) {
     throw UsageError(
-        {asked[0] + " and " + asked[1] + " contradict each other", "on the command line", "give one of them"});
+        {"usage.options.contradict", asked[0] + " and " + asked[1] + " contradict each other", "", "give one of them"});
   }
   if (options.is_all && !options.offsets && !options.job.share) {
-    throw UsageError({"--all is given without --offsets", "on the command line",
+    throw UsageError({"usage.option.needs", "--all is given without --offsets", "",
                       "add --offsets OFFSETS.npy, which says where the hits of each ray begin"});
   }
   if (options.offsets && !options.is_all) {
-    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or leave --offsets out"});
+    throw UsageError(
+        {"usage.option.needs", "--offsets is given without --all", "", "add --all or leave --offsets out"});
   }
 }
 
 void check_job_options(const CastOptions& options) {
   check_has_job(options.job);
   if (!options.output && !options.job.share) {
-    throw UsageError({"--output is required", "on the command line", "see promin cast --help"});
+    throw UsageError({"usage.option.required", "--output is required", "", "see promin cast --help"});
   }
   if (!options.job.folder) return;
   const std::pair<bool, std::string_view> others[] = {{options.tracing.stats.has_value(), "--stats"},
                                                       {options.tracing.repeat_count > 1, "--repeat"}};
   for (const auto& [is_given, name] : others) {
     if (!is_given) continue;
-    throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
+    throw UsageError(
+        {"usage.options.contradict", fmt::format("--job and {} contradict each other", name), "", "leave one out"});
   }
   if (options.job.share && !options.outputs().empty()) {
-    throw UsageError({"--piece and --output contradict each other: a share writes no file", "on the command line",
-                      "leave one out; promin merge writes the file when all pieces are made"});
+    throw UsageError({"usage.options.contradict", "--piece and --output contradict each other: a share writes no file",
+                      "", "leave one out; promin merge writes the file when all pieces are made"});
   }
 }
 
@@ -99,7 +101,8 @@ void check_job_options(const CastOptions& options) {
 void check_arrays(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     if (lower_case_ending(file) == ".npy") continue;
-    throw UsageError({"unknown output ending \"" + file.extension().string() + "\"", file.string(), "use .npy"});
+    throw UsageError({"output.ending", "the output's ending \"" + file.extension().string() + "\" is unknown",
+                      file.string(), "use .npy"});
   }
 }
 

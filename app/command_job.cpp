@@ -40,7 +40,8 @@ void parse(CLI::App& program, const CLI::App& command, const std::vector<std::st
 void check_driver(const jobs::Job& job, const std::string& driver) {
   const std::string of_pieces = find_driver(job);
   if (of_pieces.empty() || of_pieces == driver) return;
-  throw UsageError({fmt::format("the job's pieces were made on {}, and the chosen device is {}", of_pieces, driver),
+  throw UsageError({"job.device.other",
+                    fmt::format("the job's pieces were made on {}, and the chosen device is {}", of_pieces, driver),
                     job.folder().string(), "choose the first one by --device, or name another folder"});
 }
 
@@ -113,7 +114,7 @@ std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<
     return command;
   };
   if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave the rays out"});
+    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "leave the rays out"});
     RenderOptions options;
     const CLI::App& command = parse_to(options, add_render_options);
     check_render_options(options);
@@ -125,7 +126,8 @@ std::unique_ptr<PlannedJob> plan_job(const std::string& kind, const std::vector<
     check_cast_options(options);
     return plan_rays(options, command, console, std::move(rays));
   }
-  throw UsageError({fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+  throw UsageError(
+      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
 }
 
 jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
@@ -138,7 +140,8 @@ jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
 std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Console& console, std::shared_ptr<RaySource> rays) {
   const std::optional<std::vector<std::string>> arguments = read_arguments(job);
   if (!arguments) {
-    throw InputError({"the file does not name the command that makes the job's pieces, or it is damaged",
+    throw InputError({"job.command.damaged",
+                      "the file does not name the command that makes the job's pieces, or it is damaged",
                       arguments_file(job).string(), "run the job's command once more"});
   }
   std::unique_ptr<PlannedJob> planned =

@@ -40,7 +40,7 @@ void check_has_job(const JobOptions& job) {
   if (job.folder) return;
   const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.pieces ? "--pieces" : "";
   if (name.empty()) return;
-  throw UsageError({fmt::format("{} needs a job to divide", name), "on the command line", "give --job as well"});
+  throw UsageError({"usage.option.needs", fmt::format("{} needs a job to divide", name), "", "give --job as well"});
 }
 
 std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder) {

@@ -110,7 +110,7 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
     if (!source.stamp) continue;
     manifest.files.push_back(jobs::describe_input(source.file));
     if (stamp_of(source.file) == source.stamp) continue;
-    throw InputError({"the file changed while it was read", source.file.string(), "try again"});
+    throw InputError({"file.changed", "the file changed while it was read", source.file.string(), "try again"});
   }
 }
 
@@ -150,7 +150,7 @@ std::optional<std::vector<std::string>> read_arguments(const jobs::Job& job) {
 void check_asks_for_work(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word != "-h" && word != "--help" && word != "--version") continue;
-    throw UsageError({word + " cannot run as a job", "in its arguments", "leave it out"});
+    throw UsageError({"job.argument.wrong", word + " cannot run as a job", "", "leave it out"});
   }
 }
 
@@ -159,7 +159,7 @@ void check_is_kept(const GivenOptions& given) {
     const char* const why = option_of_jobs(option).said_elsewhere;
     if (why == nullptr) continue;
     throw UsageError(
-        {option + " is not an argument of a job", "in its arguments", std::string("leave it out; ") + why});
+        {"job.argument.wrong", option + " is not an argument of a job", "", std::string("leave it out; ") + why});
   }
 }
 

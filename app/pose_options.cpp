@@ -88,8 +88,8 @@ void check_pose_options(const PoseOptions& pose, bool names_camera) {
                                 std::initializer_list<std::pair<bool, std::string_view>> others) {
     for (const auto& [is_other_given, other] : others) {
       if (!is_given || !is_other_given) continue;
-      throw UsageError(
-          {fmt::format("{} and {} contradict each other", name, other), "on the command line", "leave one out"});
+      throw UsageError({"usage.options.contradict", fmt::format("{} and {} contradict each other", name, other), "",
+                        "leave one out"});
     }
   };
   const bool has_eye = pose.eye.has_value();

@@ -486,15 +486,17 @@ std::vector<std::filesystem::path> name_pictures(const RenderOptions& options) {
 
 void check_error_target(const ErrorTarget& target) {
   if (target.min_samples <= target.max_samples) return;
-  throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
-                    "on the command line", "raise --max-spp or lower --min-spp"});
+  throw UsageError({"usage.options.range",
+                    fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples), "",
+                    "raise --max-spp or lower --min-spp"});
 }
 
 void check_no_camera(const ViewOptions& options, std::string_view name) {
   if (!options.camera && !options.pose.any()) return;
   throw UsageError(
-      {fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name),
-       "on the command line", "leave one out"});
+      {"usage.options.contradict",
+       fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name), "",
+       "leave one out"});
 }
 
 namespace {
@@ -502,15 +504,15 @@ namespace {
 /// An option, or a group that counts as one, with its name and whether it is given.
 using Given = std::pair<bool, std::string_view>;
 
-void refuse_if(bool holds, const std::string& what, const std::string& cure) {
-  if (holds) throw UsageError({what, "on the command line", cure});
+void refuse_if(ProblemCode code, bool holds, const std::string& what, const std::string& cure) {
+  if (holds) throw UsageError({code, what, "", cure});
 }
 
 /// Refuses the first of the others that is given beside `name`.
 void refuse_beside(std::string_view name, std::initializer_list<Given> others,
                    const std::string& cure = "leave one out") {
   for (const auto& [is_given, other] : others) {
-    refuse_if(is_given, fmt::format("{} and {} contradict each other", name, other), cure);
+    refuse_if("usage.options.contradict", is_given, fmt::format("{} and {} contradict each other", name, other), cure);
   }
 }
 
@@ -557,21 +559,22 @@ void check_render_options(const RenderOptions& options) {
     // Each repetition could reach another target, and so another picture.
     if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
     refuse_if(
-        error.space == ErrorSpace::kDisplay && averages,
+        "usage.options.contradict", error.space == ErrorSpace::kDisplay && averages,
         "--error-in display and --exposure average contradict each other: the average is known only after tracing",
         "give --exposure in stops");
     check_error_target(*error.error_target());
   } else {
-    refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
+    refuse_if("usage.options.contradict", (named.has_any(AovSource::kParts) || named.unlit) && is_debug,
               "--shading and an --aov of light contradict each other: a debug shading computes no light",
               "leave one out");
-    refuse_if(options.aovs.error && is_debug,
+    refuse_if("usage.options.contradict", options.aovs.error && is_debug,
               "--shading and --aov error contradict each other: a debug shading has no error estimate",
               "leave one out");
     for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
                                          {error.max_samples.has_value(), "--max-spp"},
                                          {error.space.has_value(), "--error-in"}}) {
-      refuse_if(is_given, fmt::format("{} needs a target error", name), "give --target-error as well");
+      refuse_if("usage.option.needs", is_given, fmt::format("{} needs a target error", name),
+                "give --target-error as well");
     }
   }
 
@@ -585,19 +588,20 @@ void check_render_options(const RenderOptions& options) {
                             {options.tracing.stats.has_value(), "--stats"},
                             {options.tracing.repeat_count > 1, "--repeat"}});
     if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
-    refuse_if(job.share && !options.pictures.empty(),
+    refuse_if("usage.options.contradict", job.share && !options.pictures.empty(),
               "--piece and --output contradict each other: a share writes no picture",
               "leave one out; promin merge writes the picture when all pieces are made");
   }
 
   // Frames.
-  refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing needs the names of the pictures",
-            "give -o as well");
-  refuse_if(options.skips_existing && averages,
+  refuse_if("usage.option.needs", options.skips_existing && options.pictures.empty(),
+            "--skip-existing needs the names of the pictures", "give -o as well");
+  refuse_if("usage.options.contradict", options.skips_existing && averages,
             "--skip-existing and --exposure average contradict each other: the average is that of the first frame",
             "give --exposure in stops");
-  refuse_if(options.frames && !options.path, "--frames needs a camera path", "give --path as well");
-  refuse_if(options.fps && !options.path, "--fps needs a camera path", "give --path as well");
+  refuse_if("usage.option.needs", options.frames && !options.path, "--frames needs a camera path",
+            "give --path as well");
+  refuse_if("usage.option.needs", options.fps && !options.path, "--fps needs a camera path", "give --path as well");
 
   // Channels that only an EXR can store; PNG files only have alpha.
   const auto& pictures = options.pictures;
@@ -608,22 +612,25 @@ void check_render_options(const RenderOptions& options) {
                                        {options.exr.is_half, "--half"},
                                        {options.names_compression, "--compression"},
                                        {options.exr.is_multipart, "--multipart"}}) {
-    refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
+    refuse_if("usage.option.needs", is_given && !has_exr, fmt::format("{} needs an EXR", name),
+              fmt::format("add -o {}.exr", stem));
   }
-  refuse_if(has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth", "give --aov depth as well");
+  refuse_if("usage.option.needs", has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth",
+            "give --aov depth as well");
   if (options.aovs.alpha) {
     refuse_beside("--alpha", {{is_debug, "--shading"}});
     refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
                   "leave one out: --alpha makes the background transparent");
-    refuse_if(std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
+    refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
               "write a .png or .exr");
-    refuse_if(std::ranges::any_of(pictures, is_radiance), "a .hdr cannot store the channel of --alpha",
-              "write a .png or .exr");
+    refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_radiance),
+              "a .hdr cannot store the channel of --alpha", "write a .png or .exr");
   }
 
   // Options that only affect a PNG.
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
-  refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
+  refuse_if("usage.option.needs", view.look.dithers && !has_png, "--dither needs a PNG",
+            fmt::format("add -o {}.png", stem));
 }
 
 }  // namespace promin::app

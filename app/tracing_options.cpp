@@ -58,7 +58,7 @@ void add_measuring_options(OptionTable& table, TracingOptions& options) {
 void check_tracing_options(const TracingOptions& options) {
   options.verbosity();
   if (options.bvh && options.builder) {
-    throw UsageError({"--bvh and --builder contradict each other", "on the command line", "leave one out"});
+    throw UsageError({"usage.options.contradict", "--bvh and --builder contradict each other", "", "leave one out"});
   }
 }
 

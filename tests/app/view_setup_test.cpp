@@ -54,7 +54,7 @@ TEST(ViewSetupTest, AnUnknownCameraListsThoseThereAre) {
       make_view(make_scene(), options, kSilent);
       ADD_FAILURE() << "accepted " << selection;
     } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("choose one of: 0 (main), 1 (side)"));
+      EXPECT_THAT(list_problems(error), HasProblem("camera.unknown 0 (main), 1 (side)"));
     }
   }
 }
