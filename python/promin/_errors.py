@@ -16,9 +16,9 @@ class Problem(NamedTuple):
     where: str
     """A file, and after ": " the place in it; or a member of a scene. May be empty."""
     what: str
-    """What is wrong."""
+    """The fault, as a sentence without its end."""
     cure: str
-    """What to do about it. May be empty."""
+    """The remedy, as a sentence without its end. May be empty."""
 
     def __str__(self) -> str:
         return (self.where and self.where + ": ") + self.what + (self.cure and "; " + self.cure)

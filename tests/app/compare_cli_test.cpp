@@ -13,6 +13,7 @@ namespace promin {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class CompareCliTest : public CliTest {

@@ -12,6 +12,7 @@
 #include "camera_choice.h"
 #include "core/rounding.h"
 #include "promin/error.h"
+#include "support/problems.h"
 
 namespace promin::app {
 namespace {

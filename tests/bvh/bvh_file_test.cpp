@@ -26,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using layout::Node;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 /// A tree that owns what it shows, to put faults into.
 struct Tree {

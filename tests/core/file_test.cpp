@@ -31,7 +31,6 @@ namespace promin {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 class FileTest : public TempFolder {};
 

@@ -16,6 +16,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 const std::string kPointer =
     "version https://git-lfs.github.com/spec/v1\noid sha256:"

@@ -17,7 +17,6 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::ThrowsMessage;
 
 class GltfExtensionsTest : public SceneFolder {
  protected:

@@ -951,7 +951,7 @@ TEST_F(ObjTest, BrokenFilesSayWhy) {
   EXPECT_THAT(refusal(""), HasProblem("file.empty"));
   EXPECT_THAT(refusal(std::string_view("v 0 0\0 0", 8)), HasProblem("obj.file.kind"));
   EXPECT_THAT(refusal("f 1 2 3\nf a b c\nf 0 1 1\n"),
-              ResultOf([](const std::string& list) { return std::ranges::count(list, '\n'); }, 4));
+              testing::ResultOf([](const std::string& list) { return std::ranges::count(list, '\n'); }, 4));
 }
 
 // Polygons

@@ -22,6 +22,7 @@
 #include "rays/ray_tiles.h"
 #include "render/caster_access.h"
 #include "render/renderer_impl.h"
+#include "support/problems.h"
 #include "trace/ray_kernel.h"
 #include "trace/tracing_kernel.h"
 

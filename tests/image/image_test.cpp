@@ -20,7 +20,6 @@ namespace promin {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 /// Every channel of every pixel differs, beyond [0, 1] as well.
 Image make_ramp(uint32_t width, uint32_t height) {

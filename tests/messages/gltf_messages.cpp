@@ -22,16 +22,26 @@ MessageCase load(std::string_view code, const std::string& text, bool quotes_oth
 }
 
 /// Loads the rich scene with a fault.
-MessageCase spoil(std::string_view code, const Spoil& spoil, bool is_strict = false) {
+MessageCase spoil(std::string_view code, const Spoil& fault, bool is_strict = false) {
   return {code, [=] {
             GltfBuilder gltf = rich_gltf();
-            spoil(gltf);
+            fault(gltf);
             load_text(gltf.text(), is_strict);
           }};
 }
 
 MessageCase spoil_strictly(std::string_view code, const Spoil& fault) {
   return spoil(code, fault, true);
+}
+
+/// Loads the rich scene with a fault that costs a warning.
+MessageCase warn(std::string_view code, const Spoil& fault) {
+  return {code, [=] {
+            GltfBuilder gltf = rich_gltf();
+            fault(gltf);
+            write_case("a.gltf", gltf.text());
+            throw Warned{load_scene("a.gltf").warnings};
+          }};
 }
 
 /// Loads a triangle whose document, with its buffer, has a fault.
@@ -271,6 +281,13 @@ std::vector<MessageCase> cases_of_bytes() {
   };
 }
 
+/// Changes the node of the camera and the light, and adds a parent of it.
+void move_last_node(GltfBuilder& gltf, const json& changes, json parent) {
+  gltf.json["nodes"][3].update(changes);
+  parent["children"] = {3};
+  gltf.add_node(parent);
+}
+
 std::vector<MessageCase> cases_of_geometry() {
   const auto set_positions = [](const std::vector<float>& positions) {
     return [=](GltfBuilder& g) { primitive(g)["attributes"]["POSITION"] = g.add<float>(positions, "VEC3"); };
@@ -295,6 +312,73 @@ std::vector<MessageCase> cases_of_geometry() {
           [](auto& g) {
             primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, std::nanf(""), 0, 1}, "VEC2");
           }),
+      warn("gltf.normals.zero",
+           [](auto& g) {
+             primitive(g)["attributes"]["NORMAL"] = g.template add<float>({0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+           }),
+      warn("gltf.tangents.zero",
+           [](auto& g) {
+             json& attributes = primitive(g)["attributes"];
+             attributes["NORMAL"] = g.template add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+             attributes["TEXCOORD_0"] = g.template add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+             attributes["TANGENT"] = g.template add<float>(std::vector<float>(12, 0.0F), "VEC4");
+             g.json["images"] = {{{"uri", "data:image/png;base64,"}}};
+             g.json["textures"] = {{{"source", 0}}};
+             g.json["materials"][0]["normalTexture"] = {{"index", 0}};
+             primitive(g)["material"] = 0;
+           }),
+      warn("gltf.primitive.lines",
+           [](auto& g) {
+             g.show({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
+           }),
+      warn("gltf.primitive.positions",
+           [](auto& g) {
+             g.show({{"attributes", json::object()}});
+           }),
+      warn("gltf.primitive.short",
+           [](auto& g) {
+             g.show({{"attributes", {{"POSITION", g.template add<float>({0, 0, 0}, "VEC3")}}}});
+           }),
+      warn("gltf.primitive.incomplete",
+           [](auto& g) {
+             primitive(g)["indices"] = g.template add<uint8_t>({0, 1, 2, 0}, "SCALAR");
+           }),
+      warn("gltf.morph.count",
+           [](auto& g) {
+             primitive(g)["targets"] = {{{"POSITION", g.template add<float>({0, 0, 1}, "VEC3")}}};
+           }),
+      warn("gltf.camera.far",
+           [](auto& g) {
+             g.json["nodes"][3].erase("extensions");
+             move_last_node(g, {{"translation", {1e15, 0, 0}}}, {{"scale", {2, 2, 2}}});
+           }),
+      warn("gltf.camera.direction",
+           [](auto& g) {
+             g.json["nodes"][3].erase("extensions");
+             move_last_node(g, json::object(), {{"matrix", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}}});
+           }),
+      warn("gltf.light.far",
+           [](auto& g) {
+             g.json["nodes"][3].erase("camera");
+             move_last_node(g, {{"translation", {1e15, 0, 0}}}, {{"scale", {2, 2, 2}}});
+           }),
+      warn("gltf.light.direction",
+           [](auto& g) {
+             g.json["nodes"][3].erase("camera");
+             move_last_node(g, json::object(), {{"matrix", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}}});
+           }),
+      warn("gltf.skin.instances",
+           [](auto& g) {
+             json& node = g.json["nodes"][0];
+             primitive(g)["attributes"]["JOINTS_0"] =
+                 g.template add<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4");
+             primitive(g)["attributes"]["WEIGHTS_0"] =
+                 g.template add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+             node["skin"] = 0;
+             g.json["skins"] = {{{"joints", {3}}}};
+             node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+                 g.template add<float>({0, 0, 0}, "VEC3");
+           }),
       spoil_strictly("gltf.node.twice",
                      [](auto& g) {
                        g.json["nodes"][0]["children"] = {2, 2};

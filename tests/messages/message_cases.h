@@ -9,6 +9,12 @@
 
 namespace promin {
 
+/// What a case throws whose problem costs only a warning, also in strict loading. Such warnings have no code that a
+/// test can see, so the case states it.
+struct Warned {
+  std::vector<std::string> warnings;
+};
+
 /// Provokes a problem in the current folder, which is empty before.
 struct MessageCase {
   /// The problem's code.

@@ -151,7 +151,7 @@ std::vector<MessageCase> cases_of_views() {
                    v.mode.debug_view = static_cast<DebugView>(1);
                  }),
       {"framing.aspect", [] { static_cast<void>(frame_scene(make_valid_scene(), 0.0F)); }},
-      {"framing.up", [] { static_cast<void>(frame_scene(make_valid_scene(), 1.0F, {.up = dvec3(0)})); }},
+      {"framing.up", [] { static_cast<void>(frame_scene(make_valid_scene(), 1.0F, {.up = vec3(0)})); }},
       {"framing.fit", [] { static_cast<void>(frame_scene(make_valid_scene(), 1.0F, {.fit = 2.0F})); }},
       {"device.loops.cut", [] { refuse_cut_loops(true); }},
       {"threads.refused", [] { throw RunError(explain_no_threads()); }},

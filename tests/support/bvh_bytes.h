@@ -32,7 +32,7 @@ Bytes with(Bytes bytes, size_t place, const T& value) {
   return bytes;
 }
 
-/// With the checksum that its content asks for.
+/// Returns the bytes with the checksum of their content.
 inline Bytes sealed(Bytes bytes) {
   bytes = with(std::move(bytes), kChecksumPlace, uint64_t{0});
   Hash64 hash;
