@@ -177,6 +177,11 @@ std::vector<MessageCase> cases_of_any_file() {
        }},
       {"file.folder",
        [] {
+         fs::create_directory("scenes");
+         static_cast<void>(load_scene("scenes"));
+       }},
+      {"file.folder",
+       [] {
          fs::create_directory("a.txt");
          static_cast<void>(read_file("a.txt"));
        }},

@@ -150,6 +150,7 @@ const WrongUsage kWrongUsages[] = {
     {"usage.option.value", {"cast", "square.gltf", "rays.npy", "-o", "a.npy", "-o", "b.npy"}},
     {"output.ending", {"cast", "square.gltf", "rays.npy", "-o", "a.txt"}},
     {"output.input", {"cast", "square.gltf", "rays.npy", "-o", "rays.npy"}},
+    {"usage.options.contradict", {"render", "square.gltf", "--job", "j", "--exposure", "average"}},
     {"usage.options.contradict", {"render", "square.gltf", "--bvh", "a.pbvh", "--builder", "sah"}},
     {"usage.options.contradict", {"render", "square.gltf", "--path", "p.json", "--camera", "0"}},
     {"usage.options.contradict", {"render", "square.gltf", "--quality", "draft", "--spp", "4"}},
