@@ -20,7 +20,6 @@
 namespace promin::app {
 namespace {
 
-constexpr const char* kWhere = "on the command line";
 /// The largest number above or below the line of a fraction.
 constexpr double kMostOfFraction = 1e9;
 
@@ -98,14 +97,17 @@ void refuse_leftovers(const CLI::App& program) {
   const bool begins_with_word = lacks_command && option != leftovers.begin();
   if (option != leftovers.end() && !begins_with_word) {
     const std::string name = option->substr(0, option->find('='));
-    throw UsageError({"unknown option " + name, kWhere, cure_for(path, nearest_option(name, command))});
+    throw UsageError(
+        {"usage.option.unknown", "there is no option " + name, "", cure_for(path, nearest_option(name, command))});
   }
   const std::string& word = leftovers.front();
   if (!lacks_command) {
     const bool is_output = is_writable_format(word) && command.get_option_no_throw("--output") != nullptr;
-    throw UsageError({"unexpected argument " + word, kWhere, is_output ? "write -o " + word : cure_for(path)});
+    throw UsageError({"usage.argument.unexpected", "the argument " + word + " is not expected", "",
+                      is_output ? "write -o " + word : cure_for(path)});
   }
-  throw UsageError({"unknown command " + word, kWhere, cure_for(path, nearest_command(word, program))});
+  throw UsageError(
+      {"usage.command.unknown", "there is no command " + word, "", cure_for(path, nearest_command(word, program))});
 }
 
 /// As messages have it.
@@ -198,11 +200,11 @@ void OptionValues::refuse_option(size_t i) const {
   const std::string& word = words_[i];
   const bool is_option = word.size() > 1 && word[0] == '-' &&
                          (word[1] == '-' || (std::isalpha(static_cast<unsigned char>(word[1])) != 0 && word != "-inf"));
-  if (is_option) refuse(tell_too_few(option_, placeholders_));
+  if (is_option) throw UsageError({"usage.option.few", tell_too_few(option_, placeholders_), "", cure_for(command_)});
 }
 
 void OptionValues::refuse(const std::string& what, std::string_view near) const {
-  throw UsageError({what, kWhere, cure_for(command_, near)});
+  throw UsageError({"usage.option.value", what, "", cure_for(command_, near)});
 }
 
 std::string OptionValues::quote(size_t i) const {
@@ -345,12 +347,13 @@ bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
     const CLI::App& command = deepest_command(program);
     const CLI::Option* option = command.get_option_no_throw(name);
     const std::string placeholders = option == nullptr ? "" : option->get_type_name();
-    throw UsageError({tell_too_few(name, placeholders), kWhere, cure_for(path_of(command))});
+    throw UsageError({"usage.option.few", tell_too_few(name, placeholders), "", cure_for(path_of(command))});
   } catch (const CLI::ParseError& error) {
     // A misspelt option is the better message than a missing one.
     refuse_leftovers(program);
     const std::string message = error.what();
-    throw UsageError({message.substr(0, message.find('\n')), kWhere, cure_for(path_of(deepest_command(program)))});
+    throw UsageError(
+        {"usage.words.wrong", message.substr(0, message.find('\n')), "", cure_for(path_of(deepest_command(program)))});
   }
   refuse_leftovers(program);
   return true;

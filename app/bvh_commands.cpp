@@ -65,15 +65,15 @@ void add_common_rows(OptionTable& table, BvhOptions& options) {
 Scene load(const BvhOptions& options, const Console& console) {
   const Stopwatch loading;
   Scene scene = load_scene(options.scene, options.load);
-  for (const std::string& warning : scene.warnings) console.warn(warning);
+  for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
   console.detail(fmt::format("loaded {}: {:.1f} ms", options.scene.string(), loading.ms()));
   return scene;
 }
 
 void build(const BvhOptions& options) {
   if (lower_case_ending(options.file) != ".pbvh") {
-    throw UsageError(
-        {"unknown output ending \"" + options.file.extension().string() + "\"", options.file.string(), "use .pbvh"});
+    throw UsageError({"output.ending", "the output's ending \"" + options.file.extension().string() + "\" is unknown",
+                      options.file.string(), "use .pbvh"});
   }
   check_outputs({options.scene}, {options.file}, std::nullopt);
   const Console console(options.verbosity(), kProgram);
@@ -150,7 +150,8 @@ void verify(const BvhOptions& options) {
     faults = find_tree_faults(packed, {options.thread_count, progress.callback()});
   }
   if (faults.count > 0) {
-    throw InputError({fmt::format("the tree is wrong in {} places, first: {}", faults.count, faults.first),
+    throw InputError({"bvh.tree.wrong",
+                      fmt::format("the tree is wrong in {} places, first: {}", faults.count, faults.first),
                       options.file.string(), "build it again with promin-bvh build"});
   }
   if (console.is_quiet()) return;

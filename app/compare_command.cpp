@@ -49,7 +49,7 @@ struct CompareOptions {
 PictureEncoding common_encoding(const CompareOptions& options) {
   const PictureEncoding encoding = encoding_of(options.first);
   if (encoding == encoding_of(options.second)) return encoding;
-  throw InputError({"one picture holds linear light, the other holds sRGB values",
+  throw InputError({"picture.pair.spaces", "one picture holds linear light, the other holds sRGB values",
                     fmt::format("{} and {}", options.first.string(), options.second.string()),
                     "give two .exr or two .png files"});
 }
@@ -170,7 +170,8 @@ void check_limit(const Difference& difference, const std::string& in, const Comp
   const std::string allowed = options.fail_percent ? fmt::format(", {:.6g} % where {:g} % is allowed",
                                                                  percent_different(difference), *options.fail_percent)
                                                    : "";
-  throw DifferenceError({fmt::format("{} {} by more than {:g}{}{}, the most at pixel {} {} by {:.6g}",
+  throw DifferenceError({"picture.pair.differs",
+                         fmt::format("{} {} by more than {:g}{}{}, the most at pixel {} {} by {:.6g}",
                                      count_of(difference.different_count, "pixel"),
                                      verb_of(difference.different_count, "differs", "differ"), *options.fail, in,
                                      allowed, difference.largest_at.x, difference.largest_at.y, difference.largest),
@@ -179,7 +180,7 @@ void check_limit(const Difference& difference, const std::string& in, const Comp
 
 void compare(const CompareOptions& options) {
   if (options.fail_percent && !options.fail) {
-    throw UsageError({"--fail-percent needs the limit of --fail", "on the command line", "give --fail as well"});
+    throw UsageError({"usage.option.needs", "--fail-percent needs the limit of --fail", "", "give --fail as well"});
   }
   if (options.difference) {
     check_pictures({*options.difference});

@@ -37,7 +37,7 @@ constexpr SaidElsewhere kSaidElsewhere[] = {{"--output", kMergeSays},
 void check_asks_for_work(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word != "-h" && word != "--help" && word != "--version") continue;
-    throw UsageError({word + " cannot run as a job", "in its arguments", "leave it out"});
+    throw UsageError({"job.argument.wrong", word + " cannot run as a job", "", "leave it out"});
   }
 }
 
@@ -46,8 +46,8 @@ void check_is_kept(const CLI::App& command) {
   for (const auto& [option, words] : given_options(command)) {
     const auto* const found = std::ranges::find(kSaidElsewhere, option, &SaidElsewhere::option);
     if (found == std::end(kSaidElsewhere)) continue;
-    throw UsageError(
-        {option + " is not an argument of a job", "in its arguments", "leave it out; " + std::string(found->where)});
+    throw UsageError({"job.argument.wrong", option + " is not an argument of a job", "",
+                      "leave it out; " + std::string(found->where)});
   }
 }
 
@@ -75,12 +75,13 @@ std::unique_ptr<PlannedJob> plan_job_of_words(const std::string& kind, const std
                                               const std::filesystem::path& folder, const Messages& messages,
                                               std::shared_ptr<RaySource> rays) {
   if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave the rays out"});
+    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "leave the rays out"});
     return plan_job(read_words(kind, add_render_options, arguments), folder, messages);
   }
   if (kind == kRayJob)
     return plan_job(read_words(kind, add_cast_options, arguments), folder, messages, std::move(rays));
-  throw UsageError({fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+  throw UsageError(
+      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
 }
 
 }  // namespace promin::app

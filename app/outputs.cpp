@@ -31,8 +31,8 @@ void check_writable(const fs::path& file) {
   const AtomicFile probe(file);
   const bool is_new = access(file.c_str(), F_OK) != 0;
   if (!std::ofstream(probe.temporary()) || !(is_new || access(file.c_str(), W_OK) == 0)) {
-    throw RunError(
-        {"the output file cannot be written", file.string(), "check the permissions or name another folder"});
+    throw RunError({"file.write", "the output file cannot be written", file.string(),
+                    "check the permissions or name another folder"});
   }
 }
 
@@ -78,7 +78,7 @@ void check_overwrites(const std::vector<fs::path>& inputs, const std::vector<fs:
   for (const fs::path& input : inputs) read.insert(resolve(input));
   const auto found = std::ranges::find_if(files, [&](const fs::path& file) { return read.contains(resolve(file)); });
   if (found == files.end()) return;
-  throw UsageError({"the output would overwrite an input", found->string(), "name another file"});
+  throw UsageError({"output.input", "the output would overwrite an input", found->string(), "name another file"});
 }
 
 void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,
@@ -88,7 +88,7 @@ void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::pa
   std::set<fs::path> written;
   for (const fs::path& file : files) {
     if (!written.insert(resolve(file)).second) {
-      throw UsageError({"the same output file is named twice", file.string(), "name different files"});
+      throw UsageError({"output.twice", "the same output file is named twice", file.string(), "name different files"});
     }
   }
   const DeferredSignals while_probing;

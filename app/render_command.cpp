@@ -301,7 +301,8 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& op
     } catch (const RunError& error) {
       if (name.empty()) throw;
       std::vector<Problem> problems = error.problems();
-      problems.front().what = name + ": " + problems.front().what;
+      std::string& where = problems.front().where;
+      where += (where.empty() ? "" : ": ") + name;
       throw RunError(problems);
     }
   }
@@ -338,7 +339,7 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
   const auto found = std::ranges::find_if(
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
-  throw UsageError({found->string() + " exists already and promin did not make it from " + scene, "",
+  throw UsageError({"output.foreign", found->string() + " exists already and promin did not make it from " + scene, "",
                     "name the file to write by -o"});
 }
 
@@ -346,7 +347,9 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
 void check_standard_output(const RenderSpec& options) {
   const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
   if (count == 0) return;
-  const auto refuse = [](const std::string& what) { throw UsageError({what, "on the command line", "name a file"}); };
+  const auto refuse = [](const std::string& what) {
+    throw UsageError({"output.standard.taken", what, "", "name a file"});
+  };
   if (count > 1) refuse("-o - is given twice");
   if (options.path) refuse("-o - takes one picture, not the frames of --path");
   if (options.job.folder) refuse("-o - and --job contradict each other");

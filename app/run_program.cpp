@@ -35,7 +35,6 @@ struct Wording {
 };
 
 constexpr Wording kWordings[] = {{Setting::kDepth, "use a smaller depth", "lower --max-depth"},
-                                 {Setting::kDevice, "requested as the device", "requested by --device"},
                                  {Setting::kDevice, "another device", "another --device"},
                                  {Setting::kBuilder, "the builder", "--builder"},
                                  {Setting::kTextureMemory, "the memory for textures", "--texture-memory"}};
@@ -78,12 +77,12 @@ Problem explain(const std::system_error& error) {
   std::error_code no_folder;
   static_cast<void>(std::filesystem::current_path(no_folder));
   if (no_folder == std::errc::no_such_file_or_directory) {
-    return {"the current folder no longer exists", "", "change to a folder that exists"};
+    return {"folder.lost", "the current folder no longer exists", "", "change to a folder that exists"};
   }
   if (error.code() == std::errc::resource_unavailable_try_again) return explain_no_threads();
   const auto* file_error = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   const std::string where = file_error == nullptr ? "" : file_error->path1().string();
-  return {fmt::format("the system refused a request ({})", error.code().message()), where,
+  return {"system.refused", fmt::format("the system refused a request ({})", error.code().message()), where,
           "check its limits and permissions"};
 }
 
@@ -94,7 +93,8 @@ void share_heap() {
 #endif
 }
 
-const Problem kDeafOutput{"cannot write", "the standard output", "check where it is redirected"};
+const Problem kDeafOutput{"output.standard.closed", "the standard output cannot be written", "",
+                          "check where it is redirected"};
 
 /// For the build alone, which installs what this prints (app/CMakeLists.txt).
 constexpr std::string_view kMakeManual = "--make-manual";
@@ -102,10 +102,24 @@ constexpr std::string_view kMakeManual = "--make-manual";
 void print_manual(const CLI::App& program, const std::string& kind) {
   const std::optional<std::string> manual = make_manual(program, kind);
   if (!manual) {
-    throw UsageError({fmt::format("{} takes man, bash, zsh or fish, not \"{}\"", kMakeManual, kind),
-                      "on the command line", "name one of them"});
+    throw UsageError({"usage.option.value",
+                      fmt::format("{} takes man, bash, zsh or fish, not \"{}\"", kMakeManual, kind), "",
+                      "name one of them"});
   }
   fmt::print("{}", *manual);
+}
+
+}  // namespace
+
+std::string message_of(Problem problem) {
+  name_option(problem);
+  return problem.sentence();
+}
+
+std::string message_of(const Error& error) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems) name_option(problem);
+  return Error(problems).what();
 }
 
 void run_command(const std::string& name, const std::string& help,
@@ -126,27 +140,14 @@ void run_command(const std::string& name, const std::string& help,
   for (const Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
-  throw UsageError({"no command is given", "on the command line", "see " + name + " --help"});
-}
-
-}  // namespace
-
-std::string message_of(Problem problem) {
-  name_option(problem);
-  return problem.sentence();
-}
-
-std::string message_of(const Error& error) {
-  std::vector<Problem> problems = error.problems();
-  for (Problem& problem : problems) name_option(problem);
-  return Error(problems).what();
+  throw UsageError({"usage.command.missing", "no command is given", "", "see " + name + " --help"});
 }
 
 int run_program(const std::string& name, const std::string& help,
                 std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv) {
   const auto report = [&](ExitCode code, const std::string& message) {
     std::fflush(stdout);
-    std::fputs(fmt::format("{}: error: {}\n", name, message).c_str(), stderr);
+    std::fputs(fmt::format("{}: {}\n", name, message).c_str(), stderr);
     return code;
   };
   // At the file size limit (ulimit -f) this signal would end the program before it can say so and remove its temporary
@@ -170,8 +171,8 @@ int run_program(const std::string& name, const std::string& help,
   } catch (const Error& error) {
     return report(kRunFailed, message_of(error));
   } catch (const std::bad_alloc&) {
-    return report(kRunFailed, fmt::format("there is not enough memory, in {}; {}", name,
-                                          cure_short_memory("use a smaller picture or scene")));
+    return report(kRunFailed, message_of(Problem{"host.memory.short", name + " has not enough memory", "",
+                                                 cure_short_memory("use a smaller picture or scene")}));
   } catch (const std::exception& error) {
     // Printing may fail at any line with an exception of fmt.
     if (std::ferror(stdout) != 0) return report(kRunFailed, message_of(kDeafOutput));
@@ -179,7 +180,8 @@ int run_program(const std::string& name, const std::string& help,
       return report(kRunFailed, message_of(explain(*refusal)));
     }
     return report(kRunFailed,
-                  fmt::format("an unexpected failure occurred ({}), in {}; report it as a bug", error.what(), name));
+                  message_of(Problem{"program.failed", fmt::format("{} failed unexpectedly ({})", name, error.what()),
+                                     "", "report it as a bug"}));
   }
 }
 

@@ -109,7 +109,8 @@ Image draw_name(const std::string& name, const fs::path& font, uint32_t width) {
   ProminPicturesMessage message;
   if (open_pictures().draw_text(font.c_str(), name.c_str(), width, kNameHeight, coverage.data(), &message) !=
       PROMIN_PICTURES_DONE) {
-    throw RunError({fmt::format("cannot write a name ({})", message.text), font.string(), "install DejaVu Sans"});
+    throw RunError({"sheet.name.drawn", fmt::format("the names cannot be drawn ({})", message.text), font.string(),
+                    "install DejaVu Sans"});
   }
   for (size_t i = 0; i < coverage.size(); ++i) {
     strip.pixels[i] = mix(kPaper, kInk, static_cast<float>(coverage[i]) / 255.0F);
@@ -138,8 +139,9 @@ uvec2 picture_size(const SheetOptions& options) {
 
 void check_sheet_size(const uvec2& size) {
   if (size.x <= kMaxSide && size.y <= kMaxSide) return;
-  throw UsageError({fmt::format("the sheet would have {}x{} pixels, more than {} on a side", size.x, size.y, kMaxSide),
-                    "on the command line", "give a smaller --size or other --columns"});
+  throw UsageError({"sheet.size",
+                    fmt::format("the sheet would have {}x{} pixels, more than {} on a side", size.x, size.y, kMaxSide),
+                    "", "give a smaller --size or other --columns"});
 }
 
 void make_sheet(const SheetOptions& options) {
@@ -172,7 +174,8 @@ void make_sheet(const SheetOptions& options) {
   progress.clear();
   write_picture(options.each.pictures.front(), sheet);
   if (missing == 0) return;
-  throw InputError({fmt::format("{} of {} {} not on the sheet", missing, count_of(options.scenes.size(), "scene"),
+  throw InputError({"sheet.scenes.missing",
+                    fmt::format("{} of {} {} not on the sheet", missing, count_of(options.scenes.size(), "scene"),
                                 missing == 1 ? "is" : "are"),
                     options.each.pictures.front().string(), "see the warnings above"});
 }

@@ -30,7 +30,8 @@ void StandardOutput::write() const {
   if (file_.empty()) return;
   const std::vector<std::byte> bytes = read_file(file_);
   if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0) {
-    throw RunError({"cannot write", "the standard output", "check where it is redirected"});
+    throw RunError(
+        {"output.standard.closed", "the standard output cannot be written", "", "check where it is redirected"});
   }
 }
 

@@ -201,7 +201,10 @@ std::string ScenePreparer::describe() const {
 
 void ScenePreparer::enter(Step step) {
   // The owner is gone, so nobody would take the picture.
-  if (is_given_up_) throw RunError({"the scene was not opened", "while a picture was made", "keep the window open"});
+  if (is_given_up_)
+    throw RunError({"window.scene.closed",
+                    "the scene was not opened, because the window closed while a picture was made", "",
+                    "keep the window open"});
   step_ = step;
 }
 

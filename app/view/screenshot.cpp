@@ -93,8 +93,8 @@ std::string find_free_name(const fs::path& folder) {
     const std::string name = fmt::format("promin-{:04}", number);
     if (!fs::exists(folder / (name + ".exr")) && !fs::exists(folder / (name + ".png"))) return name;
   }
-  throw RunError({fmt::format("no number up to {} is free for a screenshot", kLastNumber), folder.string(),
-                  "move some to another folder"});
+  throw RunError({"window.screenshots.many", fmt::format("no number up to {} is free for a screenshot", kLastNumber),
+                  folder.string(), "move some to another folder"});
 }
 
 }  // namespace promin::app

@@ -26,7 +26,7 @@ constexpr double kDoubleClickTime = 0.3;
 [[noreturn]] void refuse(const std::string& what) {
   const char* reason = nullptr;
   glfwGetError(&reason);
-  throw DeviceError({what + (reason == nullptr ? "" : " (" + std::string(reason) + ")"), "for the window",
+  throw DeviceError({"window.display", what + (reason == nullptr ? "" : " (" + std::string(reason) + ")"), "",
                      "use promin render, which needs no window"});
 }
 
@@ -113,7 +113,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   if (glfwInit() == GLFW_FALSE) refuse("no display");
   if (glfwVulkanSupported() == GLFW_FALSE) {
     glfwTerminate();
-    throw DeviceError({"the Vulkan loader is missing", "on this machine",
+    throw DeviceError({"device.loader.missing", "the Vulkan loader is missing", "",
                        "install libvulkan1 and a driver such as mesa-vulkan-drivers"});
   }
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
@@ -121,7 +121,7 @@ Window::Window(const uvec2& size, const std::string& title) : first_size_(size) 
   if (window_ == nullptr) {
     glfwTerminate();
     throw DeviceError(
-        {"the display cannot open a window", "for promin-view", "use promin render, which needs no window"});
+        {"window.display", "the display cannot open a window", "", "use promin render, which needs no window"});
   }
   glfwSetWindowUserPointer(window_, this);
   Callbacks::set(window_);

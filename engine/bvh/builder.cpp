@@ -38,10 +38,12 @@ Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOpti
   const auto found = std::find_if(kBuilders.begin(), kBuilders.end(),
                                   [builder](const Builder& entry) { return entry.name == builder; });
   if (found == kBuilders.end()) {
-    throw UsageError({"there is no BVH builder \"" + std::string(builder) + "\"", "", suggest_name(builder, kNames)});
+    throw UsageError({"bvh.builder.unknown", "there is no BVH builder \"" + std::string(builder) + "\"", "",
+                      suggest_name(builder, kNames)});
   }
   if (input.boxes.size() > std::numeric_limits<uint32_t>::max() / kMaxReferencesPerPrimitive) {
-    throw InputError({"the scene has too many primitives for one BVH: " + std::to_string(input.boxes.size()), "",
+    throw InputError({"bvh.primitives.many",
+                      "the scene has too many primitives for one BVH: " + std::to_string(input.boxes.size()), "",
                       "split the scene"});
   }
   if (input.boxes.empty()) return {};

@@ -109,25 +109,27 @@ uint64_t hash_file(Header header, std::span<const std::byte> nodes, std::span<co
   return hash.value();
 }
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& what) {
-  throw InputError({what, file.string(), "build it again with promin-bvh build"});
+[[noreturn]] void refuse(ProblemCode code, const fs::path& file, const std::string& what) {
+  throw InputError({code, what, file.string(), "build it again with promin-bvh build"});
 }
 
 Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
   if (std::memcmp(bytes.data(), kMagic.data(), std::min(bytes.size(), kMagic.size())) != 0) {
-    throw InputError({"the file is not a BVH file", file.string(), "name a file that promin-bvh build has written"});
+    throw InputError({"bvh.file.kind", "the file is not a BVH file", file.string(),
+                      "name a file that promin-bvh build has written"});
   }
-  if (bytes.size() < sizeof(Header)) refuse(file, "the BVH file ends within its header");
+  if (bytes.size() < sizeof(Header)) refuse("bvh.file.short", file, "the BVH file ends within its header");
   Header header;
   std::memcpy(&header, bytes.data(), sizeof(Header));
-  if (header.byte_order != kByteOrder) refuse(file, "the BVH file has another byte order");
+  if (header.byte_order != kByteOrder) refuse("bvh.file.version", file, "the BVH file has another byte order");
   if (header.version != kVersion) {
-    refuse(file, "the BVH file has version " + std::to_string(header.version) + " and this promin reads version " +
-                     std::to_string(kVersion));
+    refuse("bvh.file.version", file,
+           "the BVH file has version " + std::to_string(header.version) + " and this promin reads version " +
+               std::to_string(kVersion));
   }
   const bool has_known_kinds = (header.further_kinds & ~kTreeKinds) == 0;
   if (!has_known_kinds || header.layout_hash != hash_layout(header.further_kinds)) {
-    refuse(file, "the BVH file has nodes of another layout than this promin's");
+    refuse("bvh.file.version", file, "the BVH file has nodes of another layout than this promin's");
   }
   return header;
 }
@@ -138,7 +140,7 @@ std::string read_builder(const Header& header, const fs::path& file) {
   const bool is_name = end != header.builder.end() && std::all_of(header.builder.begin(), end, [](char c) {
                          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
                        });
-  if (!is_name) refuse(file, "the BVH file does not name its builder");
+  if (!is_name) refuse("bvh.file.header", file, "the BVH file does not name its builder");
   return {header.builder.begin(), end};
 }
 
@@ -154,28 +156,33 @@ class TreeCheck {
 
   /// Throws InputError.
   void run() {
-    if (tree_.references.size() > layout::CHILD_FIRST_MASK) refuse(file_, "the BVH file has too many references");
-    if (tree_.nodes.empty()) refuse(file_, "the BVH file has no nodes");
-    if (tree_.nodes.size() > layout::MAX_NODES) refuse(file_, "the BVH file has too many nodes");
+    if (tree_.references.size() > layout::CHILD_FIRST_MASK)
+      refuse("bvh.file.tree", file_, "the BVH file has too many references");
+    if (tree_.nodes.empty()) refuse("bvh.file.tree", file_, "the BVH file has no nodes");
+    if (tree_.nodes.size() > layout::MAX_NODES) refuse("bvh.file.tree", file_, "the BVH file has too many nodes");
     entries_[0] = 0;
     // A child comes after its parent, so there is no cycle, and each node has been reached when its turn comes.
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     if (most_entries_ != tree_.stack_size) {
-      refuse(file_, "the BVH file's tree needs a stack of " + std::to_string(most_entries_) + " but declares " +
-                        std::to_string(tree_.stack_size));
+      refuse("bvh.file.tree", file_,
+             "the BVH file's tree needs a stack of " + std::to_string(most_entries_) + " but declares " +
+                 std::to_string(tree_.stack_size));
     }
-    if (slots_taken_ != tree_.references.size()) refuse(file_, "the BVH file has references that belong to no leaf");
+    if (slots_taken_ != tree_.references.size())
+      refuse("bvh.file.tree", file_, "the BVH file has references that belong to no leaf");
     check_stats();
     for (const uint32_t primitive : tree_.references) {
       if (primitive >= tree_.primitive_count) {
-        refuse(file_, "the BVH file refers to primitive " + std::to_string(primitive) + " of " +
-                          std::to_string(tree_.primitive_count));
+        refuse("bvh.file.tree", file_,
+               "the BVH file refers to primitive " + std::to_string(primitive) + " of " +
+                   std::to_string(tree_.primitive_count));
       }
       is_referred_to_[primitive] = true;
     }
     const auto missing = std::find(is_referred_to_.begin(), is_referred_to_.end(), false);
     if (missing != is_referred_to_.end()) {
-      refuse(file_, "the BVH file's tree lacks primitive " + std::to_string(missing - is_referred_to_.begin()));
+      refuse("bvh.file.tree", file_,
+             "the BVH file's tree lacks primitive " + std::to_string(missing - is_referred_to_.begin()));
     }
   }
 
@@ -183,7 +190,7 @@ class TreeCheck {
   static constexpr uint32_t kUnreached = std::numeric_limits<uint32_t>::max();
 
   [[noreturn]] void refuse_node(uint32_t index, const std::string& what) const {
-    refuse(file_, "the BVH file's node " + std::to_string(index) + " " + what);
+    refuse("bvh.file.tree", file_, "the BVH file's node " + std::to_string(index) + " " + what);
   }
 
   void visit(uint32_t index) {
@@ -217,7 +224,7 @@ class TreeCheck {
     const bool is_so = stats.leaves == leaf_count_ && stats.max_leaf_size == max_leaf_size_ &&
                        stats.nodes == binary_nodes && stats.depth <= kMaxBvhDepth && stats.sah_cost >= 0.0 &&
                        std::isfinite(stats.sah_cost);
-    if (!is_so) refuse(file_, "the BVH file describes another tree than it holds");
+    if (!is_so) refuse("bvh.file.tree", file_, "the BVH file describes another tree than it holds");
   }
 
   void take_slots(uint32_t index, const NodeChild& leaf) {
@@ -252,13 +259,14 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   const uint64_t reference_bytes = uint64_t{header.reference_count} * sizeof(uint32_t);
   const uint64_t size = sizeof(Header) + node_bytes + reference_bytes;
   if (bytes.size() != size) {
-    refuse(file, "the BVH file has " + std::to_string(bytes.size()) + " bytes, but its header declares " +
-                     std::to_string(size));
+    refuse(
+        "bvh.file.short", file,
+        "the BVH file has " + std::to_string(bytes.size()) + " bytes, but its header declares " + std::to_string(size));
   }
   const auto nodes = bytes.subspan(sizeof(Header), node_bytes);
   const auto references = bytes.subspan(sizeof(Header) + node_bytes);
   if (hash_file(header, nodes, references) != header.checksum) {
-    refuse(file, "the BVH file is damaged: its checksum does not match");
+    refuse("bvh.file.damaged", file, "the BVH file is damaged: its checksum does not match");
   }
   // Both are aligned: the mapping begins at a page, the nodes 128 bytes behind.
   tree_.nodes = {reinterpret_cast<const Node*>(nodes.data()), header.node_count};
@@ -276,13 +284,13 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
                  .bytes = node_bytes};
   // This is checked before memory is allocated for the counts.
   if (header.primitive_count > header.reference_count)
-    refuse(file, "the BVH file has fewer references than primitives");
+    refuse("bvh.file.tree", file, "the BVH file has fewer references than primitives");
   TreeCheck(tree_, file).run();
 }
 
 void BvhFile::check_scene(uint64_t geometry_hash, size_t bounded_count) const {
   if (geometry_hash != tree_.geometry_hash || bounded_count != tree_.primitive_count) {
-    refuse(file_, "the BVH file is stale: it was built from other geometry than the scene's");
+    refuse("bvh.file.stale", file_, "the BVH file is stale: it was built from other geometry than the scene's");
   }
 }
 

@@ -21,10 +21,10 @@ std::optional<Problem> find_lack_of_space(const std::string& what, uint64_t byte
     munmap(probe, bytes);
     return std::nullopt;
   }
-  return Problem{"there is too little address space for " + what,
-                 "of the " + std::to_string(*limit >> 20) + " MiB that ulimit -v allows fewer than " +
-                     std::to_string(bytes >> 20) + " are free",
-                 "raise ulimit -v"};
+  return Problem{"memory.space.short",
+                 "there is too little address space for " + what + ": of the " + std::to_string(*limit >> 20) +
+                     " MiB that ulimit -v allows, fewer than " + std::to_string(bytes >> 20) + " are free",
+                 "", "raise ulimit -v"};
 }
 
 std::string cure_short_memory(std::string cure) {

@@ -18,8 +18,7 @@ std::string join_sentences(const std::vector<Problem>& problems) {
 }  // namespace
 
 std::string Problem::sentence() const {
-  std::string text = what;
-  if (!where.empty()) text += ", " + where;
+  std::string text = where.empty() ? what : where + ": " + what;
   if (!cure.empty()) text += "; " + cure;
   return to_one_line(text);
 }

@@ -35,17 +35,20 @@ void refuse_lost_folder(const fs::path& file) {
   if (file.is_absolute()) return;
   static_cast<void>(fs::current_path(error));
   if (error != std::errc::no_such_file_or_directory) return;
-  throw RunError({"the current folder no longer exists", file.string(), "change to a folder that exists"});
+  throw RunError(
+      {"folder.lost", "the current folder no longer exists", file.string(), "change to a folder that exists"});
 }
 
 fs::file_status find_input(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::none) {
-    throw InputError({"the file cannot be accessed (" + error.message() + ")", file.string(), "check its permissions"});
+    throw InputError({"file.access", "the file cannot be accessed (" + error.message() + ")", file.string(),
+                      "check its permissions"});
   }
   if (!fs::exists(status)) refuse_lost_folder(file);
-  if (!fs::exists(status)) throw InputError({"the file does not exist", file.string(), "check the path"});
+  if (!fs::exists(status))
+    throw InputError({"file.missing", "the file does not exist", file.string(), "check the path"});
   return status;
 }
 
@@ -59,19 +62,20 @@ std::optional<FileStamp> stamp_of(const fs::path& file) {
 
 std::vector<std::byte> read_file(const fs::path& file, uint64_t most_bytes) {
   const fs::file_status status = find_input(file);
-  if (fs::is_directory(status)) throw InputError({"is a folder, not a file", file.string(), "name a file in it"});
+  if (fs::is_directory(status))
+    throw InputError({"file.folder", "this is a folder, not a file", file.string(), "name a file in it"});
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw InputError({"the file cannot be opened", file.string(), "check its permissions"});
+  if (!stream) throw InputError({"file.open", "the file cannot be opened", file.string(), "check its permissions"});
   const std::streamoff size = stream.tellg();
-  if (size < 0) throw InputError({"the file cannot be read", file.string(), "name a regular file"});
-  if (size == 0) throw InputError({"the file is empty", file.string(), "export it again"});
+  if (size < 0) throw InputError({"file.kind", "the file cannot be read", file.string(), "name a regular file"});
+  if (size == 0) throw InputError({"file.empty", "the file is empty", file.string(), "export it again"});
   std::vector<std::byte> bytes(std::min(static_cast<uint64_t>(size), most_bytes));
   stream.seekg(0);
   if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-    throw InputError({"the file cannot be read to its end", file.string(), "check the disk"});
+    throw InputError({"file.read", "the file cannot be read to its end", file.string(), "check the disk"});
   }
   if (const StandIn* stand_in = find_stand_in({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
-    throw InputError({std::string("the file is ") + stand_in->what, file.string(), stand_in->cure});
+    throw InputError({"file.placeholder", std::string("the file is ") + stand_in->what, file.string(), stand_in->cure});
   }
   return bytes;
 }
@@ -175,14 +179,15 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   refuse_lost_folder(target_);
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
-    throw RunError({"the folder of the output file does not exist", target_.string(), "create " + folder.string()});
+    throw RunError({"output.folder.missing", "the folder of the output file does not exist", target_.string(),
+                    "create " + folder.string()});
   }
   if (fs::is_directory(target_, error)) {
-    throw RunError({"the output file is a folder", target_.string(), "name a file"});
+    throw RunError({"output.kind", "the output file is a folder", target_.string(), "name a file"});
   }
   // For the root user rename() would even replace a device by a file.
   if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
-    throw RunError({"the output file is a device or a pipe", target_.string(), "name a file"});
+    throw RunError({"output.kind", "the output file is a device or a pipe", target_.string(), "name a file"});
   }
   for (int writer = 1; temporary_.empty() || !live_files().add(temporary_); ++writer) {
     temporary_ = name_temporary(folder, target_, writer);
@@ -208,8 +213,8 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::fail() const {
-  throw RunError({std::string("the output file cannot be written (") + std::strerror(errno) + ")", target_.string(),
-                  "check the disk and permissions"});
+  throw RunError({"file.write", std::string("the output file cannot be written (") + std::strerror(errno) + ")",
+                  target_.string(), "check the disk and permissions"});
 }
 
 void AtomicFile::flush() const {
@@ -243,7 +248,7 @@ bool keep_old(const fs::path& file, const fs::path& name) {
   if (!error) return true;
   fs::copy_file(file, name, fs::copy_options::overwrite_existing, error);
   if (!error) return true;
-  throw RunError({"the old file cannot be kept until the new ones are complete (" + error.message() + ")",
+  throw RunError({"file.keep", "the old file cannot be kept until the new ones are complete (" + error.message() + ")",
                   file.string(), "move it elsewhere, or check the disk and permissions"});
 }
 
@@ -324,8 +329,8 @@ void write_file(const fs::path& file, std::initializer_list<std::span<const std:
   }
   stream.close();
   if (!stream) {
-    throw RunError({std::string("the output file cannot be written (") + std::strerror(errno) + ")", file.string(),
-                    "check the disk and permissions"});
+    throw RunError({"file.write", std::string("the output file cannot be written (") + std::strerror(errno) + ")",
+                    file.string(), "check the disk and permissions"});
   }
   output.commit();
 }

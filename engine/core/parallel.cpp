@@ -50,7 +50,7 @@ bool can_start_threads(size_t count) {
 Problem explain_no_threads() {
   // The stack of a thread takes address space.
   const char* cure = address_space_limit() ? "raise pids.max, ulimit -u or ulimit -v" : "raise pids.max or ulimit -u";
-  return {"the system refuses to start another thread", "", cure};
+  return {"threads.refused", "the system refuses to start another thread", "", cure};
 }
 
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task) {

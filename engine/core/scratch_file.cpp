@@ -37,7 +37,8 @@ ScratchFile::~ScratchFile() {
 void ScratchFile::fail(int error) const {
   constexpr double kMega = 1e6;
   const auto mega = static_cast<uint64_t>(static_cast<double>(byte_count_) / kMega) + 1;
-  throw RunError({"there is no room for " + std::to_string(mega) +
+  throw RunError({"file.room",
+                  "there is no room for " + std::to_string(mega) +
                       " MB beside the output file until it can be written (" + std::strerror(error) + ")",
                   target_.string(), "check the disk and permissions"});
 }

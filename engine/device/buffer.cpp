@@ -45,8 +45,10 @@ void check_memory_is_there(const std::byte* last_byte) {
   const bool is_there = ::write(pipe_ends[1], last_byte, 1) == 1;
   for (const int end : pipe_ends) close(end);
   if (is_there) return;
-  throw RunError({"the driver keeps device memory in a file that cannot grow",
-                  "at the file size limit of " + std::to_string(*limit) + " bytes", "raise the limit (ulimit -f)"});
+  throw RunError({"device.memory.file",
+                  "the driver keeps device memory in a file, which cannot grow beyond the file size limit of " +
+                      std::to_string(*limit) + " bytes",
+                  "", "raise the limit (ulimit -f)"});
 }
 
 }  // namespace
@@ -60,9 +62,10 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
     : device_(&device), size_bytes_(size_bytes) {
   const vk::DeviceSize most = most_bytes(device, usage);
   if (size_bytes > most) {
-    throw RunError({"the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB",
-                    "on a device that allows " + std::to_string(most >> 20) + " MiB",
-                    "use a smaller scene or another device", Setting::kDevice});
+    throw RunError({"device.buffer.large",
+                    "the scene needs a buffer of " + std::to_string(size_bytes >> 20) + " MiB, and the device allows " +
+                        std::to_string(most >> 20) + " MiB",
+                    "", "use a smaller scene or another device", Setting::kDevice});
   }
   buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, size_bytes, usage));
   const vk::MemoryRequirements requirements = buffer_.getMemoryRequirements();

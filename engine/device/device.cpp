@@ -169,8 +169,9 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
     if (!selection && infos[i].is_default) return i;
   }
   if (!selection) {
-    throw DeviceError({"there is no usable Vulkan device (" + infos[0].name + ": " + infos[0].obstacles[0] + ")",
-                       "on this machine", "install a driver such as mesa-vulkan-drivers"});
+    throw DeviceError({"device.missing",
+                       "there is no usable Vulkan device (" + infos[0].name + ": " + infos[0].obstacles[0] + ")", "",
+                       "install a driver such as mesa-vulkan-drivers"});
   }
   size_t number = 0;
   const char* end = selection->data() + selection->size();
@@ -184,18 +185,19 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
     const bool matches = is_number ? i == number : is_part || is_uuid;
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
-      throw DeviceError({"device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0],
-                         "requested as the device", "choose another of: " + list_names(infos), Setting::kDevice});
+      throw DeviceError({"device.unusable",
+                         "the requested device " + infos[i].name + " cannot be used: " + infos[i].obstacles[0], "",
+                         "use another device: " + list_names(infos), Setting::kDevice});
     }
     return i;
   }
-  throw DeviceError({"no Vulkan device matches \"" + *selection + "\"", "requested as the device",
-                     "choose one of: " + list_names(infos), Setting::kDevice});
+  throw DeviceError({"device.unknown", "no Vulkan device matches \"" + *selection + "\"", "",
+                     "use another device: " + list_names(infos), Setting::kDevice});
 }
 
 [[noreturn]] void refuse_few_threads(const std::string& name) {
   Problem problem = explain_no_threads();
-  problem.where = "for " + name;
+  problem.what += ", and " + name + " needs one";
   throw DeviceError(problem);
 }
 
@@ -219,15 +221,17 @@ void translate_vulkan_errors(const std::function<void()>& work) {
   try {
     work();
   } catch (const vk::OutOfDeviceMemoryError& error) {
-    throw RunError({"the device has not enough memory", error.what(),
+    throw RunError({"device.memory.short", std::string("the device has not enough memory (") + error.what() + ")", "",
                     cure_short_memory("use a smaller scene or picture, or another device"), Setting::kDevice});
   } catch (const vk::OutOfHostMemoryError& error) {
-    throw RunError(
-        {"the host has not enough memory", error.what(), cure_short_memory("use a smaller scene or picture")});
+    throw RunError({"host.memory.short", std::string("the host has not enough memory (") + error.what() + ")", "",
+                    cure_short_memory("use a smaller scene or picture")});
   } catch (const vk::DeviceLostError& error) {
-    throw RunError({"the device was lost", error.what(), "try again, or another device", Setting::kDevice});
+    throw RunError({"device.lost", std::string("the device was lost (") + error.what() + ")", "",
+                    "try again, or another device", Setting::kDevice});
   } catch (const vk::SystemError& error) {
-    throw RunError({"a Vulkan call failed", error.what(), "try another device", Setting::kDevice});
+    throw RunError({"device.call.failed", std::string("a Vulkan call failed (") + error.what() + ")", "",
+                    "try another device", Setting::kDevice});
   }
 }
 

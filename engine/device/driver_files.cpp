@@ -36,7 +36,8 @@ std::optional<Problem> find_fault_in(const std::string& variable, const std::str
   for (std::string file; std::getline(list, file, ':');) {
     const std::string fault = file.empty() ? "" : find_fault(file);
     if (fault.empty()) continue;
-    return Problem{"there is no Vulkan device: the manifest of a driver " + fault, file + ", named by " + variable,
+    return Problem{"device.driver.manifest",
+                   "there is no Vulkan device: the manifest of a driver, which " + variable + " names, " + fault, file,
                    "correct " + variable + " or unset it"};
   }
   return std::nullopt;
@@ -70,10 +71,10 @@ Problem explain_missing_driver() {
   for (const std::string variable : kVariables) {
     const char* files = std::getenv(variable.c_str());
     if (files == nullptr) continue;
-    return {"there is no Vulkan device", "with " + variable + " set to \"" + files + "\"",
+    return {"device.missing", "there is no Vulkan device", variable + " with \"" + files + "\"",
             "name a driver's manifest in " + variable + " or unset it"};
   }
-  return {"there is no Vulkan device", "on this machine", "install a driver such as mesa-vulkan-drivers"};
+  return {"device.missing", "there is no Vulkan device", "", "install a driver such as mesa-vulkan-drivers"};
 }
 
 }  // namespace promin::gpu

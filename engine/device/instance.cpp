@@ -46,7 +46,7 @@ vk::raii::Context load_vulkan() {
   try {
     return {};
   } catch (const std::exception&) {
-    throw DeviceError({"the Vulkan loader is missing", "on this machine",
+    throw DeviceError({"device.loader.missing", "the Vulkan loader is missing", "",
                        "install libvulkan1 and a driver such as "
                        "mesa-vulkan-drivers"});
   }
@@ -60,11 +60,12 @@ vk::raii::Instance try_make_instance(const vk::raii::Context& context, std::vect
   vk::InstanceCreateFlags flags;
   if (!mode.empty()) {
     if (mode != "core" && mode != "sync") {
-      throw UsageError({"there is no validation mode " + mode, "in PROMIN_VALIDATION", "use core or sync"});
+      throw UsageError(
+          {"device.validation.mode", "there is no validation mode " + mode, "PROMIN_VALIDATION", "use core or sync"});
     }
     if (!has_layer(context, kValidationLayer)) {
-      throw DeviceError({std::string(kValidationLayer) + " is not installed", "requested by PROMIN_VALIDATION",
-                         "install vulkan-validationlayers"});
+      throw DeviceError({"device.validation.missing", std::string(kValidationLayer) + " is not installed",
+                         "PROMIN_VALIDATION", "install vulkan-validationlayers"});
     }
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -92,7 +93,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<c
   } catch (const vk::SystemError& error) {
     // The loader reports a manifest that is not JSON as OutOfHostMemory.
     if (find_manifest_fault()) throw NoDriverError();
-    throw DeviceError({std::string("Vulkan cannot start (") + error.what() + ")", "on this machine",
+    throw DeviceError({"device.vulkan.start", std::string("Vulkan cannot start (") + error.what() + ")", "",
                        "install a Vulkan 1.1 driver such as mesa-vulkan-drivers"});
   }
 }

@@ -248,7 +248,7 @@ Collected collect_primitives(const world::Scene& scene) {
 void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,
                    const char* cure, Setting setting) {
   if (count <= most) return;
-  throw RunError({who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
+  throw RunError({"scene.size.limit", who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
                   "promin holds at most " + std::to_string(most) + cure, setting});
 }
 

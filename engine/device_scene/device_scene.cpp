@@ -215,9 +215,10 @@ gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
       bytes > gpu::Buffer::most_bytes(*device_, kStorageOrTexels) ||
       (image_words_bytes_ / sizeof(uint32_t) > limits.maxTexelBufferElements && bytes > limits.maxStorageBufferRange);
   if (image_words_bytes_ > 0 && is_too_large) {
-    throw RunError({"the scene's textures need " + std::to_string(image_words_bytes_ >> 20) + " MiB",
-                    "on a device that allows " + std::to_string(most_words_bytes >> 20) + " MiB for textures",
-                    "lower the memory for textures", Setting::kTextureMemory});
+    throw RunError({"device.textures.large",
+                    "the scene's textures need " + std::to_string(image_words_bytes_ >> 20) +
+                        " MiB, and the device allows " + std::to_string(most_words_bytes >> 20) + " MiB for textures",
+                    "", "lower the memory for textures", Setting::kTextureMemory});
   }
   return {*device_, bytes, kStorageOrTexels};
 }

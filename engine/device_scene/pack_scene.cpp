@@ -175,7 +175,7 @@ bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file
     return true;
   } catch (const InputError& refusal) {
     const Problem& problem = refusal.problems().front();
-    packed.warnings = {{problem.what, problem.where, "it is built again"}};
+    packed.warnings = {Problem{problem.code, problem.what, problem.where, "it is built again"}};
     return false;
   }
 }

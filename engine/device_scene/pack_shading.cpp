@@ -132,8 +132,9 @@ class MaterialPacker {
     const auto number = static_cast<uint>(found - packed_.glasses.begin()) + 1;
     if (found != packed_.glasses.end()) return number;
     if (number > MOST_GLASSES) {
-      throw RunError({"the materials have more than " + std::to_string(MOST_GLASSES) + " kinds of glass",
-                      "in the whole scene", "use fewer"});
+      throw RunError({"scene.glasses.many",
+                      "the materials have more than " + std::to_string(MOST_GLASSES) + " kinds of glass", "",
+                      "use fewer"});
     }
     packed_.glasses.push_back(record);
     return number;

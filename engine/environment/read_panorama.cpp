@@ -50,7 +50,7 @@ Panorama make_panorama(Image image, bool holds_radiance, const std::string& name
   Panorama panorama = {std::make_shared<const Image>(std::move(image))};
   environment.sky = panorama;
   if (const std::vector<Problem> problems = validate(environment); !problems.empty()) {
-    throw InputError({problems.front().what, name, problems.front().cure});
+    throw InputError({problems.front().code, problems.front().what, name, problems.front().cure});
   }
   return panorama;
 }

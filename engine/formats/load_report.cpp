@@ -25,8 +25,8 @@ std::string quote(std::string_view word) {
   return quoted;
 }
 
-void LoadReport::refuse(const std::string& what, const std::string& place, const std::string& cure) {
-  const Problem problem{make_visible(what), file_.string() + (place.empty() ? "" : ": " + make_visible(place)),
+void LoadReport::refuse(ProblemCode code, const std::string& what, const std::string& place, const std::string& cure) {
+  const Problem problem{code, make_visible(what), file_.string() + (place.empty() ? "" : ": " + make_visible(place)),
                         make_visible(cure)};
   if (problems_.size() < kMaxProblems && !said_.insert(problem.sentence()).second) return;
   ++problem_count_;
@@ -39,7 +39,7 @@ void LoadReport::warn(const std::string& sentence) {
 
 void LoadReport::refuse(const Fault& fault) {
   if (!refused_fault_) refused_fault_ = fault;
-  refuse(fault.what + (fault.value.empty() ? "" : " (" + fault.value + ")"), fault.place, fault.cure);
+  refuse(fault.code, fault.what + (fault.value.empty() ? "" : " (" + fault.value + ")"), fault.place, fault.cure);
 }
 
 void LoadReport::repair(const Fault& fault) {
@@ -51,8 +51,8 @@ void LoadReport::warn(const Fault& fault) {
   const std::string value = fault.value.empty() ? "" : " (" + fault.value + ")";
   const auto [kind, is_new] = kinds_.try_emplace({fault.what, fault.repair}, warnings_.size());
   if (is_new) {
-    const std::string place = fault.place.empty() ? "" : ", " + fault.place;
-    warnings_.push_back({make_visible(fault.what + value + place), fault.repair, 0});
+    const std::string place = fault.place.empty() ? "" : fault.place + ": ";
+    warnings_.push_back({make_visible(place + fault.what + value), fault.repair, 0});
   }
   ++warnings_[kind->second].fault_count;
 }
@@ -61,7 +61,7 @@ std::vector<std::string> LoadReport::warnings() const {
   std::vector<std::string> sentences;
   for (const Warning& warning : warnings_) {
     std::string sentence = warning.sentence;
-    if (warning.fault_count > 1) sentence += " and " + std::to_string(warning.fault_count - 1) + " more";
+    if (warning.fault_count > 1) sentence += ", and " + std::to_string(warning.fault_count - 1) + " more";
     if (!warning.repair.empty()) sentence += "; " + warning.repair;
     sentences.push_back(std::move(sentence));
   }
@@ -77,7 +77,7 @@ void LoadReport::throw_if_refused() const {
   if (problems_.empty()) return;
   std::vector<Problem> problems = problems_;
   if (problem_count_ > problems.size()) {
-    problems.push_back({"and " + std::to_string(problem_count_ - problems.size()) + " more", "", ""});
+    problems.push_back({"problems.more", "and " + std::to_string(problem_count_ - problems.size()) + " more", "", ""});
   }
   throw InputError(problems);
 }

@@ -23,6 +23,8 @@ std::string quote(std::string_view word);
 
 /// A fault of a file that does not affect its geometry. The loader repairs it; a strict loader refuses the file.
 struct Fault {
+  /// The kind of the problem.
+  ProblemCode code;
   /// The problem, without words of the file: faults with the same `what` and `repair` share one warning.
   std::string what;
   /// The wrong word or number of the file; may be empty. The warning shows that of the first fault.
@@ -57,15 +59,15 @@ class LoadReport {
 
   /// `place` is inside the file: a JSON path or a line; empty for the file as a whole. Control characters that come
   /// from the file are made visible as '?', so that each message stays on its line.
-  void refuse(const std::string& what, const std::string& place, const std::string& cure);
+  void refuse(ProblemCode code, const std::string& what, const std::string& place, const std::string& cure);
   /// Refuses the file because of a fault; its `repair` is not used.
   void refuse(const Fault& fault);
   void warn(const std::string& sentence);
   /// Warns as repair() does of a feature that the format allows and the loader cannot show; a strict report does not
   /// refuse it.
   void warn(const Fault& fault);
-  /// Warns once for all faults of a kind, with the place of the first and the number of the others: "a face has fewer
-  /// than 3 corners, line 12 and 11 more; the face is left out". A strict report refuses each fault.
+  /// Warns once for all faults of a kind, with the place of the first and the number of the others: "line 12: a face
+  /// has fewer than 3 corners, and 11 more; the face is left out". A strict report refuses each fault.
   void repair(const Fault& fault);
 
   /// Records that a visible part of the scene cannot be drawn.

@@ -168,7 +168,7 @@ void refuse_folder(const std::filesystem::path& file) {
   }
   std::string names;
   for (const std::string& name : scenes) names.append(names.empty() ? "it holds " : " and ").append(name);
-  throw InputError({"the scene is a folder, not a file", file.string(),
+  throw InputError({"file.folder", "the scene is a folder, not a file", file.string(),
                     names.empty() ? "name " + name_endings() : names + "; name a file"});
 }
 
@@ -176,13 +176,14 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
   refuse_folder(file);
   if (const SceneFormat* const format = find_by_ending(file)) return *format;
   const std::string ending = lower_case_ending(file);
-  const std::string what = "unknown scene format " + quote(ending);
+  const std::string what = "the scene format " + quote(ending) + " is unknown";
   const FileKind kind = find_file_kind(file);
   if (kind.name.empty() && is_writable_format(file)) {
-    throw InputError({"a " + ending + " is a picture, not a scene", file.string(), "name " + name_endings()});
+    throw InputError(
+        {"scene.file.picture", "a " + ending + " is a picture, not a scene", file.string(), "name " + name_endings()});
   }
-  if (kind.name.empty()) throw InputError({what, file.string(), "use " + name_endings()});
-  throw InputError({what + ", the file is " + kind.name, file.string(), kind.cure});
+  if (kind.name.empty()) throw InputError({"scene.file.format", what, file.string(), "use " + name_endings()});
+  throw InputError({"scene.file.ending", what + ", and the file is " + kind.name, file.string(), kind.cure});
 }
 
 /// Throws InputError where the first bytes of a file that cannot be loaded say that its ending is wrong.
@@ -192,7 +193,7 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
   const auto* const own = std::ranges::find_if(kFormats, has_ending);
   const bool is_right = own != std::end(kFormats) && own->load == format.load;
   if (kind.name.empty() || is_right) return;
-  throw InputError({"the file is " + kind.name, file.string(), kind.cure});
+  throw InputError({"scene.file.ending", "the file is " + kind.name, file.string(), kind.cure});
 }
 
 /// An empty picture could be mistaken for one of the scene. Throws InputError if a mesh has nothing to draw, or if a
@@ -203,25 +204,27 @@ void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& 
   const std::string what = "the scene contains nothing to draw";
   if (!format.is_mesh && !report.has_lost_geometry()) return scene.warnings.push_back(what);
   const std::string reason = scene.warnings.empty() ? "" : " (" + scene.warnings.front() + ")";
-  throw InputError({what + reason, report.file().string(), "export it with triangles"});
+  throw InputError({"scene.geometry.none", what + reason, report.file().string(), "export it with triangles"});
 }
 
 void check_root(const std::filesystem::path& root) {
   std::error_code error;
   if (root.empty() || is_directory(root, error)) return;
-  throw UsageError({"the root of a scene's files is not a folder", root.string(), "name a folder"});
+  throw UsageError(
+      {"scene.root.folder", "the root of a scene's files is not a folder", root.string(), "name a folder"});
 }
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   const SceneFormat& format = find_format(file);
   check_root(options.root);
   if (!options.material_variant.empty() && !format.has_variants) {
-    throw UsageError({"files that end in " + std::string(format.ending) + " have no material variants", file.string(),
+    throw UsageError({"scene.variant.unknown",
+                      "files that end in " + std::string(format.ending) + " have no material variants", file.string(),
                       "leave the variant out"});
   }
   // Reading a pipe could wait forever.
   if (!is_regular_file(find_input(file))) {
-    throw InputError({"the scene is not a regular file", file.string(), "name the scene's file"});
+    throw InputError({"file.kind", "the scene is not a regular file", file.string(), "name the scene's file"});
   }
   try {
     Scene scene = format.load(options, report);

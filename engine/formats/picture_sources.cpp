@@ -38,7 +38,8 @@ void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureByte
     attempt.throw_if_refused();
   } catch (const InputError& error) {
     const Problem& problem = error.problems().front();
-    source.problem = attempt.refused_fault().value_or(Fault{.what = problem.what, .cure = problem.cure});
+    source.problem =
+        attempt.refused_fault().value_or(Fault{.code = problem.code, .what = problem.what, .cure = problem.cure});
   }
   for (const SourceFile& file : attempt.sources()) report.add_source(file.file);
   if (source.problem) return;
@@ -78,7 +79,8 @@ void report_problem(const PictureSource& source, LoadReport& report) {
 }
 
 void report_damage(const PictureSource& source, const std::string& warning, LoadReport& report) {
-  report.repair({.what = "a picture is damaged",
+  report.repair({.code = "picture.damaged",
+                 .what = "a picture is damaged",
                  .value = warning,
                  .place = "image " + source.title,
                  .cure = "write or export it again",
@@ -109,7 +111,8 @@ void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
     try {
       warnings[i] = decode(source);
     } catch (const PictureError& error) {
-      source.problem = Fault{.what = std::string("a picture cannot be used: ") + error.what()};
+      source.problem =
+          Fault{.code = "picture.unusable", .what = std::string("a picture cannot be used: ") + error.what()};
       source.is_file_at_fault = error.is_file_at_fault();
     }
     source.own = {};

@@ -90,27 +90,31 @@ std::string find_fault(const std::string& name, const fs::path& path, const fs::
 
 std::optional<fs::path> find_beside_scene(const std::string& name, const std::string& place, bool must_exist,
                                           LoadReport& report) {
-  const auto refuse = [&](const std::string& what, const std::string& cure, const std::string& hint = "") {
-    report.refuse({.what = what, .value = quote(name) + hint, .place = place, .cure = cure});
+  const auto refuse = [&](ProblemCode code, const std::string& what, const std::string& cure,
+                          const std::string& hint = "") {
+    report.refuse({.code = code, .what = what, .value = quote(name) + hint, .place = place, .cure = cure});
     return std::nullopt;
   };
-  if (name.empty()) return refuse("a file name is empty", "name a file");
-  if (name.find('\0') != std::string::npos) return refuse("a file name holds a zero byte", "name a file");
+  if (name.empty()) return refuse("scene.name.wrong", "a file name is empty", "name a file");
+  if (name.find('\0') != std::string::npos)
+    return refuse("scene.name.wrong", "a file name holds a zero byte", "name a file");
 
   const fs::path path = path_of(name);
   const fs::path folder = report.file().has_parent_path() ? report.file().parent_path() : fs::path(".");
   if (const std::string fault = find_fault(name, path, folder, report.root()); !fault.empty()) {
-    return refuse(fault, kStayInside);
+    return refuse("scene.name.outside", fault, kStayInside);
   }
 
   const fs::path file = folder / path;
   std::error_code error;
   report.add_source(file);
   const fs::file_status status = fs::status(file, error);
-  if (fs::is_directory(status)) return refuse("a file is a folder", "name a file");
-  if (fs::exists(status) && !fs::is_regular_file(status)) return refuse("a file is not a regular file", "name a file");
+  if (fs::is_directory(status)) return refuse("file.folder", "a file is a folder", "name a file");
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return refuse("file.kind", "a file is not a regular file", "name a file");
   if (!fs::exists(status)) {
-    if (must_exist) return refuse("a file does not exist", "put it beside the scene", suggest_path(folder, path));
+    if (must_exist)
+      return refuse("file.missing", "a file does not exist", "put it beside the scene", suggest_path(folder, path));
     return std::nullopt;
   }
   return file;

@@ -25,11 +25,14 @@ std::string name_size(const uvec2& size) {
 
 void check_sizes(const Image& reference, const Image& test) {
   if (reference.size != test.size) {
-    throw InputError({"the pictures have different sizes",
-                      name_size(reference.size) + " against " + name_size(test.size), "render both at the same size"});
+    throw InputError(
+        {"picture.pair.sizes",
+         "the pictures have different sizes, " + name_size(reference.size) + " and " + name_size(test.size), "",
+         "render both at the same size"});
   }
   if (reference.pixels.empty()) {
-    throw InputError({"the pictures have no pixels", name_size(reference.size), "give pictures with pixels"});
+    throw InputError({"picture.empty", "the pictures have no pixels (" + name_size(reference.size) + ")", "",
+                      "give pictures with pixels"});
   }
 }
 

@@ -59,9 +59,10 @@ std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const Chann
   const std::string in_reference = name_missing(reference.file(), of_reference, of_test);
   const std::string in_test = name_missing(test.file(), of_test, of_reference);
   if (!in_reference.empty() || !in_test.empty()) {
-    const std::string between = in_reference.empty() || in_test.empty() ? "" : "; ";
-    throw InputError(
-        {"the pictures have different channels", in_reference + between + in_test, "write both with the same --aov"});
+    const std::string between = in_reference.empty() || in_test.empty() ? "" : ", ";
+    throw InputError({"picture.pair.channels",
+                      "the pictures have different channels: " + in_reference + between + in_test, "",
+                      "write both with the same --aov"});
   }
   std::vector<ChannelPair> pairs;
   for (size_t i = 0; i < of_reference.size(); ++i) pairs.push_back({of_reference[i], of_test[i]});
@@ -69,9 +70,10 @@ std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const Chann
   std::erase_if(pairs, [](const ChannelPair& pair) { return is_color_channel(pair.reference->name); });
   for (const ChannelPair& pair : pairs) {
     if (pair.reference->size == pair.test->size) continue;
-    throw InputError({"the pictures have different sizes in " + pair.reference->name,
-                      name_size(pair.reference->size) + " against " + name_size(pair.test->size),
-                      "render both at the same size"});
+    throw InputError({"picture.pair.sizes",
+                      "the pictures have different sizes in " + pair.reference->name + ", " +
+                          name_size(pair.reference->size) + " and " + name_size(pair.test->size),
+                      "", "render both at the same size"});
   }
   return pairs;
 }

@@ -36,7 +36,8 @@ Image read_image_within(const fs::path& file, const uvec2& most) {
 Image read_image_bytes(std::span<const std::byte> file, const std::string& name, const uvec2& most) {
   const PictureFormat* format = find_picture_format(file);
   if (format == nullptr) {
-    throw InputError({"the picture has an unknown format", name, "name a picture such as .exr or .png"});
+    throw InputError(
+        {"picture.format", "the picture has an unknown format", name, "name a picture such as .exr or .png"});
   }
   const auto open = [&](const PicturesPlugin& plugin, auto... results) {
     return plugin.open_bytes(file.data(), file.size(), format->name, results...);

@@ -101,7 +101,8 @@ template <typename Function>
 void find_function(void* library, const char* name, const fs::path& file, Function& function) {
   function = reinterpret_cast<Function>(dlsym(library, name));
   if (function == nullptr) {
-    throw RunError({"the plugin that reads pictures is damaged (" + take_loader_error() + ")", file.string(), kCure});
+    throw RunError({"plugin.damaged", "the plugin that reads pictures is damaged (" + take_loader_error() + ")",
+                    file.string(), kCure});
   }
 }
 
@@ -124,8 +125,10 @@ fs::path find_plugin() {
     std::error_code error;
     if (fs::is_regular_file(folder / kFileName, error)) return folder / kFileName;
   }
-  throw RunError({std::string("the plugin that reads pictures, ") + kFileName + ", is missing",
-                  "searched in " + list_names(folders), kCure});
+  throw RunError(
+      {"plugin.missing",
+       std::string("the plugin that reads pictures, ") + kFileName + ", is missing in " + list_names(folders), "",
+       kCure});
 }
 
 /// OpenImageIO's libraries start threads before anyone calls them, and wait without an end or end the process where
@@ -149,13 +152,14 @@ PicturesPlugin load_plugin() {
   void* library = dlopen(file.c_str(), kHow);
   if (library == nullptr) {
     const char* cure = "install OpenImageIO, for example with the package libopenimageio-dev";
-    throw RunError({"the plugin that reads pictures cannot be loaded (" + take_loader_error() + ")", file.string(),
-                    cure_short_memory(cure)});
+    throw RunError({"plugin.loading", "the plugin that reads pictures cannot be loaded (" + take_loader_error() + ")",
+                    file.string(), cure_short_memory(cure)});
   }
   PicturesPlugin plugin;
   find_function(library, "promin_pictures_interface", file, plugin.interface);
   if (const uint32_t version = plugin.interface(); version != PROMIN_PICTURES_INTERFACE) {
-    throw RunError({"the plugin that reads pictures belongs to another version of promin (its interface is " +
+    throw RunError({"plugin.version",
+                    "the plugin that reads pictures belongs to another version of promin (its interface is " +
                         std::to_string(version) + ", not " + std::to_string(PROMIN_PICTURES_INTERFACE) + ")",
                     file.string(), kCure});
   }

@@ -13,9 +13,10 @@ std::string name_existing(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     refuse_lost_folder(file);
-    throw InputError({"the picture does not exist", file.string(), "check the path"});
+    throw InputError({"file.missing", "the picture does not exist", file.string(), "check the path"});
   }
-  if (!std::ifstream(file)) throw InputError({"the file cannot be opened", file.string(), "check its permissions"});
+  if (!std::ifstream(file))
+    throw InputError({"file.open", "the file cannot be opened", file.string(), "check its permissions"});
   return file.string();
 }
 
@@ -29,12 +30,14 @@ OpenedPicture::OpenedPicture(const std::filesystem::path& file)
 Image OpenedPicture::read(const uvec2& most) {
   if (info_.is_flat != 0 && (info_.width > most.x || info_.height > most.y)) {
     throw InputError(
-        {"the picture is too large (" + std::to_string(info_.width) + "x" + std::to_string(info_.height) + " pixels)",
-         name_, "use one of use one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
+        {"picture.large",
+         "the picture is too large (" + std::to_string(info_.width) + "x" + std::to_string(info_.height) + " pixels)",
+         name_, "use one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
   }
   check_flat(info_.is_flat != 0, info_.width, info_.height);
   if (info_.first_rgb_channel < 0) {
-    throw InputError({"the picture has neither channels R, G, B nor a luminance Y", name_, "convert it to RGB"});
+    throw InputError(
+        {"picture.channels", "the picture has neither channels R, G, B nor a luminance Y", name_, "convert it to RGB"});
   }
   Image image;
   image.size = uvec2(info_.width, info_.height);
@@ -57,13 +60,15 @@ void OpenedPicture::read_rows(uint32_t part, uint32_t first_row, uint32_t row_co
 
 void OpenedPicture::check_read(int status) const {
   if (is_done(status)) return;
-  throw InputError({std::string("the picture is damaged (") + message_.text + ")", name_, "write or export it again"});
+  throw InputError({"picture.damaged", std::string("the picture is damaged (") + message_.text + ")", name_,
+                    "write or export it again"});
 }
 
 void OpenedPicture::check_flat(bool is_flat, uint64_t width, uint64_t height) const {
-  if (!is_flat) throw InputError({"the picture is not two-dimensional", name_, "use a two-dimensional picture"});
+  if (!is_flat)
+    throw InputError({"picture.flat", "the picture is not two-dimensional", name_, "use a two-dimensional picture"});
   if (width * height <= kMaxReadPixels) return;
-  throw InputError({"the picture is too large (" + std::to_string(width * height) + " pixels)", name_,
+  throw InputError({"picture.large", "the picture is too large (" + std::to_string(width * height) + " pixels)", name_,
                     "use one of at most " + std::to_string(kMaxReadPixels) + " pixels"});
 }
 

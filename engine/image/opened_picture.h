@@ -23,7 +23,7 @@ class OpenedPicture {
     const bool is_open = is_done(open(plugin_, &opened, &info_, &message_));
     reader_ = {opened, plugin_.close};
     if (is_open) return;
-    throw InputError({std::string("the picture cannot be read (") + message_.text + ")", name_,
+    throw InputError({"picture.format", std::string("the picture cannot be read (") + message_.text + ")", name_,
                       "name a picture such as .exr or .png"});
   }
 

@@ -54,8 +54,8 @@ void PictureBytes::seek(uint64_t place) noexcept {
 
 void PictureBytes::check() const {
   if (error_ == 0) return;
-  throw RunError({std::string("the output file cannot be written (") + std::strerror(error_) + ")", target_.string(),
-                  "check the disk and permissions"});
+  throw RunError({"file.write", std::string("the output file cannot be written (") + std::strerror(error_) + ")",
+                  target_.string(), "check the disk and permissions"});
 }
 
 void PictureBytes::close() {

@@ -118,20 +118,20 @@ std::string find_scene(const Metadata& metadata) {
   return found == metadata.end() ? "" : found->second;
 }
 
-void check(bool is_so, const std::string& what, const char* cure) {
-  if (!is_so) throw UsageError({what, "in the picture to write", cure});
+void check(ProblemCode code, bool is_so, const std::string& what, const char* cure) {
+  if (!is_so) throw UsageError({code, what, "", cure});
 }
 
 /// Throws UsageError where parts of a picture do not suit each other: encoders read as much as the sizes state.
 void check_rows(const Image& image, std::span<const Channel> channels) {
   const size_t pixel_count = static_cast<size_t>(image.size.x) * image.size.y;
-  check(pixel_count > 0, "the picture has no pixels", "give it a width and a height");
-  check(image.pixels.size() == pixel_count,
+  check("picture.empty", pixel_count > 0, "the picture has no pixels", "give it a width and a height");
+  check("picture.size", image.pixels.size() == pixel_count,
         "the picture has " + std::to_string(image.pixels.size()) + " pixels, but its size requires " +
             std::to_string(pixel_count),
         "give width times height pixels");
   for (const Channel& channel : channels) {
-    check(channel.values.size() == pixel_count,
+    check("picture.size", channel.values.size() == pixel_count,
           "the channel " + channel.name + " has " + std::to_string(channel.values.size()) + " values for " +
               std::to_string(pixel_count) + " pixels",
           "give one for each pixel");
@@ -139,11 +139,13 @@ void check_rows(const Image& image, std::span<const Channel> channels) {
 }
 
 void check_header(const PictureHeader& header) {
-  check(header.size.x > 0 && header.size.y > 0, "the picture has no pixels", "give it a width and a height");
+  check("picture.empty", header.size.x > 0 && header.size.y > 0, "the picture has no pixels",
+        "give it a width and a height");
   if (!header.crop) return;
   const CropPlacement& crop = *header.crop;
   const auto is_within = [](uint32_t lo, uint32_t size, uint32_t whole) { return lo <= whole && size <= whole - lo; };
-  check(is_within(crop.lo.x, header.size.x, crop.full_size.x) && is_within(crop.lo.y, header.size.y, crop.full_size.y),
+  check("picture.crop",
+        is_within(crop.lo.x, header.size.x, crop.full_size.x) && is_within(crop.lo.y, header.size.y, crop.full_size.y),
         "the crop extends beyond the whole picture", "give the crop's position and the size of the whole picture");
 }
 
@@ -183,10 +185,10 @@ class PictureWriter::Impl {
 
   void write_rows(const Image& rows, std::span<const Channel> channels) {
     check_rows(rows, channels);
-    check(rows.size.x == header_.size.x && rows.size.y <= header_.size.y - rows_written_,
+    check("picture.rows", rows.size.x == header_.size.x && rows.size.y <= header_.size.y - rows_written_,
           "the rows do not match the picture's size", "give as many rows as the picture has, each of its width");
-    check(channels.size() == header_.channels.size(), "the rows have other channels than the picture",
-          "give values for all channels that were named");
+    check("picture.channels", channels.size() == header_.channels.size(),
+          "the rows have other channels than the picture", "give values for all channels that were named");
     if (exr_) {
       const size_t width = rows.size.x;
       const size_t most_rows = std::max<size_t>(kMostWords / (width * (3 + channels.size())), 1);
@@ -211,7 +213,8 @@ class PictureWriter::Impl {
   }
 
   void commit() {
-    check(rows_written_ == header_.size.y, "rows of the picture are missing", "write all rows before finishing");
+    check("picture.rows", rows_written_ == header_.size.y, "rows of the picture are missing",
+          "write all rows before finishing");
     encode([&] {
       if (plugin_) return plugin_->finish();
       exr_ ? exr_->finish() : jpeg_ ? jpeg_->finish() : png_->finish();
@@ -230,8 +233,8 @@ class PictureWriter::Impl {
     } catch (const Error&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw RunError({std::string("the picture cannot be encoded (") + error.what() + ")", file_.string(),
-                      "try another format, such as .exr or .png"});
+      throw RunError({"picture.encode", std::string("the picture cannot be encoded (") + error.what() + ")",
+                      file_.string(), "try another format, such as .exr or .png"});
     }
   }
 
@@ -249,7 +252,8 @@ class PictureWriter::Impl {
 
 PictureWriter::PictureWriter(const fs::path& file, const PictureHeader& header) {
   if (!is_writable_format(file)) {
-    throw UsageError({"the picture format is unknown: " + file.extension().string(), file.string(), kUseKnownEnding});
+    throw UsageError({"output.ending", "the output's ending \"" + file.extension().string() + "\" is unknown",
+                      file.string(), kUseKnownEnding});
   }
   check_header(header);
   impl_ = std::make_unique<Impl>(file, header);

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "core/file.h"
 #include "core/stopwatch.h"
@@ -80,7 +81,8 @@ std::string text_of(const Manifest& manifest) {
 Manifest read_manifest(const fs::path& folder) {
   const fs::path file = manifest_file(folder);
   const char* cure = "name another folder, or remove this one";
-  const InputError damaged({"the file is not the manifest of a job, or it is damaged", file.string(), cure});
+  const InputError damaged(
+      {"job.manifest.damaged", "the file is not the manifest of a job, or it is damaged", file.string(), cure});
   std::error_code none;
   if (fs::is_empty(file, none)) throw damaged;
   const std::vector<std::byte> bytes = read_file(file);
@@ -89,10 +91,13 @@ Manifest read_manifest(const fs::path& folder) {
     const Json json = Json::parse(text);
     const int format = json.at("promin_job").get<int>();
     if (format < kFormat) {
-      throw InputError({"the job was made by an older version of promin, which this version cannot continue",
+      throw InputError({"job.version.old",
+                        "the job was made by an older version of promin, which this version cannot continue",
                         file.string(), "make a new job in another folder, or remove this one"});
     }
-    if (format != kFormat) throw InputError({"the job was made by another version of promin", file.string(), cure});
+    if (format != kFormat) {
+      throw InputError({"job.version", "the job was made by another version of promin", file.string(), cure});
+    }
     Manifest manifest = manifest_of(json);
     // A manifest that was edited no longer matches its pieces.
     if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
@@ -147,8 +152,8 @@ void make_folder(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (!error) return;
   refuse_lost_folder(folder);
-  throw RunError(
-      {"the folder cannot be created (" + error.message() + ")", folder.string(), "check the disk and permissions"});
+  throw RunError({"folder.create", "the folder cannot be created (" + error.message() + ")", folder.string(),
+                  "check the disk and permissions"});
 }
 
 /// Returns whether the folder contains files that no job creates.
@@ -198,33 +203,32 @@ std::optional<Header> read_header_of(const fs::path& file) {
   return read_header(magic + "\n" + line + "\n");
 }
 
-/// A piece's content, or its fault.
-struct Reading {
-  std::optional<Content> content;
-  std::string why;
-};
+/// A piece's content, or its fault without place and cure.
+using Reading = std::variant<Content, Problem>;
 
 Reading read_piece(const fs::path& file, const std::string& job, const std::string& name) {
   std::vector<std::byte> bytes;
   try {
     bytes = read_file(file);
   } catch (const InputError& error) {
-    return {{}, error.problems().front().what};
+    return error.problems().front();
   }
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::optional<Header> header = read_header(text);
-  if (!header) return {{}, "the file is not a piece of a job, or it is cut short"};
+  if (!header) return Problem{"job.piece.cut", "the file is not a piece of a job, or it is cut short", "", ""};
   const auto word = [&](const char* key) { return header->json.value(key, std::string()); };
   try {
-    if (word("job") != job) return {{}, "the piece belongs to another job"};
-    if (word("piece") != name) return {{}, "the file holds another piece"};
+    if (word("job") != job) return Problem{"job.piece.other", "the piece belongs to another job", "", ""};
+    if (word("piece") != name) return Problem{"job.piece.other", "the file holds another piece", "", ""};
     Content content{word("description"), {bytes.begin() + static_cast<std::ptrdiff_t>(header->begin), bytes.end()}};
-    if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0})) return {{}, "the piece is cut short"};
-    if (word("description_sha256") != sha256_of(content.description)) return {{}, "the piece is damaged"};
-    if (word("sha256") != hash_of(content.bytes)) return {{}, "the piece is damaged"};
-    return {std::move(content), ""};
+    if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0}))
+      return Problem{"job.piece.cut", "the piece is cut short", "", ""};
+    if (word("description_sha256") != sha256_of(content.description))
+      return Problem{"job.piece.damaged", "the piece is damaged", "", ""};
+    if (word("sha256") != hash_of(content.bytes)) return Problem{"job.piece.damaged", "the piece is damaged", "", ""};
+    return content;
   } catch (const nlohmann::json::exception&) {
-    return {{}, "the piece is damaged"};
+    return Problem{"job.piece.damaged", "the piece is damaged", "", ""};
   }
 }
 
@@ -241,8 +245,8 @@ void append_line(const fs::path& file, const std::string& line, bool reaches_dis
   if (!is_written && end >= 0) static_cast<void>(ftruncate(descriptor, end));
   if (descriptor >= 0) close(descriptor);
   if (is_written) return;
-  throw RunError({std::string("the ledger cannot be written (") + std::strerror(error) + ")", file.string(),
-                  "check the disk and permissions"});
+  throw RunError({"file.write", std::string("the ledger cannot be written (") + std::strerror(error) + ")",
+                  file.string(), "check the disk and permissions"});
 }
 
 /// Seconds since 1970.
@@ -273,8 +277,8 @@ bool is_same_device(const Maker& a, const Maker& b) {
 InputFile describe_input(const fs::path& file) {
   const std::string path = fs::absolute(file).string();
   if (to_utf8(path) != path) {
-    throw InputError(
-        {"the name of the file or of its folder is not UTF-8, so a job cannot record it", file.string(), "rename it"});
+    throw InputError({"file.name", "the name of the file or of its folder is not UTF-8, so a job cannot record it",
+                      file.string(), "rename it"});
   }
   const std::string hash = sha256_of_file(file);
   return {file.filename().string(), fs::file_size(file), hash};
@@ -289,7 +293,8 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
   std::error_code error;
   // Others may create the same job at the same time; they write the same bytes.
   if (has_strangers(folder) && !fs::exists(manifest_file(folder), error)) {
-    throw UsageError({"the folder has files but no job", folder.string(), "name a new or an empty folder"});
+    throw UsageError(
+        {"job.folder.used", "the folder has files but no job", folder.string(), "name a new or an empty folder"});
   }
   if (!fs::exists(manifest_file(folder), error)) {
     write_text_file(manifest_file(folder), text_of(manifest));
@@ -306,18 +311,20 @@ Job Job::open(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     refuse_lost_folder(folder);
-    throw InputError({"there is no such folder", folder.string(), "name the folder that was given to --job"});
+    throw InputError(
+        {"job.folder.missing", "there is no such folder", folder.string(), "name the folder that was given to --job"});
   }
   if (!fs::exists(manifest_file(folder), error)) {
-    throw InputError({"there is no job in the folder", folder.string(), "name the folder that was given to --job"});
+    throw InputError(
+        {"job.missing", "there is no job in the folder", folder.string(), "name the folder that was given to --job"});
   }
   return {folder, read_manifest(folder)};
 }
 
 void Job::check_same(const Manifest& manifest) const {
   if (text_of(manifest_) == text_of(manifest)) return;
-  throw UsageError({"the folder belongs to another job: " + find_difference(manifest_, manifest), folder_.string(),
-                    "name another folder, or repeat that job's options and files"});
+  throw UsageError({"job.other", "the folder belongs to another job: " + find_difference(manifest_, manifest),
+                    folder_.string(), "name another folder, or repeat that job's options and files"});
 }
 
 fs::path Job::ledger_file() const {
@@ -332,15 +339,17 @@ PieceState Job::state_of(size_t piece, std::string* why) const {
   std::error_code error;
   if (!fs::exists(file_of(piece), error)) return PieceState::kMissing;
   const Reading reading = read_piece(file_of(piece), id_, manifest_.pieces[piece]);
-  if (reading.content) return PieceState::kDone;
-  if (why != nullptr) *why = reading.why;
+  const Problem* fault = std::get_if<Problem>(&reading);
+  if (fault == nullptr) return PieceState::kDone;
+  if (why != nullptr) *why = fault->what;
   return PieceState::kBad;
 }
 
 Content Job::read(size_t piece) const {
   Reading reading = read_piece(file_of(piece), id_, manifest_.pieces[piece]);
-  if (reading.content) return std::move(*reading.content);
-  throw InputError({reading.why, file_of(piece).string(), "run the job again to make this piece again"});
+  if (Content* content = std::get_if<Content>(&reading)) return std::move(*content);
+  const Problem& fault = std::get<Problem>(reading);
+  throw InputError({fault.code, fault.what, file_of(piece).string(), "run the job again to make this piece again"});
 }
 
 std::optional<Maker> Job::maker_of(size_t piece) const {
@@ -460,7 +469,8 @@ std::optional<size_t> check_build(const Job& job, const Maker& maker,
                                   const std::function<Content(size_t piece)>& make) {
   const std::optional<size_t> piece = find_piece_of_other_build(job, maker);
   if (!piece || make(*piece).bytes == job.read(*piece).bytes) return piece;
-  throw UsageError({fmt::format("the job's pieces were made by another build of promin, and this build makes piece {} "
+  throw UsageError({"job.build",
+                    fmt::format("the job's pieces were made by another build of promin, and this build makes piece {} "
                                 "with other bits",
                                 job.manifest().pieces[*piece]),
                     job.folder().string(), "continue with the first build, or name another folder"});

@@ -36,7 +36,7 @@ InputFile KnownHashes::describe(const fs::path& file) {
   }
   InputFile described = describe_input(file);
   if (!stamp || stamp_of(file) != stamp) {
-    throw InputError({"the file changed while it was read", file.string(), "try again"});
+    throw InputError({"file.changed", "the file changed while it was read", file.string(), "try again"});
   }
   known_[path] = {*stamp, described.sha256};
   has_more_ = true;

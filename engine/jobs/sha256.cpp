@@ -15,7 +15,8 @@ namespace promin::jobs {
 namespace {
 
 void check(int result) {
-  if (result != 1) throw RunError({"OpenSSL cannot compute SHA-256", "in libcrypto", "install it again"});
+  if (result != 1)
+    throw RunError({"hash.failed", "OpenSSL's libcrypto cannot compute SHA-256", "", "install it again"});
 }
 
 }  // namespace
@@ -60,7 +61,8 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   while (stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || stream.gcount() > 0) {
     hash.add(std::string_view(bytes.data(), static_cast<size_t>(stream.gcount())));
   }
-  if (!stream.eof()) throw InputError({"the file cannot be read to its end", file.string(), "check the disk"});
+  if (!stream.eof())
+    throw InputError({"file.read", "the file cannot be read to its end", file.string(), "check the disk"});
   return hash.finish();
 }
 

@@ -108,20 +108,22 @@ struct RayArray {
 RayArray parse_header(std::string_view header, const fs::path& file) {
   const auto entries = parse_dictionary(header);
   if (!entries || !entries->contains("descr") || !entries->contains("fortran_order") || !entries->contains("shape")) {
-    throw InputError({"the header is damaged", file.string(), kCure});
+    throw InputError({"rays.header", "the header is damaged", file.string(), kCure});
   }
   const std::string_view type = trim(entries->at("descr"));
   const bool is_double = type == "'<f8'" || type == "\"<f8\"";
   if (!is_double && type != "'<f4'" && type != "\"<f4\"") {
-    throw InputError({"the array's type is " + make_printable(type) + ", not '<f4' or '<f8'", file.string(), kCure});
+    throw InputError(
+        {"rays.type", "the array's type is " + make_printable(type) + ", not '<f4' or '<f8'", file.string(), kCure});
   }
   if (trim(entries->at("fortran_order")) != "False") {
-    throw InputError({"the array is in Fortran order", file.string(), kCure});
+    throw InputError({"rays.order", "the array is in Fortran order", file.string(), kCure});
   }
   const std::optional<uint64_t> count = parse_shape(entries->at("shape"));
   if (!count) {
-    throw InputError(
-        {"the array's shape is " + make_printable(trim(entries->at("shape"))) + ", not (N, 8)", file.string(), kCure});
+    throw InputError({"rays.shape",
+                      "the array's shape is " + make_printable(trim(entries->at("shape"))) + ", not (N, 8)",
+                      file.string(), kCure});
   }
   return {*count, 8 * (is_double ? sizeof(double) : sizeof(float))};
 }
@@ -157,26 +159,28 @@ constexpr std::string_view kHitType =
 
 RayReader::RayReader(const fs::path& file) : file_(file) {
   if (!fs::is_regular_file(find_input(file)))
-    throw InputError({"the file is not a regular file", file.string(), "name a .npy file"});
+    throw InputError({"file.kind", "the file is not a regular file", file.string(), "name a .npy file"});
   std::error_code error;
   const uint64_t file_bytes = fs::file_size(file, error);
   stream_.open(file, std::ios::binary);
-  if (!stream_ || error) throw InputError({"the file cannot be opened", file.string(), "check its permissions"});
+  if (!stream_ || error)
+    throw InputError({"file.open", "the file cannot be opened", file.string(), "check its permissions"});
 
   std::array<char, 12> head{};
   stream_.read(head.data(), 8);
   const char version = head[6];
   if (!stream_ || std::string_view(head.data(), kMagic.size()) != kMagic || version < 1 || version > 3) {
-    throw InputError({"the file is not a NumPy array", file.string(), kCure});
+    throw InputError({"rays.kind", "the file is not a NumPy array", file.string(), kCure});
   }
   const std::streamsize length_bytes = version == 1 ? 2 : 4;
   stream_.read(head.data() + 8, length_bytes);
   uint32_t header_bytes = 0;
   std::memcpy(&header_bytes, head.data() + 8, static_cast<size_t>(length_bytes));
-  if (!stream_ || header_bytes > kMaxHeaderBytes) throw InputError({"the header is damaged", file.string(), kCure});
+  if (!stream_ || header_bytes > kMaxHeaderBytes)
+    throw InputError({"rays.header", "the header is damaged", file.string(), kCure});
   std::string header(header_bytes, '\0');
   if (!stream_.read(header.data(), header_bytes)) {
-    throw InputError({"the file ends within its header", file.string(), kCure});
+    throw InputError({"rays.short", "the file ends within its header", file.string(), kCure});
   }
   const RayArray array = parse_header(header, file);
   count_ = array.count;
@@ -184,7 +188,8 @@ RayReader::RayReader(const fs::path& file) : file_(file) {
   begin_ = stream_.tellg();
   const uint64_t data_bytes = file_bytes - (8 + static_cast<uint64_t>(length_bytes) + header_bytes);
   if (data_bytes % ray_bytes_ != 0 || data_bytes / ray_bytes_ != count_) {
-    throw InputError({"the header declares " + std::to_string(count_) + " rays, but the file holds " +
+    throw InputError({"rays.short",
+                      "the header declares " + std::to_string(count_) + " rays, but the file holds " +
                           std::to_string(data_bytes) + " bytes of rays, " + std::to_string(ray_bytes_) + " each",
                       file.string(), "write the file again with NumPy"});
   }
@@ -218,7 +223,7 @@ void RayReader::convert(std::span<Ray> rays, const dvec3& center) {
 void RayReader::read_bytes(std::span<std::byte> bytes) {
   if (bytes.empty()) return;
   if (!stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-    throw InputError({"the file cannot be read to its end", file_.string(), "check the disk"});
+    throw InputError({"file.read", "the file cannot be read to its end", file_.string(), "check the disk"});
   }
 }
 
@@ -269,8 +274,8 @@ void ArrayWriter::commit_together(std::initializer_list<ArrayWriter*> writers) {
 
 void ArrayWriter::check() const {
   if (stream_) return;
-  throw RunError({std::string("the output file cannot be written (") + std::strerror(errno) + ")", target_.string(),
-                  "check the disk and permissions"});
+  throw RunError({"file.write", std::string("the output file cannot be written (") + std::strerror(errno) + ")",
+                  target_.string(), "check the disk and permissions"});
 }
 
 HitWriter::HitWriter(const fs::path& file, std::optional<uint64_t> count) : ArrayWriter(file, kHitType, count) {}

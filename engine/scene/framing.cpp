@@ -93,17 +93,18 @@ dmat3 turn_up_to(const dvec3& up) {
 dvec3 normalize_up(const vec3& up) {
   const double length = glm::length(dvec3(up));
   if (length > 0.0 && std::isfinite(length)) return dvec3(up) / length;
-  throw UsageError({"the scene's up direction is zero or not finite", "in a framing", "give a direction"});
+  throw UsageError({"framing.up", "the scene's up direction is zero or not finite", "framing", "give a direction"});
 }
 
 void check_aspect_ratio(float aspect_ratio) {
   if (aspect_ratio > 0.0F && std::isfinite(aspect_ratio)) return;
-  throw UsageError({"the aspect ratio is not positive and finite", "in a framing", "give width over height"});
+  throw UsageError(
+      {"framing.aspect", "the aspect ratio is not positive and finite", "framing", "give width over height"});
 }
 
 void check_fit(float fit) {
   if (fit >= kMinFit && fit <= 1.0F) return;
-  throw UsageError({"the part of the picture to cover is out of range", "in a framing", "give 0.05 to 1"});
+  throw UsageError({"framing.fit", "the part of the picture to cover is out of range", "framing", "give 0.05 to 1"});
 }
 
 /// The axes of a camera's picture, orthonormal.

@@ -20,8 +20,8 @@ namespace {
 /// The geometry of an object that has one. Throws InputError if it is not there.
 const Geometry& geometry_of(const Scene& scene, const Object& object) {
   if (object.geometry < scene.geometries.size()) return scene.geometries[object.geometry];
-  throw InputError({"an object refers to a geometry that does not exist", "object " + object.name,
-                    "see the problems that validate() returns"});
+  throw InputError({"scene.reference.range", "an object refers to a geometry that does not exist",
+                    "object " + object.name, "see the problems that validate() returns"});
 }
 
 /// Computes the bounds of an object in the world, without a copy of its mesh.
@@ -44,7 +44,7 @@ struct BoundsInWorld {
     for (int i = 0; i < 3; ++i) {
       const uint32_t vertex = mesh.triangles[triangle][i];
       if (vertex >= mesh.positions.size()) {
-        throw InputError({"a triangle refers to a position that does not exist", "in a mesh",
+        throw InputError({"scene.reference.range", "a triangle refers to a position that does not exist", "mesh",
                           "see the problems that validate() returns"});
       }
       const vec3& p = mesh.positions[vertex];

@@ -87,28 +87,29 @@ class Validation {
 
   /// Adds a problem unless `is_so`. `what` is a sentence, or a function that makes it.
   template <class What>
-  bool check(bool is_so, const What& what, const Place& where, const char* cure) {
+  bool check(ProblemCode code, bool is_so, const What& what, const Place& where, const char* cure) {
     if (is_so) return true;
     if constexpr (std::is_invocable_v<What>) {
-      problems_.push_back({what(), where.text(), cure});
+      problems_.push_back({code, what(), where.text(), cure});
     } else {
-      problems_.push_back({what, where.text(), cure});
+      problems_.push_back({code, what, where.text(), cure});
     }
     return false;
   }
 
   void check_color(const vec3& color, const Place& where) {
-    check(is_color(color), "a colour or factor is negative, beyond 1e15 or not a number", where,
+    check("scene.color.range", is_color(color), "a colour or factor is negative, beyond 1e15 or not a number", where,
           "use numbers from 0 to 1e15");
   }
 
   void check_share(float share, const Place& where) {
-    check(share >= 0.0F && share <= 1.0F, "a weight is not between 0 and 1", where, "use a number from 0 to 1");
+    check("scene.weight.range", share >= 0.0F && share <= 1.0F, "a weight is not between 0 and 1", where,
+          "use a number from 0 to 1");
   }
 
   void check_film(float thickness, const Place& where) {
-    check(thickness >= 0.0F && std::isfinite(thickness), "the thickness is negative or not finite", where,
-          "use 0 or a positive number of nanometres");
+    check("scene.number.range", thickness >= 0.0F && std::isfinite(thickness),
+          "the thickness is negative or not finite", where, "use 0 or a positive number of nanometres");
   }
 
   void check_model(const Phong& phong, const Place& place) {
@@ -117,9 +118,10 @@ class Validation {
     check_color(phong.specular, place + ".specular");
     check_color(phong.reflection, place + ".reflection");
     check_color(phong.transmission, place + ".transmission");
-    check(phong.ior > 0.0F && std::isfinite(phong.ior), "the index of refraction is not positive and finite",
-          place + ".ior", "use a number above 0");
-    check(std::isfinite(phong.shininess), "the shininess is not finite", place + ".shininess", "use a finite exponent");
+    check("scene.number.range", phong.ior > 0.0F && std::isfinite(phong.ior),
+          "the index of refraction is not positive and finite", place + ".ior", "use a number above 0");
+    check("scene.number.range", std::isfinite(phong.shininess), "the shininess is not finite", place + ".shininess",
+          "use a finite exponent");
   }
 
   void check_model(const MetallicRoughness& material, const Place& place) {
@@ -127,13 +129,13 @@ class Validation {
     check_share(material.metallic, place + ".metallic");
     check_share(material.roughness, place + ".roughness");
     check_share(material.specular, place + ".specular");
-    check(std::isfinite(material.normal_scale), "the scale is not finite", place + ".normal_scale",
-          "use a finite number");
+    check("scene.number.range", std::isfinite(material.normal_scale), "the scale is not finite",
+          place + ".normal_scale", "use a finite number");
     check_share(material.occlusion_strength, place + ".occlusion_strength");
     check_share(material.clearcoat, place + ".clearcoat");
     check_share(material.clearcoat_roughness, place + ".clearcoat_roughness");
-    check(std::isfinite(material.clearcoat_normal_scale), "the scale is not finite", place + ".clearcoat_normal_scale",
-          "use a finite number");
+    check("scene.number.range", std::isfinite(material.clearcoat_normal_scale), "the scale is not finite",
+          place + ".clearcoat_normal_scale", "use a finite number");
     check_color(material.specular_color, place + ".specular_color");
     for (int i = 0; i < 3; ++i) check_share(material.sheen_color[i], place + ".sheen_color");
     check_share(material.sheen_roughness, place + ".sheen_roughness");
@@ -143,29 +145,31 @@ class Validation {
       check_share(material.diffuse_transmission_color[i], place + ".diffuse_transmission_color");
     }
     check_share(material.iridescence, place + ".iridescence");
-    check(material.iridescence_ior >= 1.0F && std::isfinite(material.iridescence_ior),
+    check("scene.number.range", material.iridescence_ior >= 1.0F && std::isfinite(material.iridescence_ior),
           "the index of refraction is not finite or below 1", place + ".iridescence_ior", "use a number of 1 or more");
     check_film(material.iridescence_thickness_minimum, place + ".iridescence_thickness_minimum");
     check_film(material.iridescence_thickness_maximum, place + ".iridescence_thickness_maximum");
     check_share(material.anisotropy, place + ".anisotropy");
-    check(std::isfinite(material.anisotropy_rotation), "the angle is not finite", place + ".anisotropy_rotation",
-          "use a finite number");
-    check(material.thickness >= 0.0F, "the thickness is negative or not a number", place + ".thickness",
-          "use 0 or a positive number");
+    check("scene.number.range", std::isfinite(material.anisotropy_rotation), "the angle is not finite",
+          place + ".anisotropy_rotation", "use a finite number");
+    check("scene.number.range", material.thickness >= 0.0F, "the thickness is negative or not a number",
+          place + ".thickness", "use 0 or a positive number");
     for (int i = 0; i < 3; ++i) check_share(material.attenuation_color[i], place + ".attenuation_color");
-    check(material.attenuation_distance > 0.0F, "the distance is not positive", place + ".attenuation_distance",
-          "use a positive number, or infinity if nothing is absorbed");
-    check(material.dispersion >= 0.0F && std::isfinite(material.dispersion), "the dispersion is negative or not finite",
-          place + ".dispersion", "use 0 or a positive number");
-    check(material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
+    check("scene.number.range", material.attenuation_distance > 0.0F, "the distance is not positive",
+          place + ".attenuation_distance", "use a positive number, or infinity if nothing is absorbed");
+    check("scene.number.range", material.dispersion >= 0.0F && std::isfinite(material.dispersion),
+          "the dispersion is negative or not finite", place + ".dispersion", "use 0 or a positive number");
+    check("scene.number.range", material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
           "the index of refraction is not finite or below 1", place + ".ior", "use 0, or a number of 1 or more");
   }
 
   void check_model(const Unlit& unlit, const Place& place) { check_color(unlit.color, place + ".color"); }
 
   void check_place(const TextureSlot& slot, const Place& place) {
-    check(slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set", "use 0 or 1");
-    check(is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place, "use finite numbers");
+    check("scene.texture.set", slot.uv_set <= 1, "the set of texture coordinates is neither 0 nor 1", place + ".uv_set",
+          "use 0 or 1");
+    check("scene.texture.transform", is_finite(slot.to_u) && is_finite(slot.to_v), "the transform is not finite", place,
+          "use finite numbers");
   }
 
   void check_materials(std::span<const Material> materials) {
@@ -177,10 +181,11 @@ class Validation {
       for_each_slot(material, [&](const TextureSlot& slot, const char* name, ImageUse /*use*/) {
         if (slot.exists()) check_place(slot, place + "." + name);
       });
-      check(static_cast<uint32_t>(material.alpha_mode) <= static_cast<uint32_t>(AlphaMode::kBlend),
+      check("scene.choice.unknown",
+            static_cast<uint32_t>(material.alpha_mode) <= static_cast<uint32_t>(AlphaMode::kBlend),
             "the alpha mode is not a value of AlphaMode", place + ".alpha_mode", "use one of its values");
       check_share(material.alpha, place + ".alpha");
-      check(std::isfinite(material.alpha_cutoff) && material.alpha_cutoff >= 0.0F,
+      check("scene.number.range", std::isfinite(material.alpha_cutoff) && material.alpha_cutoff >= 0.0F,
             "the alpha cutoff is negative or not finite", place + ".alpha_cutoff", "use a number of 0 or more");
     }
   }
@@ -188,19 +193,19 @@ class Validation {
   void check_images(const Scene& scene) {
     for (size_t i = 0; i < scene.images.size(); ++i) {
       const Place place("images", i);
-      if (!check(scene.images[i] != nullptr, "the texture's image is missing", place,
+      if (!check("scene.image.missing", scene.images[i] != nullptr, "the texture's image is missing", place,
                  "give an empty image if the texture has none"))
         continue;
       const TextureImage& image = *scene.images[i];
-      check(static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal),
+      check("scene.choice.unknown", static_cast<uint32_t>(image.use) <= static_cast<uint32_t>(ImageUse::kNormal),
             "the image's use is not a value of ImageUse", place + ".use", "use one of its values");
       if (image.texels.empty()) continue;
       check(
-          image.size.x <= kMaxTextureSide && image.size.y <= kMaxTextureSide,
+          "scene.image.size", image.size.x <= kMaxTextureSide && image.size.y <= kMaxTextureSide,
           [] { return "an image has a side longer than " + std::to_string(kMaxTextureSide); }, place + ".size",
           "make it smaller");
       check(
-          image.texels.size() == uint64_t{image.size.x} * image.size.y,
+          "scene.image.texels", image.texels.size() == uint64_t{image.size.x} * image.size.y,
           [&] {
             return "there are " + std::to_string(image.texels.size()) +
                    " texels, a number that does not match the size";
@@ -210,9 +215,10 @@ class Validation {
     for (size_t i = 0; i < scene.textures.size(); ++i) {
       const Texture& texture = scene.textures[i];
       const Place place("textures", i);
-      check(texture.image < scene.images.size(), "the image is out of range", place + ".image", "use one that exists");
+      check("scene.reference.range", texture.image < scene.images.size(), "the image is out of range", place + ".image",
+            "use one that exists");
       for (const TextureWrap wrap : {texture.wrap_u, texture.wrap_v}) {
-        check(static_cast<uint32_t>(wrap) <= static_cast<uint32_t>(TextureWrap::kClampToEdge),
+        check("scene.choice.unknown", static_cast<uint32_t>(wrap) <= static_cast<uint32_t>(TextureWrap::kClampToEdge),
               "the wrap mode is not a value of TextureWrap", place, "use one that exists");
       }
     }
@@ -221,7 +227,8 @@ class Validation {
   /// The number of textures is known only for a whole scene.
   void check_slot(const TextureSlot& slot, size_t texture_count, const Place& place) {
     if (!slot.exists()) return;
-    check(slot.texture < texture_count, "the texture is out of range", place + ".texture", "use one that exists");
+    check("scene.reference.range", slot.texture < texture_count, "the texture is out of range", place + ".texture",
+          "use one that exists");
   }
 
   void check_slots(const Scene& scene) {
@@ -238,19 +245,20 @@ class Validation {
       const Place place("lights", i);
       check_color(light.diffuse, place + ".diffuse");
       check_color(light.specular, place + ".specular");
-      check(is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15", place + ".position",
-            "use a smaller coordinate");
-      check(std::abs(glm::length(light.direction) - 1.0F) <= kDirectionTolerance, "the direction is not a unit vector",
-            place + ".direction", "normalise it");
-      check(static_cast<uint32_t>(light.kind) < kLightKindCount, "the light's kind is not a value of LightKind",
-            place + ".kind", "use one of its values");
-      check(light.attenuation == Attenuation::kNone || light.attenuation == Attenuation::kInverseSquare,
+      check("scene.position.range", is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15",
+            place + ".position", "use a smaller coordinate");
+      check("scene.light.direction", std::abs(glm::length(light.direction) - 1.0F) <= kDirectionTolerance,
+            "the direction is not a unit vector", place + ".direction", "normalise it");
+      check("scene.choice.unknown", static_cast<uint32_t>(light.kind) < kLightKindCount,
+            "the light's kind is not a value of LightKind", place + ".kind", "use one of its values");
+      check("scene.choice.unknown",
+            light.attenuation == Attenuation::kNone || light.attenuation == Attenuation::kInverseSquare,
             "the attenuation is not a value of Attenuation", place + ".attenuation", "use one of its values");
-      check(light.range > 0.0F, "the range is not positive", place + ".range",
+      check("scene.light.range", light.range > 0.0F, "the range is not positive", place + ".range",
             "use a positive number, or infinity for no limit");
       const bool are_angles = light.inner_cone_angle >= 0.0F && light.inner_cone_angle < light.outer_cone_angle &&
                               light.outer_cone_angle <= 1.5707964F;
-      check(light.kind != LightKind::kSpot || are_angles,
+      check("scene.light.cone", light.kind != LightKind::kSpot || are_angles,
             "the cone's angles are out of range, or the inner one is not the smaller", place + ".outer_cone_angle",
             "use 0 <= inner < outer <= pi/2");
     }
@@ -259,8 +267,9 @@ class Validation {
   void check_environment(const Environment& environment) {
     check_color(environment.ambient, "environment.ambient");
     check_color(environment.background, "environment.background");
-    check(std::isfinite(environment.rotation), "the rotation is not finite", "environment.rotation", "use an angle");
-    check(environment.intensity >= 0.0F && environment.intensity <= kMaxPower,
+    check("scene.number.range", std::isfinite(environment.rotation), "the rotation is not finite",
+          "environment.rotation", "use an angle");
+    check("scene.number.range", environment.intensity >= 0.0F && environment.intensity <= kMaxPower,
           "the intensity is negative, beyond 1e15 or not a number", "environment.intensity",
           "use a number from 0 to 1e15");
     std::visit([&](const auto& sky) { check_sky(sky); }, environment.sky);
@@ -270,7 +279,7 @@ class Validation {
   void check_backdrop(const Backdrop& backdrop) {
     check_color(backdrop.top, "environment.backdrop.top");
     check_color(backdrop.bottom, "environment.backdrop.bottom");
-    check(backdrop.radiance >= 0.0F && backdrop.radiance <= kMaxPower,
+    check("scene.number.range", backdrop.radiance >= 0.0F && backdrop.radiance <= kMaxPower,
           "the factor is negative, beyond 1e15 or not a number", "environment.backdrop.radiance",
           "use a number from 0 to 1e15");
   }
@@ -278,7 +287,8 @@ class Validation {
   void check_sky(std::monostate) {}
 
   void check_sky(const Studio& studio) {
-    check(std::isfinite(studio.front), "the sky's front angle is not finite", "environment.sky.front", "use an angle");
+    check("scene.number.range", std::isfinite(studio.front), "the sky's front angle is not finite",
+          "environment.sky.front", "use an angle");
   }
 
   void check_sky(const GradientSky& sky) {
@@ -286,7 +296,7 @@ class Validation {
     check_color(sky.horizon, "environment.sky.horizon");
     check_color(sky.bottom, "environment.sky.bottom");
     const auto check_curve = [&](float curve, const Place& where) {
-      check(curve > 0.0F && std::isfinite(curve), "the curve is not positive", where,
+      check("scene.number.range", curve > 0.0F && std::isfinite(curve), "the curve is not positive", where,
             "use a positive number; 1 gives an even transition");
     };
     check_curve(sky.top_curve, "environment.sky.top_curve");
@@ -295,31 +305,34 @@ class Validation {
 
   void check_sky(const Panorama& panorama) {
     const Place place = "environment.sky.image";
-    if (!check(panorama.image != nullptr, "the panorama has no image", place, "give it an image")) return;
+    if (!check("scene.panorama.missing", panorama.image != nullptr, "the panorama has no image", place,
+               "give it an image"))
+      return;
     const Image& image = *panorama.image;
     const uint64_t pixel_count = uint64_t{image.size.x} * image.size.y;
-    if (!check(pixel_count > 0 && pixel_count == image.pixels.size(),
+    if (!check("scene.panorama.size", pixel_count > 0 && pixel_count == image.pixels.size(),
                "the number of the panorama's pixels does not match its size", place + ".pixels",
                "give width times height pixels") ||
-        !check(image.size.x <= Panorama::kMaxWidth && image.size.y <= Panorama::kMaxHeight,
+        !check("scene.panorama.size", image.size.x <= Panorama::kMaxWidth && image.size.y <= Panorama::kMaxHeight,
                "the panorama is larger than 16384x8192", place + ".size", "make it smaller")) {
       return;
     }
     const auto wrong = std::ranges::find_if_not(image.pixels, is_color);
     if (wrong == image.pixels.end()) return;
     const auto index = static_cast<size_t>(wrong - image.pixels.begin());
-    check(false, describe_wrong_pixel(*wrong, {index % image.size.x, index / image.size.x}), place + ".pixels",
-          "use numbers from 0 to 1e15");
+    check("scene.panorama.pixel", false, describe_wrong_pixel(*wrong, {index % image.size.x, index / image.size.x}),
+          place + ".pixels", "use numbers from 0 to 1e15");
   }
 
   void check_cameras(std::span<const Camera> cameras) {
     for (size_t i = 0; i < cameras.size(); ++i) {
       const Place place("cameras", i);
-      check(is_in_range(dvec3(cameras[i].eye)), "the eye is not finite or beyond 1e15", place + ".eye",
-            "use a smaller coordinate");
+      check("scene.camera.eye", is_in_range(dvec3(cameras[i].eye)), "the eye is not finite or beyond 1e15",
+            place + ".eye", "use a smaller coordinate");
       const uvec2& resolution = cameras[i].resolution;
       const bool is_size = std::min(resolution.x, resolution.y) > 0 && std::max(resolution.x, resolution.y) <= kMaxSide;
-      check(resolution == uvec2(0) || is_size, "the resolution has a side of 0 or over 32768", place + ".resolution",
+      check("scene.camera.resolution", resolution == uvec2(0) || is_size,
+            "the resolution has a side of 0 or over 32768", place + ".resolution",
             "use sides of 1 to 32768, or 0 0 for no resolution");
       check_camera(cameras[i], place);
     }
@@ -329,64 +342,70 @@ class Validation {
     const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::length(camera.up) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::dot(camera.look, camera.up)) <= kBasisTolerance;
-    check(is_basis, "look and up are not orthonormal", place, "make them unit vectors at right angles");
-    check(camera.projection == Projection::kPerspective || camera.projection == Projection::kOrthographic,
+    check("scene.camera.basis", is_basis, "look and up are not orthonormal", place,
+          "make them unit vectors at right angles");
+    check("scene.choice.unknown",
+          camera.projection == Projection::kPerspective || camera.projection == Projection::kOrthographic,
           "the projection is not a value of Projection", place + ".projection", "use one of its values");
-    check(camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range", place + ".yfov",
-          "use an angle in (0, pi)");
-    check(camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive", place + ".ymag",
-          "use a positive number");
-    check(camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye", place + ".near",
-          "use a distance of 0 or more");
+    check("scene.camera.range", camera.yfov > 0.0F && camera.yfov < 3.14159265F, "the field of view is out of range",
+          place + ".yfov", "use an angle in (0, pi)");
+    check("scene.camera.range", camera.ymag > 0.0F && std::isfinite(camera.ymag), "the half height is not positive",
+          place + ".ymag", "use a positive number");
+    check("scene.camera.range", camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye",
+          place + ".near", "use a distance of 0 or more");
   }
 
   void check_view(const View& view) {
     // Beyond 1e15 too: a camera that frames a scene of that size stands there.
-    check(is_finite(view.camera.eye), "the eye is not finite", "view.camera.eye", "use finite coordinates");
+    check("scene.camera.eye", is_finite(view.camera.eye), "the eye is not finite", "view.camera.eye",
+          "use finite coordinates");
     check_camera(view.camera, "view.camera");
-    check(view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "view.size", "give it a width and a height");
-    check(std::max(view.size.x, view.size.y) <= kMaxSide, "a side of the picture is longer than 32768 pixels",
-          "view.size", "use at most 32768");
-    check(view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
+    check("view.size.range", view.size.x > 0 && view.size.y > 0, "the picture has no pixels", "view.size",
+          "give it a width and a height");
+    check("view.size.range", std::max(view.size.x, view.size.y) <= kMaxSide,
+          "a side of the picture is longer than 32768 pixels", "view.size", "use at most 32768");
+    check("view.samples.range", view.samples_per_pixel >= 1 && view.samples_per_pixel <= kMaxSamplesPerPixel,
           "the number of samples per pixel is out of range", "view.samples_per_pixel", "use 1 to 65535");
-    check(static_cast<size_t>(view.filter) < pixel_filter_names().size(), "the filter is not a value of PixelFilter",
-          "view.filter", "use one of its values");
-    check(view.filter_width >= kMinFilterWidth && view.filter_width <= kMaxFilterWidth,
+    check("scene.choice.unknown", static_cast<size_t>(view.filter) < pixel_filter_names().size(),
+          "the filter is not a value of PixelFilter", "view.filter", "use one of its values");
+    check("view.filter.range", view.filter_width >= kMinFilterWidth && view.filter_width <= kMaxFilterWidth,
           "the filter width is out of range", "view.filter_width", "use 0.01 to 32 pixels");
-    check(view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth", "use 0 to 1000");
-    check(static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(),
+    check("view.depth.range", view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth",
+          "use 0 to 1000");
+    check("scene.choice.unknown", static_cast<size_t>(view.mode.debug_view) < debug_view_names().size(),
           "the debug view is not a value of DebugView", "view.mode.debug_view", "use one of its values");
     if (view.error_target) check_error_target(view);
     if (!view.crop) return;
-    check(view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y, "the crop is empty", "view.crop",
-          "use a window of pixels with lo < hi");
-    check(view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y, "the crop extends beyond the picture",
-          "view.crop", "use a crop inside the picture");
+    check("view.crop.empty", view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y,
+          "the crop is empty", "view.crop", "use a window of pixels with lo < hi");
+    check("view.crop.outside", view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y,
+          "the crop extends beyond the picture", "view.crop", "use a crop inside the picture");
   }
 
   void check_error_target(const View& view) {
     const ErrorTarget& target = *view.error_target;
-    check(target.error >= kMinTargetError && target.error <= 1.0F, "the target error is out of range",
-          "view.error_target.error", "use 1/65536 to 1");
-    check(std::has_single_bit(target.min_samples) && target.min_samples >= kMinRefinedSamples,
+    check("view.target.range", target.error >= kMinTargetError && target.error <= 1.0F,
+          "the target error is out of range", "view.error_target.error", "use 1/65536 to 1");
+    check("view.target.range", std::has_single_bit(target.min_samples) && target.min_samples >= kMinRefinedSamples,
           "the smallest number of samples is out of range or not a power of two", "view.error_target.min_samples",
           "use a power of two of 4 or more");
-    check(std::has_single_bit(target.max_samples) && target.max_samples >= target.min_samples &&
+    check("view.target.range",
+          std::has_single_bit(target.max_samples) && target.max_samples >= target.min_samples &&
               target.max_samples <= kMaxRefinedSamples,
           "the largest number of samples is out of range or not a power of two", "view.error_target.max_samples",
           "use a power of two from the smallest number to 32768");
-    check(target.white > 0.0F && std::isfinite(target.white),
+    check("view.target.range", target.white > 0.0F && std::isfinite(target.white),
           "the radiance that is shown as white is not positive and finite", "view.error_target.white",
           "use 1, or 2 to the power of -EV");
     if (target.display) {
-      check(std::isfinite(target.display->exposure_ev), "the exposure is not finite",
+      check("view.target.range", std::isfinite(target.display->exposure_ev), "the exposure is not finite",
             "view.error_target.display.exposure_ev", "use 0, or the exposure of the picture's display");
-      check(static_cast<size_t>(target.display->tone_mapping) < tone_mapping_names().size(),
+      check("scene.choice.unknown", static_cast<size_t>(target.display->tone_mapping) < tone_mapping_names().size(),
             "the tone mapping is not a value of ToneMapping", "view.error_target.display.tone_mapping",
             "use one of its values");
     }
-    check(view.mode.debug_view == DebugView::kNone, "a debug view has no error estimate", "view.error_target",
-          "leave the error target out, or render full shading");
+    check("view.target.debug", view.mode.debug_view == DebugView::kNone, "a debug view has no error estimate",
+          "view.error_target", "leave the error target out, or render full shading");
   }
 
   void check_geometry(const Scene& scene, size_t index) {
@@ -405,12 +424,12 @@ class Validation {
                std::to_string(count);
       };
     };
-    const bool has_material =
-        check(object.material < scene.materials.size(), describe("material", object.material, scene.materials.size()),
-              place + ".material", "use one that exists");
-    const bool has_geometry =
-        check(object.geometry < scene.geometries.size(), describe("geometry", object.geometry, scene.geometries.size()),
-              place + ".geometry", "use one that exists, or Object::kNoGeometry");
+    const bool has_material = check("scene.reference.range", object.material < scene.materials.size(),
+                                    describe("material", object.material, scene.materials.size()), place + ".material",
+                                    "use one that exists");
+    const bool has_geometry = check("scene.reference.range", object.geometry < scene.geometries.size(),
+                                    describe("geometry", object.geometry, scene.geometries.size()), place + ".geometry",
+                                    "use one that exists, or Object::kNoGeometry");
     return has_material && has_geometry;
   }
 
@@ -420,14 +439,14 @@ class Validation {
     for (int column = 0; column < 4; ++column) {
       for (int row = 0; row < 4; ++row) is_finite = is_finite && std::isfinite(m[column][row]);
     }
-    if (!check(is_finite, "the transform is not finite", place, "use finite numbers")) return;
+    if (!check("scene.transform.range", is_finite, "the transform is not finite", place, "use finite numbers")) return;
     const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
-    check(is_affine, "the transform is not affine", place, "make its last row 0 0 0 1");
+    check("scene.transform.affine", is_affine, "the transform is not affine", place, "make its last row 0 0 0 1");
     const dmat3 linear(m);
     const double volume = std::abs(glm::determinant(linear));
     const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-    check(volume > kLeastVolume * lengths && std::isfinite(lengths), "the transform is singular", place,
-          "use non-zero scales and axes that differ");
+    check("scene.transform.singular", volume > kLeastVolume * lengths && std::isfinite(lengths),
+          "the transform is singular", place, "use non-zero scales and axes that differ");
   }
 
   /// Checks an object whose references all exist.
@@ -448,7 +467,7 @@ class Validation {
     for (int corner = 0; corner < 8 && !mesh.positions.empty(); ++corner) {
       const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
                     (corner & 4) != 0 ? box.hi.z : box.lo.z);
-      if (!check(is_in_range(dvec3(object.world_from_object * dvec4(p, 1.0))),
+      if (!check("scene.position.far", is_in_range(dvec3(object.world_from_object * dvec4(p, 1.0))),
                  "the mesh extends beyond 1e15 in the world", place, "use a smaller translation or scale")) {
         return;
       }
@@ -458,15 +477,15 @@ class Validation {
   template <class Shape>
   void check_in_world(const Shape& shape, const Object& object, const Place& place) {
     const Placement placement(object.world_from_object);
-    if (!check(promin::place(shape, placement).has_value(), "the transform distorts the shape",
+    if (!check("scene.shape.distorted", promin::place(shape, placement).has_value(), "the transform distorts the shape",
                place + ".world_from_object", "scale all axes equally, or use a mesh")) {
       return;
     }
-    check(is_in_range(center_of(shape, placement)), "the shape lies beyond 1e15 in the world", place,
-          "use a smaller translation");
+    check("scene.position.far", is_in_range(center_of(shape, placement)), "the shape lies beyond 1e15 in the world",
+          place, "use a smaller translation");
     for (const NamedSize& size : sizes_of(shape, placement)) {
       check(
-          is_valid(size),
+          "scene.shape.size", is_valid(size),
           [&] { return "the " + std::string(size.name) + " is " + std::to_string(size.size) + " in the world"; }, place,
           "use sizes and scales that keep it between 1e-22 and 1e15");
     }
@@ -474,42 +493,45 @@ class Validation {
 
   /// Returns the first wrong element, if any.
   template <class Elements, class IsRight>
-  void check_each(const Elements& elements, const IsRight& is_right, const char* what, const Place& place,
-                  const char* cure) {
+  void check_each(ProblemCode code, const Elements& elements, const IsRight& is_right, const char* what,
+                  const Place& place, const char* cure) {
     const auto wrong = std::find_if_not(elements.begin(), elements.end(), is_right);
     if (wrong == elements.end()) return;
-    problems_.push_back({what, place.text() + "[" + std::to_string(wrong - elements.begin()) + "]", cure});
+    problems_.push_back({code, what, place.text() + "[" + std::to_string(wrong - elements.begin()) + "]", cure});
   }
 
   void check_mesh(const Mesh& mesh, const Scene& scene, const Place& place) {
     const size_t vertices = mesh.positions.size();
     check_each(
-        mesh.positions, [](const vec3& p) { return is_in_range(dvec3(p)); },
+        "scene.position.range", mesh.positions, [](const vec3& p) { return is_in_range(dvec3(p)); },
         "a vertex coordinate is not finite or beyond 1e15", place + ".positions", "use a larger unit of length");
     check_each(
-        mesh.normals, [](const vec3& n) { return is_finite(n) && n != vec3(0.0F); },
+        "scene.normal.range", mesh.normals, [](const vec3& n) { return is_finite(n) && n != vec3(0.0F); },
         "a normal has no length or is not finite", place + ".normals",
         "leave the normals out, or give each a direction");
     check_each(
-        mesh.colors, [](const vec4& c) { return is_color(vec3(c)) && std::isfinite(c.a); },
+        "scene.color.range", mesh.colors, [](const vec4& c) { return is_color(vec3(c)) && std::isfinite(c.a); },
         "a vertex colour is negative, beyond 1e15 or not a number", place + ".colors", "use numbers from 0 to 1e15");
     check_each(
-        mesh.uvs, [](const vec4& uv) { return is_in_range(dvec3(uv)) && std::abs(uv.w) <= kMaxCoordinate; },
+        "scene.uv.range", mesh.uvs,
+        [](const vec4& uv) { return is_in_range(dvec3(uv)) && std::abs(uv.w) <= kMaxCoordinate; },
         "a texture coordinate is not finite or beyond 1e15", place + ".uvs", "use smaller coordinates");
     check_each(
-        mesh.tangents,
+        "scene.tangent.range", mesh.tangents,
         [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },
         "a tangent has no length, is not finite or has a side that is neither 1 nor -1", place + ".tangents",
         "leave the tangents out, or give each a direction and a side");
     check_each(
-        mesh.triangles, [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
+        "scene.reference.range", mesh.triangles,
+        [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
         "a corner's index is out of range of the positions", place + ".triangles", "use indices of existing positions");
     check_each(
-        mesh.triangle_materials, [&](uint32_t material) { return material < scene.materials.size(); },
-        "a material is out of range", place + ".triangle_materials", "use one that exists");
+        "scene.reference.range", mesh.triangle_materials,
+        [&](uint32_t material) { return material < scene.materials.size(); }, "a material is out of range",
+        place + ".triangle_materials", "use one that exists");
     const auto check_count = [&](size_t count, size_t wanted, const char* array, const char* one) {
       check(
-          count == 0 || count == wanted,
+          "scene.array.count", count == 0 || count == wanted,
           [&] { return "there are " + std::to_string(count) + " where there are " + std::to_string(wanted) + one; },
           place + array, "give none, or one for each");
     };

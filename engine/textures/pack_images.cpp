@@ -196,7 +196,8 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
     auto& [words, image] = heap.back();
     const uint64_t fewer = sizes.words(image, ++fit.halvings[image]);
     if (fewer == words) {
-      throw RunError({"the scene's " + std::to_string(images.size()) + " images need more than " + to_mib(most_bytes) +
+      throw RunError({"textures.memory.short",
+                      "the scene's " + std::to_string(images.size()) + " images need more than " + to_mib(most_bytes) +
                           " even as single texels",
                       "", kCure, Setting::kTextureMemory});
     }
@@ -216,7 +217,7 @@ std::optional<Problem> warn_of(const TextureFit& fit) {
                      " images of textures are halved in size";
   if (count_from(2) > 0) what += ", " + std::to_string(count_from(2)) + " of these more than once";
   what += ", so that " + to_mib(fit.whole_bytes) + " become " + to_mib(fit.bytes);
-  return Problem{what, "", kCure, Setting::kTextureMemory};
+  return Problem{"textures.halved", what, "", kCure, Setting::kTextureMemory};
 }
 
 uint64_t packed_image_bytes(std::span<const std::shared_ptr<const TextureImage>> images,

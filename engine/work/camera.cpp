@@ -75,7 +75,8 @@ FreeCamera FreeCamera::from_pose(const vec3& eye, const vec3& look, const vec3& 
   const dvec3 side = glm::cross(unit_look, glm::normalize(dvec3(up)));
   // Written so that NaN, which zero and infinite directions give, is refused too.
   if (!(glm::length(side) >= kMinSine)) {
-    throw UsageError({"the camera's direction of view and its up direction are zero, not finite or parallel", "",
+    throw UsageError({"camera.direction",
+                      "the camera's direction of view and its up direction are zero, not finite or parallel", "",
                       "give two finite directions that differ"});
   }
   camera.look = unit_look;

@@ -18,7 +18,6 @@ namespace {
 
 /// The field of view of a camera at the user's eye.
 constexpr double kEyeFovDeg = 40.0;
-constexpr const char* kWhere = "on the command line";
 
 std::string list_cameras(const Scene& scene) {
   std::string text;
@@ -32,7 +31,7 @@ std::string list_cameras(const Scene& scene) {
 /// The name is tried first, because a camera may be called "2".
 const Camera& find_camera(const Scene& scene, const std::string& selection) {
   if (scene.cameras.empty()) {
-    throw UsageError({"the scene has no cameras", scene.file.string(), "leave --camera out"});
+    throw UsageError({"camera.missing", "the scene has no cameras", scene.file.string(), "leave --camera out"});
   }
   for (const Camera& camera : scene.cameras) {
     if (camera.name == selection) return camera;
@@ -41,7 +40,7 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   const char* end = selection.data() + selection.size();
   const auto [rest, error] = std::from_chars(selection.data(), end, index);
   if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
-    throw UsageError({"the scene has no camera \"" + selection + "\"", scene.file.string(),
+    throw UsageError({"camera.unknown", "the scene has no camera \"" + selection + "\"", scene.file.string(),
                       "choose one of: " + list_cameras(scene)});
   }
   return scene.cameras[index];
@@ -70,7 +69,8 @@ void face(Camera& camera, const std::optional<dvec3>& direction, const std::opti
 dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Camera& camera, const dvec3& center) {
   const dvec3 direction = eye ? point - *eye : point - center - dvec3(camera.eye);
   if (direction != dvec3(0.0)) return direction;
-  throw UsageError({"--look-at names the position of the eye", kWhere, "give another point, or --direction"});
+  throw UsageError(
+      {"camera.point.eye", "--look-at names the position of the eye", "", "give another point, or --direction"});
 }
 
 /// Returns the user's direction; empty if none is given.
@@ -109,8 +109,8 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
     direction = middle_of(bounds) + scene.center - *pose.eye;
     // The bounds of shapes are rounded to fp32.
     if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(bounds.extent()))) {
-      throw UsageError({"--eye is at the middle of the scene, so there is no direction of view", kWhere,
-                        "give --look-at or --direction as well"});
+      throw UsageError({"camera.eye.middle", "--eye is at the middle of the scene, so there is no direction of view",
+                        "", "give --look-at or --direction as well"});
     }
   }
   face(camera, direction, pose.up);

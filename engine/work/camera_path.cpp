@@ -57,9 +57,9 @@ dvec3 read_place(const json& v) {
 /// Refuses a frame without exactly one direction of view of its version.
 void check_look(const json& frame, int version, const std::string& place, LoadReport& report) {
   if (version == 1) {
-    if (!frame.contains("look")) report.refuse("\"look\" is missing", place, kWriteAnew);
+    if (!frame.contains("look")) report.refuse("path.frame.wrong", "\"look\" is missing", place, kWriteAnew);
   } else if (frame.contains("look") == frame.contains("look_at")) {
-    report.refuse("a frame has both look and look_at", place,
+    report.refuse("path.frame.choice", "a frame has both look and look_at, or neither", place,
                   "give only one: a direction as look, or a point as look_at");
   }
 }
@@ -74,12 +74,14 @@ TimedCamera read_frame(const json& frame, int version, const std::string& place,
         looks_at ? vec3(read_place(frame["look_at"]) - read_place(frame["eye"])) : read_vector(frame["look"]);
     timed.camera = FreeCamera::from_pose(read_vector(frame["eye"]), look, read_vector(frame["up"])).camera();
   } catch (const UsageError&) {
-    report.refuse(looks_at ? "look_at is the position of the eye, or lies straight above or below it"
+    report.refuse("camera.direction",
+                  looks_at ? "look_at is the position of the eye, or lies straight above or below it"
                            : "look and up are zero or parallel",
                   place, looks_at ? "give another point or another up" : "give two directions that differ");
   }
   if (frame.contains("fov_deg") == frame.contains("ymag")) {
-    report.refuse("a frame has both fov_deg and ymag", place, "give only one: fov_deg for a perspective camera");
+    report.refuse("path.frame.choice", "a frame has both fov_deg and ymag, or neither", place,
+                  "give only one: fov_deg for a perspective camera");
   } else if (frame.contains("fov_deg")) {
     timed.camera.yfov = static_cast<float>(glm::radians(frame["fov_deg"].get<double>()));
   } else {
@@ -167,12 +169,13 @@ CameraPath read_camera_path(const std::filesystem::path& file) {
     const std::string place = place_of(path.frames.size());
     const TimedCamera next = read_frame(frame, version, place, report);
     if (!path.frames.empty() && !(next.time_s > path.frames.back().time_s)) {
-      report.refuse("time_s does not increase from frame to frame", place, "sort the frames by time");
+      report.refuse("path.time.order", "time_s does not increase from frame to frame", place,
+                    "sort the frames by time");
     }
     path.frames.push_back(next);
   }
   if (document.contains("fps")) path.fps = document["fps"].get<double>();
-  if (path.frames.empty()) report.refuse("the path has no frames", "frames", kWriteAnew);
+  if (path.frames.empty()) report.refuse("path.frames.missing", "the path has no frames", "frames", kWriteAnew);
   report.throw_if_refused();
   return path;
 }
@@ -203,9 +206,10 @@ PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
   constexpr double kRounding = 1e-6;
   const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
   if (count > static_cast<double>(kMaxCount)) {
-    throw UsageError({fmt::format("{:.0f} pictures are more than the largest number, {}", count, kMaxCount),
-                      fmt::format("for a path of {:g} s at {:g} pictures per second", path_.frames.back().time_s, fps_),
-                      "lower --fps"});
+    throw UsageError({"path.frames.many",
+                      fmt::format("a path of {:g} s has {:.0f} pictures at {:g} per second, more than {}",
+                                  path_.frames.back().time_s, count, fps_, kMaxCount),
+                      "", "lower --fps"});
   }
   count_ = static_cast<size_t>(count);
 }

@@ -54,7 +54,8 @@ uint64_t choose_pieces(uint64_t count, bool is_all) {
 std::vector<RayRange> cut_rays(uint64_t count, const CastSpec& options) {
   const uint64_t pieces = options.job.pieces.value_or(choose_pieces(count, options.is_all));
   if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
-    throw UsageError({fmt::format("{} pieces are more than {}", pieces,
+    throw UsageError({"job.pieces.many",
+                      fmt::format("{} pieces are more than {}", pieces,
                                   pieces > kMostRayPieces ? fmt::format("the {} that a job may have", kMostRayPieces)
                                                           : count_of(count, "ray")),
                       options.rays.string(), "lower --pieces"});
@@ -95,7 +96,8 @@ std::string encode(const HitPiece& piece) {
 
 /// Reads the description of a piece and checks its bytes against it. Throws InputError.
 HitPiece decode(const jobs::Content& content, const fs::path& file) {
-  const InputError bad({"the piece does not hold hits", file.string(), "remove it and run the job again"});
+  const InputError bad(
+      {"job.piece.kind", "the piece does not hold hits", file.string(), "remove it and run the job again"});
   HitPiece piece;
   try {
     const Json json = Json::parse(content.description);
@@ -248,7 +250,8 @@ class HitLists {
   std::span<const Hit> of(size_t ray, const fs::path& file) const {
     const uint64_t begin = ray == 0 ? 0 : ends_[ray - 1];
     if (begin <= ends_[ray] && ends_[ray] <= hits_.size()) return hits_.subspan(begin, ends_[ray] - begin);
-    throw InputError({"the piece does not hold hits", file.string(), "remove it and run the job again"});
+    throw InputError(
+        {"job.piece.kind", "the piece does not hold hits", file.string(), "remove it and run the job again"});
   }
 
  private:
@@ -262,7 +265,8 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
   for (const jobs::Content* content : {&there, &anew}) {
     const HitPiece told = decode(*content, file);
     if (told.query == options_.query() && told.rays.begin == range.begin && told.rays.end == range.end) continue;
-    throw InputError({"the piece belongs to other rays", file.string(), "remove it and run the job again"});
+    throw InputError(
+        {"job.piece.other", "the piece belongs to other rays", file.string(), "remove it and run the job again"});
   }
   HitComparison comparison(scene_);
   if (options_.query() == HitQuery::kCount) {
@@ -290,7 +294,8 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
 /// Checks the number of output files.
 void check_count(size_t count, const std::vector<fs::path>& files) {
   if (files.size() == count) return;
-  throw UsageError({fmt::format("the job's results are written to {}, not to {}",
+  throw UsageError({"job.outputs.count",
+                    fmt::format("the job's results are written to {}, not to {}",
                                 count == 2 ? "two files, hits and offsets" : "one file", files.size()),
                     files.empty() ? "" : files.front().string(),
                     count == 2 ? "give --output and --offsets" : "give --output alone"});
@@ -368,11 +373,12 @@ void merge_hits(const jobs::Job& job, const std::vector<fs::path>& files, const 
     if (!first) first = piece;
     if (!written) written.emplace(piece.query, files, rays);
     if (piece.query != first->query || piece.rays.begin != done) {
-      throw InputError({"the piece's rays do not follow those of the piece before", file.string(),
+      throw InputError({"job.piece.order", "the piece's rays do not follow those of the piece before", file.string(),
                         "remove it and run the job again"});
     }
     if (piece.driver != first->driver && !is_mixed) {
-      throw InputError({fmt::format("the piece was made on {}, other pieces on {}", piece.driver, first->driver),
+      throw InputError({"job.device.other",
+                        fmt::format("the piece was made on {}, other pieces on {}", piece.driver, first->driver),
                         file.string(), "remove the pieces of one device, and run the job again on the other"});
     }
     written->add(content, piece.rays.count());

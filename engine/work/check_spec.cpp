@@ -20,7 +20,7 @@ namespace promin::work {
 
 void check_tracing_options(const TracingOptions& options) {
   if (options.bvh && options.builder) {
-    throw UsageError({"--bvh and --builder contradict each other", "on the command line", "leave one out"});
+    throw UsageError({"usage.options.contradict", "--bvh and --builder contradict each other", "", "leave one out"});
   }
 }
 
@@ -29,8 +29,8 @@ void check_pose_options(const PoseOptions& pose, bool names_camera) {
                                 std::initializer_list<std::pair<bool, std::string_view>> others) {
     for (const auto& [is_other_given, other] : others) {
       if (!is_given || !is_other_given) continue;
-      throw UsageError(
-          {fmt::format("{} and {} contradict each other", name, other), "on the command line", "leave one out"});
+      throw UsageError({"usage.options.contradict", fmt::format("{} and {} contradict each other", name, other), "",
+                        "leave one out"});
     }
   };
   const bool has_eye = pose.eye.has_value();
@@ -54,22 +54,24 @@ void check_has_job(const JobOptions& job) {
   if (job.folder) return;
   const std::string_view name = job.share ? "--piece" : job.tiles ? "--tiles" : job.pieces ? "--pieces" : "";
   if (name.empty()) return;
-  throw UsageError({fmt::format("{} needs a job to divide", name), "on the command line", "give --job as well"});
+  throw UsageError({"usage.option.needs", fmt::format("{} needs a job to divide", name), "", "give --job as well"});
 }
 
 }  // namespace
 
 void check_error_target(const ErrorTarget& target) {
   if (target.min_samples <= target.max_samples) return;
-  throw UsageError({fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples),
-                    "on the command line", "raise --max-spp or lower --min-spp"});
+  throw UsageError({"usage.options.range",
+                    fmt::format("--min-spp {} is more than --max-spp {}", target.min_samples, target.max_samples), "",
+                    "raise --max-spp or lower --min-spp"});
 }
 
 void check_no_camera(const ViewOptions& options, std::string_view name) {
   if (!options.camera && !options.pose.any()) return;
   throw UsageError(
-      {fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name),
-       "on the command line", "leave one out"});
+      {"usage.options.contradict",
+       fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name), "",
+       "leave one out"});
 }
 
 namespace {
@@ -77,15 +79,15 @@ namespace {
 /// An option, or a group that counts as one, with its name and whether it is given.
 using Given = std::pair<bool, std::string_view>;
 
-void refuse_if(bool holds, const std::string& what, const std::string& cure) {
-  if (holds) throw UsageError({what, "on the command line", cure});
+void refuse_if(ProblemCode code, bool holds, const std::string& what, const std::string& cure) {
+  if (holds) throw UsageError({code, what, "", cure});
 }
 
 /// Refuses the first of the others that is given beside `name`.
 void refuse_beside(std::string_view name, std::initializer_list<Given> others,
                    const std::string& cure = "leave one out") {
   for (const auto& [is_given, other] : others) {
-    refuse_if(is_given, fmt::format("{} and {} contradict each other", name, other), cure);
+    refuse_if("usage.options.contradict", is_given, fmt::format("{} and {} contradict each other", name, other), cure);
   }
 }
 
@@ -138,7 +140,7 @@ void check_target(const RenderSpec& options) {
   refuse_beside(name, {{is_debug, "--shading"}});
   // Each repetition could reach another target, and so another picture.
   if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
-  refuse_if(error.space == ErrorSpace::kDisplay && averages,
+  refuse_if("usage.options.contradict", error.space == ErrorSpace::kDisplay && averages,
             "--error-in display and --exposure average contradict each other: the average is known only after tracing",
             "give --exposure in stops");
   check_error_target(*error.error_target());
@@ -149,15 +151,16 @@ void check_fixed_samples(const RenderSpec& options) {
   const ErrorOptions& error = options.error;
   const bool is_debug = shades_for_debugging(options);
   const AovSet named = named_aovs(options);
-  refuse_if((named.has_any(AovSource::kParts) || named.unlit) && is_debug,
+  refuse_if("usage.options.contradict", (named.has_any(AovSource::kParts) || named.unlit) && is_debug,
             "--shading and an --aov of light contradict each other: a debug shading computes no light",
             "leave one out");
-  refuse_if(options.aovs.error && is_debug,
+  refuse_if("usage.options.contradict", options.aovs.error && is_debug,
             "--shading and --aov error contradict each other: a debug shading has no error estimate", "leave one out");
   for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
                                        {error.max_samples.has_value(), "--max-spp"},
                                        {error.space.has_value(), "--error-in"}}) {
-    refuse_if(is_given, fmt::format("{} needs a target error", name), "give --target-error as well");
+    refuse_if("usage.option.needs", is_given, fmt::format("{} needs a target error", name),
+              "give --target-error as well");
   }
 }
 
@@ -174,20 +177,21 @@ void check_job(const RenderSpec& options) {
                           {options.tracing.stats.has_value(), "--stats"},
                           {options.tracing.repeat_count > 1, "--repeat"}});
   if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
-  refuse_if(job.share && !options.pictures.empty(),
+  refuse_if("usage.options.contradict", job.share && !options.pictures.empty(),
             "--piece and --output contradict each other: a share writes no picture",
             "leave one out; promin merge writes the picture when all pieces are made");
 }
 
 void check_frames(const RenderSpec& options) {
   const bool averages = options.view.look.averages_exposure;
-  refuse_if(options.skips_existing && options.pictures.empty(), "--skip-existing needs the names of the pictures",
-            "give -o as well");
-  refuse_if(options.skips_existing && averages,
+  refuse_if("usage.option.needs", options.skips_existing && options.pictures.empty(),
+            "--skip-existing needs the names of the pictures", "give -o as well");
+  refuse_if("usage.options.contradict", options.skips_existing && averages,
             "--skip-existing and --exposure average contradict each other: the average is that of the first frame",
             "give --exposure in stops");
-  refuse_if(options.frames && !options.path, "--frames needs a camera path", "give --path as well");
-  refuse_if(options.fps && !options.path, "--fps needs a camera path", "give --path as well");
+  refuse_if("usage.option.needs", options.frames && !options.path, "--frames needs a camera path",
+            "give --path as well");
+  refuse_if("usage.option.needs", options.fps && !options.path, "--fps needs a camera path", "give --path as well");
 }
 
 /// Refuses channels that none of the pictures can store.
@@ -201,9 +205,11 @@ void check_channels(const RenderSpec& options) {
                                        {has_depth_kind, "--depth"},
                                        {options.exr.is_half, "--half"},
                                        {options.names_compression, "--compression"}}) {
-    refuse_if(is_given && !has_exr, fmt::format("{} needs an EXR", name), fmt::format("add -o {}.exr", stem));
+    refuse_if("usage.option.needs", is_given && !has_exr, fmt::format("{} needs an EXR", name),
+              fmt::format("add -o {}.exr", stem));
   }
-  refuse_if(has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth", "give --aov depth as well");
+  refuse_if("usage.option.needs", has_depth_kind && !options.aovs.depth, "--depth needs the AOV depth",
+            "give --aov depth as well");
 }
 
 void check_alpha(const RenderSpec& options) {
@@ -214,10 +220,10 @@ void check_alpha(const RenderSpec& options) {
   refuse_beside("--alpha", {{is_debug, "--shading"}});
   refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
                 "leave one out: --alpha makes the background transparent");
-  refuse_if(std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
+  refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
             "write a .png or .exr");
-  refuse_if(std::ranges::any_of(pictures, is_radiance), "a .hdr cannot store the channel of --alpha",
-            "write a .png or .exr");
+  refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_radiance),
+            "a .hdr cannot store the channel of --alpha", "write a .png or .exr");
 }
 
 /// Refuses options that only affect a PNG.
@@ -226,7 +232,8 @@ void check_dither(const RenderSpec& options) {
   const auto& pictures = options.pictures;
   const std::string stem = options.tracing.scene.stem().string();
   const bool has_png = pictures.empty() || !std::ranges::all_of(pictures, has_named_channels);
-  refuse_if(view.look.dithers && !has_png, "--dither needs a PNG", fmt::format("add -o {}.png", stem));
+  refuse_if("usage.option.needs", view.look.dithers && !has_png, "--dither needs a PNG",
+            fmt::format("add -o {}.png", stem));
 }
 
 }  // namespace
@@ -259,32 +266,34 @@ void check_query(const CastSpec& options) {
   if (options.is_all) asked.emplace_back("--all");
   if (asked.size() > 1) {
     throw UsageError(
-        {asked[0] + " and " + asked[1] + " contradict each other", "on the command line", "give one of them"});
+        {"usage.options.contradict", asked[0] + " and " + asked[1] + " contradict each other", "", "give one of them"});
   }
   if (options.is_all && !options.offsets && !options.job.share) {
-    throw UsageError({"--all is given without --offsets", "on the command line",
+    throw UsageError({"usage.option.needs", "--all is given without --offsets", "",
                       "add --offsets OFFSETS.npy, which says where the hits of each ray begin"});
   }
   if (options.offsets && !options.is_all) {
-    throw UsageError({"--offsets is given without --all", "on the command line", "add --all or leave --offsets out"});
+    throw UsageError(
+        {"usage.option.needs", "--offsets is given without --all", "", "add --all or leave --offsets out"});
   }
 }
 
 void check_job_options(const CastSpec& options) {
   check_has_job(options.job);
   if (!options.output && !options.job.share) {
-    throw UsageError({"--output is required", "on the command line", "see promin cast --help"});
+    throw UsageError({"usage.option.required", "--output is required", "", "see promin cast --help"});
   }
   if (!options.job.folder) return;
   const std::pair<bool, std::string_view> others[] = {{options.tracing.stats.has_value(), "--stats"},
                                                       {options.tracing.repeat_count > 1, "--repeat"}};
   for (const auto& [is_given, name] : others) {
     if (!is_given) continue;
-    throw UsageError({fmt::format("--job and {} contradict each other", name), "on the command line", "leave one out"});
+    throw UsageError(
+        {"usage.options.contradict", fmt::format("--job and {} contradict each other", name), "", "leave one out"});
   }
   if (options.job.share && !options.outputs().empty()) {
-    throw UsageError({"--piece and --output contradict each other: a share writes no file", "on the command line",
-                      "leave one out; promin merge writes the file when all pieces are made"});
+    throw UsageError({"usage.options.contradict", "--piece and --output contradict each other: a share writes no file",
+                      "", "leave one out; promin merge writes the file when all pieces are made"});
   }
 }
 
@@ -293,7 +302,8 @@ void check_job_options(const CastSpec& options) {
 void check_arrays(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     if (lower_case_ending(file) == ".npy") continue;
-    throw UsageError({"unknown output ending \"" + file.extension().string() + "\"", file.string(), "use .npy"});
+    throw UsageError({"output.ending", "the output's ending \"" + file.extension().string() + "\" is unknown",
+                      file.string(), "use .npy"});
   }
 }
 
@@ -307,8 +317,8 @@ void check_cast_spec(const CastSpec& options) {
 void check_pictures(const std::vector<std::filesystem::path>& pictures) {
   for (const std::filesystem::path& picture : pictures) {
     if (!is_writable_format(picture)) {
-      throw UsageError(
-          {"unknown output ending \"" + picture.extension().string() + "\"", picture.string(), kUseKnownEnding});
+      throw UsageError({"output.ending", "the output's ending \"" + picture.extension().string() + "\" is unknown",
+                        picture.string(), kUseKnownEnding});
     }
   }
 }

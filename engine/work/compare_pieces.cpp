@@ -64,8 +64,8 @@ PieceDifference compare_parts(const PicturePart& there, const PicturePart& anew,
     return a.name == b.name && a.is_integer == b.is_integer;
   };
   if (there.image.size != anew.image.size || !std::ranges::equal(there.channels, anew.channels, is_same_channel)) {
-    throw InputError(
-        {"the piece is not the expected part of the picture", file.string(), "remove it and run the job again"});
+    throw InputError({"job.piece.other", "the piece is not the expected part of the picture", file.string(),
+                      "remove it and run the job again"});
   }
   PieceDifference difference;
   for (size_t i = 0; i < there.image.pixels.size(); ++i) {

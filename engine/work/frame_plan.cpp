@@ -13,7 +13,7 @@ FrameRange choose_frames(const RenderSpec& options, size_t count) {
   const auto last = static_cast<uint32_t>(count - 1);
   const FrameRange range = options.frames.value_or(FrameRange{0, last});
   if (range.last > last) {
-    throw UsageError({fmt::format("the path has no frame {}", range.last), options.path->string(),
+    throw UsageError({"path.frame.missing", fmt::format("the path has no frame {}", range.last), options.path->string(),
                       fmt::format("choose frames from 0 to {}", last)});
   }
   return range;
@@ -50,8 +50,8 @@ std::vector<PlannedFrame> plan_frames(const RenderSpec& options) {
   }
   for (const std::filesystem::path& file : options.pictures) {
     if (frames.size() == 1 || number_file(file, 0) != file) continue;
-    throw UsageError({fmt::format("{} frames would be written to one file", frames.size()), file.string(),
-                      "write #### in its name for the number of a frame"});
+    throw UsageError({"output.frames.one", fmt::format("{} frames would be written to one file", frames.size()),
+                      file.string(), "write #### in its name for the number of a frame"});
   }
   return frames;
 }

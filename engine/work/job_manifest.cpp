@@ -26,7 +26,7 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
     if (!source.stamp) continue;
     manifest.files.push_back(jobs::describe_input(source.file));
     if (stamp_of(source.file) == source.stamp) continue;
-    throw InputError({"the file changed while it was read", source.file.string(), "try again"});
+    throw InputError({"file.changed", "the file changed while it was read", source.file.string(), "try again"});
   }
 }
 

@@ -37,12 +37,13 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs,
     check_merged_hits(job, outputs);
   } else {
     throw InputError(
-        {fmt::format("the job's kind is \"{}\", neither that of promin render nor that of promin cast", kind),
+        {"job.kind.unknown",
+         fmt::format("the job's kind is \"{}\", neither that of promin render nor that of promin cast", kind),
          job.folder().string(), "name a folder that was given to promin render --job or promin cast --job"});
   }
   for (const fs::path& output : kind == kPictureJob ? number_pictures(job, outputs, frames) : outputs) {
     if (!is_input(job, output)) continue;
-    throw UsageError({"the output would overwrite an input", output.string(), "name another file"});
+    throw UsageError({"output.input", "the output would overwrite an input", output.string(), "name another file"});
   }
 }
 
@@ -51,7 +52,8 @@ std::optional<PictureError> merge_job(const jobs::Job& job, const std::vector<fs
                                       const std::optional<std::vector<uint32_t>>& frames) {
   check_job_files(job, outputs, frames);
   if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress, frames);
-  if (frames) throw UsageError({"a job of rays has no frames", job.folder().string(), "leave the frames out"});
+  if (frames)
+    throw UsageError({"job.frames.none", "a job of rays has no frames", job.folder().string(), "leave the frames out"});
   merge_hits(job, outputs, progress, is_mixed);
   return {};
 }

@@ -26,7 +26,8 @@ void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, si
     static_cast<void>(job.state_of(missing[i], &why));
     names.push_back(job.manifest().pieces[missing[i]] + (why.empty() ? "" : " (" + why + ")"));
   }
-  throw RunError({fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(count, "piece"),
+  throw RunError({"job.pieces.missing",
+                  fmt::format("{} of {} {} missing or bad: {}{}", missing.size(), count_of(count, "piece"),
                               verb_of(missing.size(), "is", "are"), fmt::join(names, ", "),
                               missing.size() > kMostNamed ? ", …" : ""),
                   job.file_of(missing.front()).parent_path().string(), "run the job again to make the missing pieces"});

@@ -129,11 +129,11 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
                        part.window.hi == first.window.hi && part.error.has_value() == first.error.has_value() &&
                        std::ranges::equal(part.channels, first.channels, is_same_channel);
   if (!is_same)
-    throw InputError({"the piece is part of another picture than the other pieces", file.string(),
+    throw InputError({"job.piece.other", "the piece is part of another picture than the other pieces", file.string(),
                       "remove it and run the job again"});
   if (part.metadata.size() != first.metadata.size()) {
-    throw InputError(
-        {"the piece has other metadata than the other pieces", file.string(), "remove it and run the job again"});
+    throw InputError({"job.piece.other", "the piece has other metadata than the other pieces", file.string(),
+                      "remove it and run the job again"});
   }
   for (size_t i = 0; i < part.metadata.size(); ++i) {
     const auto& [name, value] = part.metadata[i];
@@ -141,7 +141,8 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
     const bool may_differ = is_error_metadata(name) || name == kVersionEntry;
     if (part.metadata[i] == first.metadata[i] || may_differ) continue;
     throw InputError(
-        {fmt::format("the piece's {} is \"{}\", that of other pieces is \"{}\"", name, value, first.metadata[i].second),
+        {"job.device.other",
+         fmt::format("the piece's {} is \"{}\", that of other pieces is \"{}\"", name, value, first.metadata[i].second),
          file.string(), "remove the pieces of one device, and run the job again on the other"});
   }
 }
@@ -239,8 +240,8 @@ std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
   for (const uint32_t frame : *frames) {
     pictures.push_back(find_pieces_of(job, frame));
     if (!pictures.back().empty()) continue;
-    throw UsageError(
-        {fmt::format("the job has no frame {}", frame), job.folder().string(), "name frames that the job has"});
+    throw UsageError({"job.frame.missing", fmt::format("the job has no frame {}", frame), job.folder().string(),
+                      "name frames that the job has"});
   }
   return pictures;
 }
@@ -251,7 +252,7 @@ void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   if (!pieces.front().starts_with(kOfFrame) || frame_of(pieces.front()) == frame_of(pieces.back())) return;
   for (const fs::path& file : files) {
     if (number_file(file, 0) != file) continue;
-    throw UsageError({"several frames would be written to one file", file.string(),
+    throw UsageError({"output.frames.one", "several frames would be written to one file", file.string(),
                       "write #### in its name for the number of a frame"});
   }
 }
@@ -270,13 +271,15 @@ std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions
   const uvec2 size = size_of(window);
   const uvec2 tiles = options.tiles.value_or(uvec2(1, options.pieces.value_or(choose_bands(window, pictures))));
   if (tiles.x > size.x || tiles.y > size.y) {
-    throw UsageError({fmt::format("{} columns and {} rows of pieces are more than the picture of {}x{} pixels has",
+    throw UsageError({"job.pieces.many",
+                      fmt::format("{} columns and {} rows of pieces are more than the picture of {}x{} pixels has",
                                   tiles.x, tiles.y, size.x, size.y),
-                      "on the command line", "give fewer by --pieces or --tiles"});
+                      "", "give fewer by --pieces or --tiles"});
   }
   if (uint64_t{tiles.x} * tiles.y > kMostParts) {
-    throw UsageError({fmt::format("{} pieces are more than {}", uint64_t{tiles.x} * tiles.y, kMostParts),
-                      "on the command line", "give fewer by --pieces or --tiles"});
+    throw UsageError({"job.pieces.many",
+                      fmt::format("{} pieces are more than {}", uint64_t{tiles.x} * tiles.y, kMostParts), "",
+                      "give fewer by --pieces or --tiles"});
   }
   const std::vector<uint32_t> columns = divide(size.x, tiles.x);
   const std::vector<uint32_t> rows = divide(size.y, tiles.y);
@@ -331,7 +334,8 @@ jobs::Content encode_part(const PicturePart& part) {
 }
 
 PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
-  const InputError bad({"the piece is not part of a picture", file.string(), "remove it and run the job again"});
+  const InputError bad(
+      {"job.piece.kind", "the piece is not part of a picture", file.string(), "remove it and run the job again"});
   PicturePart part;
   try {
     const Json json = Json::parse(content.description);

@@ -16,8 +16,9 @@ namespace {
 
 void check_explained_pixel(const RenderSpec& options, const uvec2& size) {
   if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
-  throw UsageError({fmt::format("the pixel of --explain lies outside the picture of {}x{}", size.x, size.y),
-                    "on the command line", "name a pixel inside, or give a larger --size"});
+  throw UsageError({"view.pixel.outside",
+                    fmt::format("the pixel of --explain lies outside the picture of {}x{}", size.x, size.y), "",
+                    "name a pixel inside, or give a larger --size"});
 }
 
 /// The cameras of all frames.

@@ -21,7 +21,7 @@ class RayFile : public RaySource {
   uint64_t count() const override { return reader_.count(); }
   void read(uint64_t first, std::span<Ray> rays, const dvec3& center) override {
     if (stamp_of(file_) != stamp_) {
-      throw InputError({"the file changed after the job's rays were first read", file_.string(),
+      throw InputError({"file.changed", "the file changed after the job's rays were first read", file_.string(),
                         "restore the file, or name another folder for the job"});
     }
     const std::lock_guard lock(mutex_);

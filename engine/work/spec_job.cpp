@@ -52,11 +52,12 @@ std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std:
                                              const fs::path& folder, const Messages& messages,
                                              std::shared_ptr<RaySource> rays) {
   if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"a job of pictures has no rays", "", "leave the rays out"});
+    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "leave the rays out"});
     return plan_job(parse_spec<RenderSpec>(text, file), folder, messages);
   }
   if (kind == kRayJob) return plan_job(parse_spec<CastSpec>(text, file), folder, messages, std::move(rays));
-  throw UsageError({fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+  throw UsageError(
+      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
 }
 
 jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
@@ -71,8 +72,8 @@ std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Messages& mes
   const std::optional<std::string> text = read_job_spec(job);
   const std::string& kind = job.manifest().kind;
   if (!text || (kind != kPictureJob && kind != kRayJob)) {
-    throw InputError({"the folder does not say how the job's pieces are made", spec_file(job).string(),
-                      "run the job's command once more"});
+    throw InputError({"job.spec.missing", "the folder does not say how the job's pieces are made",
+                      spec_file(job).string(), "run the job's command once more"});
   }
   std::unique_ptr<PlannedJob> planned =
       plan_job_of_text(kind, *text, spec_file(job), job.folder(), messages, std::move(rays));

@@ -587,7 +587,8 @@ void change_paths(Json& value, const std::function<std::string(const std::string
 
 std::string make_absolute(const std::string& path) {
   if (to_utf8(path) != path) {
-    throw UsageError({"the name of the file is not UTF-8, so a specification cannot name it", path, "rename it"});
+    throw UsageError(
+        {"spec.file.name", "the name of the file is not UTF-8, so a specification cannot name it", path, "rename it"});
   }
   return fs::absolute(path).lexically_normal().string();
 }
@@ -616,7 +617,7 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
     std::vector<std::string_view> known;
     for (const Field<Spec>& each : fields_of<Spec>()) known.push_back(each.name);
     const std::string_view near = nearest_name(name, known);
-    report.refuse(fmt::format("a specification has no member {}", quote(name)), "",
+    report.refuse("spec.member.unknown", fmt::format("a specification has no member {}", quote(name)), "",
                   near.empty() ? "leave it out" : fmt::format("did you mean {}?", near));
     return;
   }
@@ -625,7 +626,7 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
   try {
     field->read(value, spec);
   } catch (const WrongValue& wrong) {
-    report.refuse(fmt::format("{} {}", name, wrong.what), name, "correct it or leave it out");
+    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), name, "correct it or leave it out");
   }
 }
 
@@ -654,7 +655,8 @@ Spec parse_spec(std::string_view text, const fs::path& file) {
       fmt::format("give a file that promin's --print-spec has written, with \"{}\": {}", key, kFormat);
   const nlohmann::json json = parse_json(text, report, cure);
   if (!json.is_object() || !json.contains(key) || json[key] != kFormat) {
-    report.refuse(fmt::format("the file has no member \"{}\" with the value {}", key, kFormat), "", cure);
+    report.refuse("spec.format", fmt::format("the file has no member \"{}\" with the value {}", key, kFormat), "",
+                  cure);
     report.throw_if_refused();
   }
   const fs::path folder = file == kStandardInput ? fs::path() : file.parent_path();

@@ -29,7 +29,7 @@ Scene load_for(const TracingOptions& options, RunStats& stats, const Messages& c
   const Stopwatch load;
   Scene scene = load_scene(options.scene, options.load, sources);
   stats.load_ms = load.ms();
-  for (const std::string& warning : scene.warnings) console.warn(warning);
+  for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
   stats.scene_file = options.scene.filename().string();
   stats.scene = count_scene(scene);
   stats.object_count = scene.objects.size();
@@ -75,8 +75,8 @@ void tell_end(const RunStats& stats, const Messages& console) {
 void check_validation(const gpu::Device& device, const RunStats& stats) {
   const uint64_t count = gpu::validation_message_count(device);
   if (count == 0) return;
-  throw RunError({fmt::format("the Vulkan validation layers reported {} problems", count), stats.device.name,
-                  "report them as a bug in promin"});
+  throw RunError({"device.validation.reports", fmt::format("the Vulkan validation layers reported {} problems", count),
+                  stats.device.name, "report them as a bug in promin"});
 }
 
 }  // namespace promin::work

@@ -37,7 +37,8 @@ std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2
 
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
   if (const auto size = size_for(options.size.value_or(uvec2(0)), camera)) return *size;
-  throw UsageError({fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
+  throw UsageError({"camera.aspect",
+                    fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
                     scene.file.string(), "give --size"});
 }
 
@@ -64,8 +65,9 @@ View make_view(const Scene& scene, const ViewOptions& options, const Messages& c
   if (own != nullptr) view.camera = pose_camera(scene, *own, options.pose, view.size, console);
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
-    throw UsageError({fmt::format("--crop extends beyond the picture of {}x{}", view.size.x, view.size.y),
-                      "on the command line", "choose pixels inside, or give a larger --size"});
+    throw UsageError({"view.crop.outside",
+                      fmt::format("--crop extends beyond the picture of {}x{}", view.size.x, view.size.y), "",
+                      "choose pixels inside, or give a larger --size"});
   }
   view.samples_per_pixel = options.samples_per_pixel.value_or(View{}.samples_per_pixel);
   view.filter = options.filter;
@@ -153,8 +155,8 @@ std::string describe_assumptions(const Scene& scene, const ViewOptions& options,
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
   for (const uint32_t index : indices) {
     if (index < scene.lights.size()) continue;
-    throw UsageError({fmt::format("the scene has no light {} to switch off", index), scene.file.string(),
-                      fmt::format("it has {}; the first is number 0", scene.lights.size())});
+    throw UsageError({"light.unknown", fmt::format("the scene has no light {} to switch off", index),
+                      scene.file.string(), fmt::format("it has {}; the first is number 0", scene.lights.size())});
   }
 }
 

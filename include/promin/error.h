@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "promin/export.h"
@@ -24,18 +26,51 @@ enum class Setting {
   kTextureMemory,
 };
 
+/// The name of a kind of problem, for programs and tests: two to four words of lower-case letters, joined by dots, such
+/// as "job.piece.cut". Codes are stable; sentences are not. A code that has another form does not compile.
+class ProblemCode {
+ public:
+  template <size_t kSize>
+  consteval ProblemCode(const char (&code)[kSize])  // NOLINT(google-explicit-constructor): a literal is a code.
+      : text_(code, kSize - 1) {
+    if (!is_code(text_)) throw "a code is two to four words of lower-case letters, joined by dots";
+  }
+
+  constexpr std::string_view text() const { return text_; }
+
+  friend constexpr bool operator==(const ProblemCode& a, const ProblemCode& b) { return a.text_ == b.text_; }
+
+ private:
+  static consteval bool is_code(std::string_view text) {
+    size_t dot_count = 0;
+    char before = '.';
+    for (const char c : text) {
+      if (c == '.' ? before == '.' : c < 'a' || c > 'z') return false;
+      if (c == '.') ++dot_count;
+      before = c;
+    }
+    return before != '.' && dot_count >= 1 && dot_count <= 3;
+  }
+
+  std::string_view text_;
+};
+
 /// Describes one problem in words for people.
 struct PROMIN_EXPORT Problem {
-  /// What is wrong.
+  /// The kind of the problem.
+  ProblemCode code;
+  /// What is wrong: a sentence without its end.
   std::string what;
-  /// Where: a file, a JSON path, a line, a member of a Scene. May be empty.
+  /// Where: a file, and after ": " the place in it, such as a JSON path or a line; or a member of a Scene. May be
+  /// empty.
   std::string where;
   /// What to do about it. May be empty.
   std::string cure;
   /// The setting that `where` or `cure` refers to.
   Setting setting = Setting::kNone;
 
-  /// Returns "WHAT, WHERE; CURE" on one line, without empty parts. Control characters become question marks.
+  /// Returns "WHERE: WHAT; CURE" on one line, without empty parts: "scene.gltf: nodes[2].mesh: index 7 is out of range;
+  /// use 0 to 3". Control characters become question marks.
   std::string sentence() const;
 };
 
@@ -79,7 +114,7 @@ struct PROMIN_EXPORT DifferenceError : Error {
 /// A ProgressCallback returned false (promin/progress.h). The object that did the work stays usable.
 struct PROMIN_EXPORT Cancelled : Error {
   /// Its only problem is the word "cancelled".
-  Cancelled() : Error(Problem{"cancelled", "", ""}) {}
+  Cancelled() : Error(Problem{"work.cancelled", "cancelled", "", ""}) {}
 };
 
 /// Something failed while running: input or output, memory, a lost device; the programs exit with code 1.

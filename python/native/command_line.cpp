@@ -191,7 +191,7 @@ std::string name_keywords(const std::string& sentence) {
 
 UsageError name_keywords(const UsageError& error) {
   const Problem& problem = error.problems().front();
-  return UsageError({name_keywords(problem.what), "", name_keywords(problem.cure)});
+  return UsageError({problem.code, name_keywords(problem.what), "", name_keywords(problem.cure)});
 }
 
 work::RenderSpec read_options(const std::vector<std::string>& words) {

@@ -6,6 +6,7 @@
 
 #include <exception>
 
+#include "core/utf8.h"
 #include "promin/error.h"
 
 namespace nb = nanobind;
@@ -20,7 +21,11 @@ namespace {
 
 void raise(const char* name, const Error& error) {
   nb::list problems;
-  for (const Problem& problem : error.problems()) problems.append(to_text(problem.sentence()));
+  const auto to_line = [](const std::string& text) { return to_text(to_one_line(text)); };
+  for (const Problem& problem : error.problems()) {
+    problems.append(nb::make_tuple(to_text(problem.code.text()), to_line(problem.where), to_line(problem.what),
+                                   to_line(problem.cure)));
+  }
   const nb::object type = nb::module_::import_("promin._errors").attr(name);
   PyErr_SetObject(type.ptr(), type(to_text(error.what()), problems).ptr());
 }

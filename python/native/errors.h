@@ -17,7 +17,7 @@ struct ForkError : std::runtime_error {
   ForkError();
 };
 
-/// Has what the library throws raised as the class of the same name in promin._errors, with the same sentences.
+/// Has what the library throws raised as the class of the same name in promin._errors, with the same problems.
 void register_errors();
 
 }  // namespace promin::python

@@ -61,7 +61,8 @@ nb::dict describe(const jobs::Receipt& receipt) {
 
 size_t check(const Job& job, size_t piece) {
   if (piece < job.piece_count()) return piece;
-  throw UsageError({"the job has no piece " + std::to_string(piece) + " of " + std::to_string(job.piece_count()),
+  throw UsageError({"job.piece.unknown",
+                    "the job has no piece " + std::to_string(piece) + " of " + std::to_string(job.piece_count()),
                     job.folder().string(), "name one from 0 on"});
 }
 
@@ -162,7 +163,8 @@ class PythonRays : public work::RaySource {
     const nb::gil_scoped_acquire acquire;
     const auto read = nb::cast<RayArray>(source_.attr("read")(first, rays.size()));
     if (read.shape(0) != rays.size()) {
-      throw InputError({"the rays end at " + std::to_string(first + read.shape(0)) + " of " + std::to_string(count_),
+      throw InputError({"rays.short",
+                        "the rays end at " + std::to_string(first + read.shape(0)) + " of " + std::to_string(count_),
                         nb::cast<std::string>(source_.attr("name")), "give as many as when the job was created"});
     }
     std::memcpy(rays.data(), read.data(), rays.size_bytes());

@@ -95,7 +95,7 @@ nb::object show(const PictureArray& pixels, const nb::dict& record, const std::o
   std::vector<vec4> of_unlit(image.pixels.size(), vec4(0.0F));
   if (unlit) {
     if (unlit->shape(0) != image.size.y || unlit->shape(1) != image.size.x) {
-      throw UsageError({"the unlit coverage and the picture have different sizes", "in the picture to show",
+      throw UsageError({"picture.pair.sizes", "the unlit coverage and the picture have different sizes", "",
                         "give a value for each pixel"});
     }
     if (!of_unlit.empty()) std::memcpy(of_unlit.data(), unlit->data(), of_unlit.size() * sizeof(vec4));

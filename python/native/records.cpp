@@ -95,14 +95,16 @@ class Reader {
   void field(const std::string& name, std::shared_ptr<const Image>& value) const {
     PictureArray pixels;
     if (!nb::try_cast(find(name), pixels, false)) {
-      throw UsageError({name + " is not an array of (rows, columns, 3) float32", "", ""});
+      throw UsageError(
+          {"python.value.wrong", name + " is not an array of (rows, columns, 3) float32", "", "convert it"});
     }
     value = std::make_shared<const Image>(read_image_array(pixels));
   }
 
  private:
   nb::object find(const std::string& name) const {
-    if (!record_.contains(name.c_str())) throw UsageError({"no " + name, "", ""});
+    if (!record_.contains(name.c_str()))
+      throw UsageError({"python.name.unknown", "the record has no " + name, "", "add it"});
     return record_[name.c_str()];
   }
   std::string find_text(const std::string& name) const { return convert<std::string>(find(name), name, "text"); }
@@ -113,7 +115,7 @@ class Reader {
     if (nb::try_cast<T>(value, result)) return result;
     // Cut by characters, in Python: a cut between a character's bytes leaves what is no text.
     const auto shown = nb::cast<std::string>(nb::str(nb::repr(value))[nb::slice(0, 80)]);
-    throw UsageError({name + " is " + shown + ", not " + kind, "", ""});
+    throw UsageError({"python.value.wrong", name + " is " + shown + ", not " + kind, "", std::string("give ") + kind});
   }
 
   const nb::dict& record_;
@@ -194,7 +196,7 @@ size_t find_name(Names names, const std::string& name, const std::string& what) 
   if (found != names.end()) return static_cast<size_t>(found - names.begin());
   std::string all;
   for (const std::string_view one : names) all += (all.empty() ? "" : ", ") + std::string(one);
-  throw UsageError({"no " + what + " \"" + name + "\"", "", "choose one of: " + all});
+  throw UsageError({"python.name.unknown", "there is no " + what + " \"" + name + "\"", "", "choose one of: " + all});
 }
 
 std::optional<float> read_real(const nb::dict& record, const std::string& name) {

@@ -45,7 +45,8 @@ AovSet read_aovs(const std::vector<std::string>& names) {
     }
     std::string all;
     for (const std::string_view one : aov_names()) all += std::string(one) + ", ";
-    throw UsageError({"there is no AOV \"" + name + "\"", "", "choose one of: " + all + std::string(kCryptomatte)});
+    throw UsageError({"python.name.unknown", "there is no AOV \"" + name + "\"", "",
+                      "choose one of: " + all + std::string(kCryptomatte)});
   }
   return set;
 }

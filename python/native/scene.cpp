@@ -155,10 +155,8 @@ nb::list describe_objects(const Scene& scene) {
   return objects;
 }
 
-nb::list find_problems(const Scene& scene) {
-  nb::list sentences;
-  for (const Problem& problem : validate(scene)) sentences.append(problem.sentence());
-  return sentences;
+void check(const Scene& scene) {
+  if (const std::vector<Problem> problems = validate(scene); !problems.empty()) throw InputError(problems);
 }
 
 }  // namespace
@@ -187,7 +185,7 @@ void bind_scene(nb::module_& module) {
       .def("variants", [](const Scene& s) { return s.variants; })
       .def("center", [](const Scene& s) { return nb::make_tuple(s.center.x, s.center.y, s.center.z); })
       .def("bounds", &bounds)
-      .def("problems", &find_problems)
+      .def("validate", &check)
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("set_center", [](Scene& s, double x, double y, double z) { s.center = dvec3(x, y, z); })
       .def("lit", &light, nb::arg("choice"), nb::arg("words"))

@@ -12,7 +12,7 @@ Importing the package needs no Vulkan driver. docs/python.md describes all of it
 from promin._arrays import HIT_DTYPE, Hits, RaysLike, positions
 from promin._caster import Caster, Progress
 from promin._device import Device, DeviceInfo, DeviceLike
-from promin._errors import Cancelled, DeviceError, DifferenceError, Error, InputError, RunError, UsageError
+from promin._errors import Cancelled, DeviceError, DifferenceError, Error, InputError, Problem, RunError, UsageError
 from promin._frame import Frame, cryptomatte_id, read_aovs, read_image, write_image
 from promin._promin import __version__
 from promin._records import (
@@ -60,6 +60,7 @@ __all__ = [
     "ObjectInfo",
     "Panorama",
     "Phong",
+    "Problem",
     "Progress",
     "RaysLike",
     "Renderer",

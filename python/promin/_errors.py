@@ -5,29 +5,53 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import ClassVar, NamedTuple
+
+
+class Problem(NamedTuple):
+    """One reason of an error. `str(problem)` is its sentence, "WHERE: WHAT; CURE"."""
+
+    code: str
+    """The kind of the problem, such as "job.piece.cut". Codes are stable; sentences are not."""
+    where: str
+    """A file, and after ": " the place in it; or a member of a scene. May be empty."""
+    what: str
+    """The fault, as a sentence without its end."""
+    cure: str
+    """The remedy, as a sentence without its end. May be empty."""
+
+    def __str__(self) -> str:
+        return (self.where and self.where + ": ") + self.what + (self.cure and "; " + self.cure)
 
 
 class Error(Exception):
     """Base class of promin's exceptions. `str(error)` is the first problem's sentence; the others follow, one on a
     line."""
 
-    problems: tuple[str, ...]
-    """The reasons, at least one. Each names the problem, its place and a cure."""
+    problems: tuple[Problem, ...]
+    """The reasons, at least one."""
 
-    def __init__(self, message: str, problems: Iterable[str] = ()) -> None:
+    _CODE: ClassVar[str] = "work.failed"
+
+    def __init__(self, message: str, problems: Iterable[Iterable[str]] = ()) -> None:
         super().__init__(message)
-        self.problems = tuple(problems) or (message,)
+        what, _, cure = message.partition("; ")
+        self.problems = tuple(Problem(*problem) for problem in problems) or (Problem(self._CODE, "", what, cure),)
 
-    def __reduce__(self) -> tuple[type[Error], tuple[str, tuple[str, ...]]]:
+    def __reduce__(self) -> tuple[type[Error], tuple[str, tuple[Problem, ...]]]:
         return type(self), (str(self), self.problems)
 
 
 class UsageError(Error, ValueError):
-    """An argument is wrong."""
+    """An argument is wrong. The code is "argument.wrong" where this package finds it itself."""
+
+    _CODE = "argument.wrong"
 
 
 class InputError(Error):
     """A scene, ray or BVH file or a picture to read is bad, or a scene in memory."""
+
+    _CODE = "input.wrong"
 
 
 class DeviceError(Error):
@@ -36,6 +60,8 @@ class DeviceError(Error):
 
 class DifferenceError(Error, AssertionError):
     """Two pictures differ by more than is allowed."""
+
+    _CODE = "picture.pair.differs"
 
 
 class Cancelled(Error):

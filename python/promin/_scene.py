@@ -372,10 +372,7 @@ class Scene:
 
     def validate(self) -> None:
         """Raises InputError with all problems of the scene and their places, if any. Caster and Renderer do so too."""
-        problems = self.native().problems()
-        if problems:
-            first = problems[0] if len(problems) == 1 else f"{problems[0]} (and {len(problems) - 1} more)"
-            raise InputError("\n  ".join([first, *problems[1:]]), problems)
+        self.native().validate()
 
     def positions(self, rays: RaysLike, hits: NDArray[Any]) -> NDArray[np.float64]:
         """Returns the hit points, (..., 3) float64, NaN on a miss. On meshes of `add_triangles` it is the intersection
@@ -471,7 +468,7 @@ class Scene:
             if self._base is None:
                 file = Path(self._file.path)
                 if _hash(file) != self._file.sha256:
-                    raise InputError(f"the scene's file has changed since it was pickled, {file}; load it anew")
+                    raise InputError(f"{file}: the scene's file has changed since it was pickled; load it again")
                 self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
             return self._base
 
@@ -622,7 +619,7 @@ def _hash(file: Path) -> str:
             while block := stream.read(1 << 20):
                 digest.update(block)
     except OSError as error:
-        raise InputError(f"the scene cannot be read ({error.strerror}), {file}") from None
+        raise InputError(f"{file}: the scene cannot be read ({error.strerror}); check the path and its permissions") from None
     return digest.hexdigest()
 
 

@@ -49,13 +49,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _begin(options, [word for word in others if word != "--"])
         if others:
             raise jobs.UsageError(
-                f"{others[0]} is not known, on the command line; see promin-farm {options.command} -h"
+                f"{others[0]} is not known; see promin-farm {options.command} -h"
             )
         commands = {"resume": _resume, "work": _work, "status": _status, "verify": _verify, "audit": _audit}
         return commands[options.command](options)
     except jobs.Error as error:
         first, *rest = str(error).splitlines()
-        print("\n".join([f"promin-farm: error: {first}", *rest]), file=sys.stderr)
+        print("\n".join([f"promin-farm: {first}", *rest]), file=sys.stderr)
         return exit_code_of(error)
     except KeyboardInterrupt:
         print("promin-farm: stopped; finished pieces are kept, promin-farm resume continues", file=sys.stderr)
@@ -172,7 +172,7 @@ def _add_run_options(command: argparse.ArgumentParser) -> None:
 def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
     for value, what, name in ((options.output, "output", "-o FILE"), (options.job, "folder for the job", "--job DIR")):
         if not value:
-            raise jobs.UsageError(f"there is no {what}, on the command line; name one by {name}")
+            raise jobs.UsageError(f"there is no {what}; name one by {name}")
     if options.command == "cast":
         from promin_farm.rays import prepare_rays  # Loading NumPy takes a while.
 
@@ -221,7 +221,7 @@ def _work(options: argparse.Namespace) -> int:
         tally = work(job, share, options.device, watch, signals)
     watch.close()
     if tally.reason:
-        print(f"promin-farm: error: {tally.reason}", file=sys.stderr)
+        print(f"promin-farm: {tally.reason}", file=sys.stderr)
         return tally.exit_code
     survey = take_survey(job)
     left = survey.total - len(survey.done)
@@ -258,7 +258,7 @@ def _verify(options: argparse.Namespace) -> int:
     bad = [number for number, state in states.items() if state == "bad"]
     for number in bad:
         print(
-            f"promin-farm: error: {job.why(number)}, {job.pieces[number].file}; promin-farm resume makes it again",
+            f"promin-farm: {job.pieces[number].file}: {job.why(number)}; promin-farm resume makes it again",
             file=sys.stderr,
         )
     missing = sum(state == "missing" for state in states.values())
@@ -273,7 +273,7 @@ def _audit(options: argparse.Namespace) -> int:
     job = jobs.open(options.folder)
     report = audit(job, options.share, options.seed, options.device)
     if not report.is_good:
-        print(f"promin-farm: error: an audit has found wrong pieces, {job.folder}", file=sys.stderr)
+        print(f"promin-farm: {job.folder}: an audit has found wrong pieces", file=sys.stderr)
     if not options.quiet or not report.is_good:
         print(report.describe(), file=sys.stdout if report.is_good else sys.stderr)
     return 0 if report.is_good else 1

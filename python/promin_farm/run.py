@@ -82,23 +82,23 @@ def check_outputs(job: jobs.Job, outputs: list[str]) -> None:
 
 def _check(options: Options) -> None:
     if options.workers is not None and options.workers < 1:
-        raise jobs.UsageError(f"--workers is {options.workers}, on the command line; give 1 or more")
+        raise jobs.UsageError(f"--workers is {options.workers}; give 1 or more")
     scheduler = options.scheduler
     if scheduler and scheduler not in QUEUES and "://" not in scheduler:
         known = ", ".join(QUEUES)
-        raise jobs.UsageError(f"--scheduler is {scheduler!r}, on the command line; give tcp://HOST:PORT, {known}")
+        raise jobs.UsageError(f"--scheduler is {scheduler!r}; give tcp://HOST:PORT, {known}")
     if scheduler and options.devices:
         raise jobs.UsageError(
-            "--device selects devices of this machine, and --scheduler starts workers elsewhere, on the command line; "
+            "--device selects devices of this machine, and --scheduler starts workers elsewhere; "
             "set PROMIN_DEVICE where they start"
         )
     if options.queue_config and scheduler not in QUEUES:
         raise jobs.UsageError(
-            "--queue-config needs a queue, on the command line; "
+            "--queue-config needs a queue; "
             f"give --scheduler {', '.join(QUEUES)}"
         )
     if scheduler and "://" in scheduler and options.workers:
-        raise jobs.UsageError("--workers does not apply to a running cluster, on the command line; it has its own")
+        raise jobs.UsageError("--workers does not apply to a running cluster; it has its own")
 
 
 def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int], assembly: Assembly) -> int | None:
@@ -150,7 +150,7 @@ def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew,
 def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     again = f"promin-farm resume {job.folder}"
     if tally.reason:
-        print(f"promin-farm: error: {tally.reason}; {of_pieces(tally.done)} made, {again} continues", file=sys.stderr)
+        print(f"promin-farm: {tally.reason}; {of_pieces(tally.done)} made, {again} continues", file=sys.stderr)
         return tally.exit_code
     if tally.was_stopped:
         print(f"promin-farm: stopped after {of_pieces(tally.done)}; {again} continues", file=sys.stderr)
@@ -159,7 +159,7 @@ def _conclude(job: jobs.Job, tally: Tally) -> int | None:
         named = [f"{job.pieces[number].name} ({tries.reason})" for number, tries in sorted(tally.failed.items())]
         more = ", …" if len(named) > _MOST_NAMED else ""
         print(
-            f"promin-farm: error: {len(named)} of {of_pieces(len(job.pieces))} cannot be made: "
+            f"promin-farm: {len(named)} of {of_pieces(len(job.pieces))} cannot be made: "
             f"{', '.join(named[:_MOST_NAMED])}{more}, {job.folder}; correct that, then {again} tries again",
             file=sys.stderr,
         )
@@ -167,7 +167,7 @@ def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     if tally.foreign:
         owner = next(iter(tally.foreign.values()))
         print(
-            f"promin-farm: error: {of_pieces(len(tally.foreign))} need a worker with the fingerprint {owner[:16]}, "
+            f"promin-farm: {of_pieces(len(tally.foreign))} need a worker with the fingerprint {owner[:16]}, "
             f"which no worker has, {Path(job.folder)}; run {again} where one has it",
             file=sys.stderr,
         )

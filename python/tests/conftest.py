@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Callable
 
@@ -34,6 +36,15 @@ def run_promin() -> Callable[..., None]:
         subprocess.run([str(program), *map(str, words), "--quiet"], check=True, timeout=300)
 
     return run
+
+
+@contextlib.contextmanager
+def fails(kind: type[promin.Error], code: str, *words: str) -> Iterator[pytest.ExceptionInfo[promin.Error]]:
+    """Expects an error with a problem of this code, whose sentence contains the words."""
+    with pytest.raises(kind) as caught:
+        yield caught
+    problems = caught.value.problems
+    assert any(problem.code == code and all(word in str(problem) for word in words) for problem in problems), problems
 
 
 def make_box(center: object = (0, 0, 0), size: float = 2.0) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -14,7 +14,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import make_box
+from conftest import fails, make_box
 
 import promin
 from promin import _renderer, _view
@@ -362,6 +362,6 @@ def test_files_stand_for_scenes(scenes: Path) -> None:
     assert (hits["object"] >= 0).all()
     with pytest.raises(promin.UsageError, match="is not a promin.Scene"):
         promin.Renderer(3)  # type: ignore[arg-type]
-    with pytest.raises(promin.InputError, match="the file does not exist"):
+    with fails(promin.InputError, "file.missing"):
         promin.render("none.glb")
     assert _renderer._count_samples(promin.View(size="100x50")) == 100 * 50 * 8

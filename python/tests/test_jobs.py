@@ -20,7 +20,7 @@ import pytest
 from numpy.typing import NDArray
 
 import promin
-from conftest import make_rays
+from conftest import fails, make_rays
 from promin import jobs
 
 RunPromin = Callable[..., None]
@@ -84,15 +84,15 @@ def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) ->
     # A frame whose pieces are there does not wait for the others.
     job.merge([tmp_path / "early.##.png"], frames=[1])
     assert (tmp_path / "early.01.png").read_bytes() == (tmp_path / "whole.01.png").read_bytes()
-    with pytest.raises(promin.RunError, match="1 of 4 pieces is missing or bad: frame000000_"):
+    with fails(promin.RunError, "job.pieces.missing", "1 of 4", "frame000000_"):
         job.merge([tmp_path / "early.##.png"], frames=[0, 1])
-    with pytest.raises(promin.UsageError, match="the job has no frame 2"):
+    with fails(promin.UsageError, "job.frame.missing", "2"):
         job.merge([tmp_path / "early.##.png"], frames=[1, 2])
     with pytest.raises(promin.UsageError, match="frames has -1"):
         job.merge([tmp_path / "early.##.png"], frames=[-1])
     assert not (tmp_path / "early.00.png").exists()
     make_all(job)
-    with pytest.raises(promin.UsageError, match="several frames would be written to one file"):
+    with fails(promin.UsageError, "output.frames.one"):
         job.merge([tmp_path / "one.png"])
     job.merge([tmp_path / "cut.##.png"])
     for number in ("00", "01"):
@@ -137,7 +137,7 @@ def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
     words = [str(scene), "rays.chunks", "--pieces", "4"]
     job = jobs.create("cast", words, tmp_path / "job", rays=source)
     make_all(job)
-    with pytest.raises(promin.UsageError, match="a job of rays has no frames"):
+    with fails(promin.UsageError, "job.frames.none"):
         job.merge([tmp_path / "hits.npy"], frames=[0])
     job.merge([tmp_path / "hits.npy"])
     hits = np.load(tmp_path / "hits.npy")
@@ -145,7 +145,7 @@ def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
     # Elsewhere they are passed again, and others are refused.
     again = jobs.open(tmp_path / "job")
     assert again.runner(rays=source).recompute(2) == job.sha256(2)
-    with pytest.raises(promin.UsageError, match='the file "rays.chunks" has changed since'):
+    with fails(promin.UsageError, "job.other", '"rays.chunks"'):
         again.runner(rays=Chunks(make_rays(500, seed=2)))
     Path(job.pieces[1].file).unlink()
 
@@ -156,7 +156,7 @@ def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
     runner = jobs.open(tmp_path / "job").runner(rays=Short(source.rays))
     assert runner.recompute(0) == job.sha256(0)
     Path(job.pieces[3].file).unlink()
-    with pytest.raises(promin.InputError, match="the rays end at 400 of 500, rays.chunks"):
+    with fails(promin.InputError, "rays.short", "rays.chunks: ", "400", "500"):
         runner.run(3)
     assert job.state(3) == "missing" and job.events()[-1]["event"] == "failed"
     source.rays = np.zeros((500, 7), np.float32)
@@ -232,12 +232,12 @@ def test_parts_that_say_what_there_is_not_are_refused(scene: Path, tmp_path: Pat
     whole, data = job.read(0)
     for name, value in (("tone_mapping", 77), ("tone_mapping", -1), ("exr", [False, 99, False])):
         job.write(0, json.dumps({**json.loads(whole), name: value}), data)
-        with pytest.raises(jobs.InputError, match="the piece is not part of a picture"):
+        with fails(jobs.InputError, "job.piece.kind"):
             job.merge([tmp_path / "out.exr"])
     said = json.loads(whole)
     said["metadata"] = said["metadata"][:-1]
     job.write(0, json.dumps(said), data)
-    with pytest.raises(jobs.InputError, match="the piece has other metadata than the other pieces"):
+    with fails(jobs.InputError, "job.piece.other"):
         job.merge([tmp_path / "out.exr"])
     assert not (tmp_path / "out.exr").exists()
 
@@ -253,7 +253,7 @@ def test_no_frame_is_written_over_what_the_job_is_made_of(scene: Path, tmp_path:
     words = [str(scene), "--size", "8", "6", "--path", str(path), "--environment", str(panorama)]
     job = jobs.create("render", words, tmp_path / "job")
     make_all(job)
-    with pytest.raises(jobs.UsageError, match="would overwrite an input, .*sky.0001.exr"):
+    with fails(jobs.UsageError, "output.input", "sky.0001.exr: "):
         job.merge([tmp_path / "sky.####.exr"])
     assert panorama.read_bytes() == kept
 
@@ -300,7 +300,7 @@ def test_comparisons_of_pictures(scene: Path, tmp_path: Path) -> None:
     assert compare_with(break_pixels) == jobs.Comparison(False, True, 0.0, 6, 1200)
     assert compare_with(break_more) == jobs.Comparison(False, False, 0.0, 7, 1200)
     job.write(0, description, data[:-4])
-    with pytest.raises(promin.InputError, match="the piece is not part of a picture"):
+    with fails(promin.InputError, "job.piece.kind"):
         runner.compare(0)
 
 
@@ -412,7 +412,7 @@ def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
         "the piece is damaged",
         "the file holds another piece",
     ]
-    with pytest.raises(promin.RunError, match="4 of 4 pieces are missing or bad"):
+    with fails(promin.RunError, "job.pieces.missing", "4 of 4"):
         job.merge([tmp_path / "none.png"])
     assert not (tmp_path / "none.png").exists()
     for number in range(4):
@@ -434,24 +434,24 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         "pieces": 2,
     }
     for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, and 1 now")):
-        with pytest.raises(promin.UsageError, match=f"the folder belongs to another job: {what}"):
+        with fails(promin.UsageError, "job.other", what):
             jobs.create("cast", other, tmp_path / "job")
     changed = make_rays(1000)
     changed[3, 3] = 0.5
     np.save(rays, changed)
-    with pytest.raises(promin.InputError, match="the file changed after .*rays.npy"):
+    with fails(promin.InputError, "file.changed", "rays.npy: "):
         runner.run(0)
-    with pytest.raises(promin.UsageError, match='the file "rays.npy" has changed since'):
+    with fails(promin.UsageError, "job.other", '"rays.npy"'):
         jobs.open(tmp_path / "job").runner()
     np.save(rays, make_rays(1000))
     scene.write_text(scene.read_text() + "\n")
-    with pytest.raises(promin.UsageError, match='the file "box.gltf" has changed since'):
+    with fails(promin.UsageError, "job.other", '"box.gltf"'):
         jobs.open(tmp_path / "job").runner()
     scene.unlink()
-    with pytest.raises(promin.InputError, match="the file does not exist, .*box.gltf"):
+    with fails(promin.InputError, "file.missing", "box.gltf: "):
         jobs.open(tmp_path / "job").runner()
     (tmp_path / "job/spec.json").write_text("{}")
-    with pytest.raises(promin.InputError, match='has no member "promin_cast_spec" with the value 1, .*spec.json'):
+    with fails(promin.InputError, "spec.format", "spec.json: "):
         jobs.open(tmp_path / "job").runner()
     (tmp_path / "job/spec.json").unlink()
     with pytest.raises(promin.InputError, match="does not say how the job's pieces are made, .*spec.json"):
@@ -474,34 +474,34 @@ def test_a_specification_is_the_job_of_its_words(scene: Path, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "kind, words, error, sentence",
+    "kind, words, error, problem",
     [
-        ("render", [], promin.UsageError, "SCENE is required"),
-        ("render", ["box.gltf", "--sp", "2"], promin.UsageError, "unknown option --sp, .*did you mean --spp"),
-        ("render", ["box.gltf", "--spp", "x"], promin.UsageError, "--spp takes a whole number"),
-        ("render", ["box.gltf", "--help"], promin.UsageError, "--help cannot run as a job"),
-        ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "--output is not an argument of a job"),
-        ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "--piece is not an argument of a job"),
-        ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "it is chosen when pieces are made"),
-        ("render", ["box.gltf", "--time-limit", "1"], promin.UsageError, "--job and --time-limit contradict"),
-        ("render", ["none.gltf"], promin.InputError, "the file does not exist, none.gltf"),
-        ("cast", ["box.gltf"], promin.UsageError, "RAYS.npy is required"),
-        ("cast", ["box.gltf", "none.npy"], promin.InputError, "the file does not exist, none.npy"),
-        ("paint", ["box.gltf"], promin.UsageError, 'the command "paint" cannot run as a job'),
+        ("render", [], promin.UsageError, "usage.words.wrong SCENE"),
+        ("render", ["box.gltf", "--sp", "2"], promin.UsageError, "usage.option.unknown --sp --spp"),
+        ("render", ["box.gltf", "--spp", "x"], promin.UsageError, "usage.option.value --spp"),
+        ("render", ["box.gltf", "--help"], promin.UsageError, "job.argument.wrong --help"),
+        ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "job.argument.wrong --output"),
+        ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "job.argument.wrong --piece"),
+        ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "job.argument.wrong --device"),
+        ("render", ["box.gltf", "--time-limit", "1"], promin.UsageError, "usage.options.contradict --job --time-limit"),
+        ("render", ["none.gltf"], promin.InputError, "file.missing none.gltf:"),
+        ("cast", ["box.gltf"], promin.UsageError, "usage.words.wrong RAYS.npy"),
+        ("cast", ["box.gltf", "none.npy"], promin.InputError, "file.missing none.npy:"),
+        ("paint", ["box.gltf"], promin.UsageError, 'job.command.unknown "paint"'),
     ],
 )
 def test_wrong_arguments(
-    scenes: Path, tmp_path: Path, kind: str, words: list[str], error: type[promin.Error], sentence: str
+    scenes: Path, tmp_path: Path, kind: str, words: list[str], error: type[promin.Error], problem: str
 ) -> None:
-    with pytest.raises(error, match=sentence):
+    with fails(error, *problem.split()):
         jobs.create(kind, [str(scenes / word) if word == "box.gltf" else word for word in words], tmp_path / "job")
     assert not (tmp_path / "job").exists()
 
 
 def test_folders_without_a_job(tmp_path: Path) -> None:
-    with pytest.raises(promin.InputError, match="there is no such folder"):
+    with fails(promin.InputError, "job.folder.missing"):
         jobs.open(tmp_path / "none")
-    with pytest.raises(promin.InputError, match="there is no job in the folder"):
+    with fails(promin.InputError, "job.missing"):
         jobs.open(tmp_path)
 
 
@@ -548,9 +548,9 @@ def test_pieces_of_a_function(tmp_path: Path) -> None:
         create("8")
     with pytest.raises(promin.UsageError, match="made by a function"):
         jobs.open(tmp_path / "job").runner()
-    with pytest.raises(promin.InputError, match="the job's kind is \"bytes\""):
+    with fails(promin.InputError, "job.kind.unknown", '"bytes"'):
         job.merge([tmp_path / "a.npy"])
-    with pytest.raises(promin.UsageError, match="the job has no piece 3 of 3"):
+    with fails(promin.UsageError, "job.piece.unknown", "3 of 3"):
         job.state(3)
     with pytest.raises(promin.UsageError, match="return a text and bytes"):
         job.runner(make=lambda number: ("", 1)).run(0)  # type: ignore[arg-type, return-value]
@@ -611,24 +611,24 @@ def test_files_are_checked_before_the_work(scene: Path, rays: Path, tmp_path: Pa
     lists = jobs.create("cast", [str(scene), str(rays), "--all"], tmp_path / "all")
     pictures = jobs.create("render", [str(scene), "--size", "8", "8"], tmp_path / "render")
     casts.check_outputs([tmp_path / "hits.npy"])
-    for job, files, sentence in (
-        (casts, [rays], "the output would overwrite an input"),
-        (casts, ["a.npy", "b.npy"], "the job's results are written to one file, not to 2"),
-        (casts, ["a.exr"], ".npy"),
-        (lists, ["a.npy"], "the job's results are written to two files"),
-        (pictures, ["a.bmp"], "unknown output ending"),
+    for job, files, problem in (
+        (casts, [rays], "output.input"),
+        (casts, ["a.npy", "b.npy"], "job.outputs.count"),
+        (casts, ["a.exr"], "output.ending"),
+        (lists, ["a.npy"], "job.outputs.count"),
+        (pictures, ["a.bmp"], "output.ending"),
     ):
-        with pytest.raises(promin.UsageError, match=sentence):
+        with fails(promin.UsageError, problem):
             job.check_outputs(files)
     content = rays.read_bytes()
     make_all(casts)
-    with pytest.raises(promin.UsageError, match="overwrite"):
+    with fails(promin.UsageError, "output.input"):
         casts.merge([rays])
     assert rays.read_bytes() == content
     # Somebody else's folder does not lead out of itself.
     manifest = tmp_path / "cast" / "job.json"
     manifest.write_text(manifest.read_text().replace(casts.pieces[0].name, "../../out"))
-    with pytest.raises(promin.InputError, match="damaged"):
+    with fails(promin.InputError, "job.manifest.damaged"):
         jobs.open(tmp_path / "cast")
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import fails
 
 import promin
 
@@ -49,5 +50,5 @@ def test_alpha_comes_back_with_colours_beside_it(frame: promin.Frame, ending: st
 def test_other_channels_have_their_own_names(frame: promin.Frame, tmp_path: Path) -> None:
     frame.save(tmp_path / "a.jpg")
     assert promin.read_aovs(tmp_path / "a.jpg") == {}
-    with pytest.raises(promin.InputError, match="the picture does not exist"):
+    with fails(promin.InputError, "file.missing"):
         promin.read_aovs(tmp_path / "none.png")

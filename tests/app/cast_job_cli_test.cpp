@@ -132,27 +132,27 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
 TEST_F(CastJobCliTest, WhatTheJobIsMadeOfIsNotOverwritten) {
   const std::string rays = read("rays.npy");
   expect_done(cast({"--job", "job", "--pieces", "2", "--piece", "0/1"}));
-  expect_failure(run({"merge", "job", "-o", "rays.npy"}), 2, "the output would overwrite an input, rays.npy");
+  expect_failure(run({"merge", "job", "-o", "rays.npy"}), 2, "output.input rays.npy:");
   EXPECT_TRUE(read("rays.npy") == rays);
 }
 
 TEST_F(CastJobCliTest, WrongUseIsRefused) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{}, "--output is required"},
-      {{"-o", "a.npy", "--pieces", "4"}, "--pieces needs a job to divide"},
-      {{"--piece", "0/2"}, "--piece needs a job to divide"},
-      {{"--job", "job"}, "--output is required"},
-      {{"--job", "job", "--all", "-o", "a.npy"}, "--all is given without --offsets"},
+      {{}, "usage.option.required --output"},
+      {{"-o", "a.npy", "--pieces", "4"}, "usage.option.needs --pieces"},
+      {{"--piece", "0/2"}, "usage.option.needs --piece"},
+      {{"--job", "job"}, "usage.option.required --output"},
+      {{"--job", "job", "--all", "-o", "a.npy"}, "usage.option.needs --all --offsets"},
       {{"-o", "a.npy", "--job", "job", "--pieces", "1001"}, "1001 pieces are more than 1000 rays"},
-      {{"-o", "a.npy", "--job", "job", "--piece", "0/4"}, "--piece and --output contradict each other"},
-      {{"-o", "a.npy", "--job", "job", "--repeat", "2"}, "--job and --repeat contradict each other"},
-      {{"-o", "a.npy", "--job", "job", "--stats", "s.json"}, "--job and --stats contradict each other"}};
+      {{"-o", "a.npy", "--job", "job", "--piece", "0/4"}, "usage.options.contradict --piece --output"},
+      {{"-o", "a.npy", "--job", "job", "--repeat", "2"}, "usage.options.contradict --job --repeat"},
+      {{"-o", "a.npy", "--job", "job", "--stats", "s.json"}, "usage.options.contradict --job --stats"}};
   for (const auto& [words, sentence] : cases) {
     expect_failure(cast(words), 2, sentence);
     EXPECT_FALSE(std::filesystem::exists(folder() / "job")) << sentence;
   }
   expect_done(run({"render", "square.gltf", "--size", "8", "8", "--job", "job", "--piece", "0/1", "--quiet"}));
-  expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "unknown output ending \".npy\"");
+  expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "output.ending \".npy\"");
 }
 
 // The piece at hand is not there, and those before it are.

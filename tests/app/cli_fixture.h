@@ -10,11 +10,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "promin/image.h"
 #include "promin/ray.h"
+#include "support/golden_messages.h"
 #include "support/process.h"
 
 namespace promin {
@@ -143,16 +145,28 @@ class CliTest : public testing::Test {
   ProcessOptions options_;
 };
 
-/// One line of the form that every failure has.
+/// Expects a failure with one line "PROGRAM: SENTENCE". `part` is a part of it, or a code of
+/// tests/messages/messages.txt and words: then the sentence has the words of a golden one of this code, and those
+/// words.
 inline void expect_failure(const ProcessResult& result, int exit_code, const std::string& part,
                            const std::string& program = "promin") {
+  static const GoldenMessages messages = read_golden_messages(PROMIN_SOURCE_DIR "/tests/messages/messages.txt");
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
   EXPECT_THAT(result.out, testing::IsEmpty());
-  const size_t start = result.err.find(program + ": error: ");
-  ASSERT_NE(start, std::string::npos) << result.err;
-  const std::string line = result.err.substr(start);
-  EXPECT_THAT(line, testing::HasSubstr(part));
-  EXPECT_EQ(line.find('\n'), line.size() - 1) << line;
+  ASSERT_THAT(result.err, testing::EndsWith("\n"));
+  const size_t before = result.err.rfind('\n', result.err.size() - 2);
+  const std::string line = result.err.substr(before == std::string::npos ? 0 : before + 1);
+  ASSERT_THAT(line, testing::StartsWith(program + ": ")) << result.err;
+  std::istringstream words(part);
+  std::string word;
+  words >> word;
+  if (!messages.contains(word)) {
+    EXPECT_THAT(line, testing::HasSubstr(part));
+    return;
+  }
+  const std::string sentence = line.substr(program.size() + 2);
+  EXPECT_TRUE(has_golden_words(messages, word, sentence)) << sentence << "is no sentence of " << word;
+  while (words >> word) EXPECT_THAT(sentence, testing::HasSubstr(word));
 }
 
 }  // namespace promin

@@ -56,17 +56,17 @@ TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
 
 TEST_F(CliTest, ExplainGoesAloneAndStaysInThePicture) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{"--explain", "64", "0"}, "the pixel of --explain lies outside the picture of 64x36"},
-      {{"--explain", "0", "36"}, "the pixel of --explain lies outside"},
-      {{"--explain", "1"}, "too few values are given for --explain"},
-      {{"--explain", "-1", "0"}, "--explain takes a whole number"},
-      {{"--explain", "1", "1", "-o", "a.exr"}, "--explain and --output contradict"},
-      {{"--explain", "1", "1", "--path", "p.json"}, "--explain and --path contradict"},
-      {{"--explain", "1", "1", "--aov", "depth"}, "--explain and --aov contradict"},
-      {{"--explain", "1", "1", "--shading", "uv"}, "--explain and --shading contradict"},
-      {{"--explain", "1", "1", "--stats", "s.json"}, "--explain and --stats contradict"},
-      {{"--explain", "1", "1", "--repeat", "2"}, "--explain and --repeat contradict"},
-      {{"--explain", "1", "1", "--crop", "0", "0", "2", "2"}, "--explain and --crop contradict"},
+      {{"--explain", "64", "0"}, "view.pixel.outside 64x36"},
+      {{"--explain", "0", "36"}, "view.pixel.outside"},
+      {{"--explain", "1"}, "usage.option.few --explain"},
+      {{"--explain", "-1", "0"}, "usage.option.value --explain"},
+      {{"--explain", "1", "1", "-o", "a.exr"}, "usage.options.contradict --explain --output"},
+      {{"--explain", "1", "1", "--path", "p.json"}, "usage.options.contradict --explain --path"},
+      {{"--explain", "1", "1", "--aov", "depth"}, "usage.options.contradict --explain --aov"},
+      {{"--explain", "1", "1", "--shading", "uv"}, "usage.options.contradict --explain --shading"},
+      {{"--explain", "1", "1", "--stats", "s.json"}, "usage.options.contradict --explain --stats"},
+      {{"--explain", "1", "1", "--repeat", "2"}, "usage.options.contradict --explain --repeat"},
+      {{"--explain", "1", "1", "--crop", "0", "0", "2", "2"}, "usage.options.contradict --explain --crop"},
   };
   for (const auto& [more, part] : cases) {
     SCOPED_TRACE(testing::PrintToString(more));

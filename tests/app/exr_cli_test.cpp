@@ -289,7 +289,7 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
   EXPECT_THAT(second_eye.out, testing::HasSubstr("right.G: largest 0.25, at pixel 1 0; 1 "));
   expect_failure(
       run({"compare", "rows.exr", "eyes.exr"}), 3,
-      "the pictures have different channels, only rows.exr has Z; only eyes.exr has right.B right.G right.R");
+      "the pictures have different channels: only rows.exr has Z, only eyes.exr has right.B right.G right.R");
 }
 
 TEST_F(ExrCliTest, OptionsOfExrsWantOne) {

@@ -98,7 +98,7 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   EXPECT_THAT(render_path(with_stats).err, HasSubstr("s.json is not written, because nothing was traced"));
   std::filesystem::remove(folder() / "a2.exr");
   std::filesystem::create_directory(folder() / "a2.exr");
-  expect_failure(render_path(options), 1, "is a folder, a2.exr");
+  expect_failure(render_path(options), 1, "output.kind a2.exr:");
 }
 
 TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
@@ -107,8 +107,7 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
                                             "square.0001.png"));
   std::filesystem::remove(folder() / "square.0000.exr");
   write("square.0000.png", "notes");
-  expect_failure(render_path({"--frames", "0-1"}), 2,
-                 "square.0000.png exists already and promin did not make it from square.gltf");
+  expect_failure(render_path({"--frames", "0-1"}), 2, "output.foreign square.0000.png square.gltf");
   EXPECT_EQ(render_path({"--frames", "2", "--quiet"}).exit_code, 0) << "another frame";
 }
 
@@ -150,8 +149,7 @@ TEST_F(PathCliTest, FpsTakesThePathByTime) {
   std::string path = kPath;
   path.insert(path.find("\"frames\""), "\"fps\": 10, ");
   write("path.json", path);
-  expect_failure(render_path({"-o", "f#.exr", "--frames", "4"}), 2,
-                 "the path has no frame 4, path.json; choose frames from 0 to 3");
+  expect_failure(render_path({"-o", "f#.exr", "--frames", "4"}), 2, "path.frame.missing path.json: 4 0 3");
   EXPECT_EQ(render_path({"--fps", "stored", "-o", "f#.exr", "--quiet"}).exit_code, 0);
   EXPECT_EQ(pixels("f2.exr"), pixels("s2.exr"));
 }
@@ -177,27 +175,27 @@ TEST_F(PathCliTest, StatsTellOfEachFrame) {
 
 TEST_F(PathCliTest, WrongUseIsRefused) {
   const std::pair<OptionValues, std::string> cases[] = {
-      {{"-o", "a.exr"}, "3 frames would be written to one file, a.exr; write ####"},
-      {{"-o", "a#/f.exr"}, "3 frames would be written to one file"},
-      {{"-o", "f#.exr", "--camera", "main"}, "--path and a camera"},
-      {{"-o", "f#.exr", "--near", "1"}, "--path and a camera"},
-      {{"-o", "f#.exr", "--frames", "1-3"}, "the path has no frame 3, path.json; choose frames from 0 to 2"},
-      {{"-o", "f#.exr", "--frames", "2-1"}, "--frames is empty"},
+      {{"-o", "a.exr"}, "output.frames.one a.exr: 3 ####"},
+      {{"-o", "a#/f.exr"}, "output.frames.one 3"},
+      {{"-o", "f#.exr", "--camera", "main"}, "usage.options.contradict --path --camera"},
+      {{"-o", "f#.exr", "--near", "1"}, "usage.options.contradict --path --camera"},
+      {{"-o", "f#.exr", "--frames", "1-3"}, "path.frame.missing path.json: 3 0 2"},
+      {{"-o", "f#.exr", "--frames", "2-1"}, "usage.option.value --frames"},
       {{"-o", "f#.exr", "--frames", "1-"}, "--frames takes a whole number from 0 to 9999999, not \"\" in \"1-\""},
-      {{"-o", "f#.exr", "--frames", "x"}, "from 0 to 9999999, not \"x\", on the command line"},
+      {{"-o", "f#.exr", "--frames", "x"}, "from 0 to 9999999, not \"x\""},
       {{"-o", "f#.exr", "--frames", "-1"}, "--frames takes a whole number"},
       {{"-o", "f#.exr", "--fps", "0"}, "--fps takes"},
       {{"-o", "f#.exr", "--fps", "often"}, "--fps takes"},
-      {{"-o", "f0.exr", "-o", "f#.exr", "--frames", "0"}, "the same output file is named twice"},
-      {{"-o", "f#.exr", "--stats", "path.json"}, "overwrite an input"},
+      {{"-o", "f0.exr", "-o", "f#.exr", "--frames", "0"}, "output.twice"},
+      {{"-o", "f#.exr", "--stats", "path.json"}, "output.input"},
   };
   for (const auto& [arguments, part] : cases) {
     SCOPED_TRACE(testing::PrintToString(arguments));
     expect_failure(render_path(arguments), 2, part);
     EXPECT_THAT(files(), testing::ElementsAre("path.json"));
   }
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "--frames needs a camera path");
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "--fps needs a camera path");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "usage.option.needs --frames");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "usage.option.needs --fps");
   write("path.json", "{}");
   const ProcessResult bad = render_path({"-o", "f#.exr"});
   EXPECT_EQ(bad.exit_code, 3);
@@ -211,7 +209,7 @@ TEST_F(PathCliTest, AFailureKeepsTheFramesDoneAndNamesItsOwn) {
   path.replace(path.find("[0, 0, -1]"), 10, "[0, 0, 1]");
   write("path.json", path);
   fill_disk(2000);
-  expect_failure(render_path({"--size", "300", "300", "-o", "f#.png", "--quiet"}), 1, "frame 1: ");
+  expect_failure(render_path({"--size", "300", "300", "-o", "f#.png", "--quiet"}), 1, "f1.png: frame 1: ");
   EXPECT_THAT(files(), UnorderedElementsAre("path.json", "f0.png"));
   EXPECT_EQ(read_image(folder() / "f0.png").size, uvec2(300, 300));
 }

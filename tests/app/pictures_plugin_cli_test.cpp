@@ -78,7 +78,7 @@ TEST_F(PicturesPluginCliTest, WhatReadsNoUnusualPictureDoesWithoutIt) {
 
 TEST_F(PicturesPluginCliTest, AMissingOneIsTold) {
   expect_refusal(
-      "the plugin that reads pictures, libpromin_pictures.so, is missing, searched in plugins; install all of promin, "
+      "the plugin that reads pictures, libpromin_pictures.so, is missing in plugins; install all of promin, "
       "or "
       "name the plugin's folder in PROMIN_PLUGINS");
 }
@@ -118,7 +118,7 @@ TEST_F(PicturesPluginCliTest, AProgramFindsItBesideItselfWhateverItIsCalledBy) {
   fs::create_directories(folder() / "prefix/lib/promin");
   const fs::path program = folder() / "prefix/bin/promin";
   fs::copy_file(PROMIN_EXECUTABLE, program);
-  expect_failure(Process(program, {"compare", "a.tga", "a.tga"}, options_).wait(), 1, "is missing, searched in /");
+  expect_failure(Process(program, {"compare", "a.tga", "a.tga"}, options_).wait(), 1, "is missing in /");
   fs::copy_file(kPlugin, folder() / "prefix/lib/promin" / kPlugin.filename());
   expect_found(program);
 }

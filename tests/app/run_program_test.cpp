@@ -31,25 +31,24 @@ std::string message_of_cut_loops() {
 }
 
 TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
-  EXPECT_THAT(message_of_cut_loops(),
-              EndsWith(", on this device; use another --device, or remove surfaces that coincide"));
+  EXPECT_THAT(message_of_cut_loops(), EndsWith("; use another --device, or remove surfaces that coincide"));
   const auto message = [](const char* where, const char* cure, Setting setting) {
-    return message_of(RunError({"bad", where, cure, setting}));
+    return message_of(RunError({"device.lost", "bad", where, cure, setting}));
   };
-  EXPECT_EQ(message("requested as the device", "choose one", Setting::kDevice),
-            "bad, requested by --device; choose one");
-  EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "bad, x; try again, or another --device");
-  EXPECT_EQ(message("x", "use the builder sah", Setting::kBuilder), "bad, x; use --builder sah");
-  EXPECT_EQ(message("x", "raise the memory for textures", Setting::kTextureMemory), "bad, x; raise --texture-memory");
-  EXPECT_EQ(message_of(Problem{"bad", "x", "use the builder sah", Setting::kBuilder}), "bad, x; use --builder sah");
-  EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "bad, x; bounce less (--max-depth)") << "other words";
+  EXPECT_EQ(message("x", "try again, or another device", Setting::kDevice), "x: bad; try again, or another --device");
+  EXPECT_EQ(message("x", "use the builder sah", Setting::kBuilder), "x: bad; use --builder sah");
+  EXPECT_EQ(message("x", "raise the memory for textures", Setting::kTextureMemory), "x: bad; raise --texture-memory");
+  EXPECT_EQ(message_of(Problem{"device.lost", "bad", "x", "use the builder sah", Setting::kBuilder}),
+            "x: bad; use --builder sah");
+  EXPECT_EQ(message("x", "bounce less", Setting::kDepth), "x: bad; bounce less (--max-depth)") << "other words";
   EXPECT_EQ(message("another device.gltf", "use another device", Setting::kNone),
-            "bad, another device.gltf; use another device");
+            "another device.gltf: bad; use another device");
 }
 
 TEST(MessageTest, EachProblemHasItsOption) {
-  const InputError error({{"one", "", "use a smaller depth", Setting::kDepth}, {"two", "there", ""}});
-  EXPECT_EQ(message_of(error), "one; lower --max-depth (1 of 2 problems)\n  two, there");
+  const InputError error({Problem{"view.depth.range", "one", "", "use a smaller depth", Setting::kDepth},
+                          Problem{"file.missing", "two", "there", ""}});
+  EXPECT_EQ(message_of(error), "one; lower --max-depth (1 of 2 problems)\n  there: two");
 }
 
 /// What a program says that does this, and its exit code.
@@ -71,15 +70,14 @@ TEST(RunProgramTest, WhatTheSystemRefusesIsNoBug) {
   const auto system_error = [](std::errc code) { return std::system_error(std::make_error_code(code)); };
   EXPECT_EQ(
       run_work([&] { throw system_error(std::errc::resource_unavailable_try_again); }),
-      std::pair(
-          1, std::string("promin: error: the system refuses to start another thread; raise pids.max or ulimit -u\n")));
+      std::pair(1, std::string("promin: the system refuses to start another thread; raise pids.max or ulimit -u\n")));
   EXPECT_EQ(run_work([] {
               throw std::filesystem::filesystem_error("cannot", "there", std::make_error_code(std::errc::io_error));
             }).second,
-            "promin: error: the system refused a request (Input/output error), there; check its limits and "
+            "promin: there: the system refused a request (Input/output error); check its limits and "
             "permissions\n");
   EXPECT_THAT(run_work([] { throw std::bad_alloc(); }).second,
-              testing::HasSubstr("there is not enough memory, in promin"));
+              testing::HasSubstr("promin: promin has not enough memory"));
   EXPECT_THAT(run_work([] { throw std::logic_error("x"); }).second, testing::HasSubstr("report it as a bug"));
 }
 

@@ -36,8 +36,8 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
     const char* part;
   };
   const Case cases[] = {
-      {{"rates"}, 2, "SCENE is required, on the command line; see promin-lab rates --help"},
-      {{"rates", "wavy:none"}, 2, "no number of triangles"},
+      {{"rates"}, 2, "SCENE is required; see promin-lab rates --help"},
+      {{"rates", "wavy:none"}, 2, "wavy:none: this is no number of triangles"},
       {{"rates", "wavy:500", "--runs", "1001"}, 2, "--runs takes a whole number"},
       {{"rates", "wavy:500", "--builder", "none"}, 2, "--builder takes "},
       {{"rates", "wavy:500", "--device", ""}, 2, "--device takes a part of a device's name"},
@@ -45,7 +45,7 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {{"rates", "wavy:500", "none.gltf"}, 3, "none.gltf"},
       {{"rates", "wavy:500"}, 4, ";"},
       {{"check-hits"}, 2, "SCENE is required"},
-      {{"check-hits", "square.gltf", "triangle.obj"}, 2, "unexpected argument triangle.obj"},
+      {{"check-hits", "square.gltf", "triangle.obj"}, 2, "the argument triangle.obj is not expected"},
       {{"check-hits", "square.gltf", "--rays", "0"}, 2, "--rays takes a whole number"},
       {{"check-hits", "square.gltf", "--builder", "none"}, 2, "--builder takes "},
       {{"check-hits", "none.gltf"}, 3, "none.gltf"},
@@ -53,7 +53,7 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {{"difference"}, 2, "FIRST is required"},
       {{"difference", "a.exr"}, 2, "SECOND is required"},
       {{"difference", "a.exr", "b.exr", "--fail", "few"}, 2, "--fail takes a number"},
-      {{"difference", "a.exr", "b.exr", "--file", "c"}, 2, "unknown option --file"},
+      {{"difference", "a.exr", "b.exr", "--file", "c"}, 2, "there is no option --file"},
       {{"difference", "a.exr", "b.exr"}, 3, "a.exr"},
       {{"honesty"}, 2, "SCENE is required"},
       {{"honesty", "square.gltf", "--truth", "63"}, 2, "--truth takes a whole number"},
@@ -62,7 +62,7 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {{"growth"}, 4, ";"},
       {{"robustness"}, 2, "SCENE is required"},
       {{"methods", "square.gltf"}, 2, "--output is required"},
-      {{"methods", "square.gltf", "-o", "none"}, 1, "no such folder"},
+      {{"methods", "square.gltf", "-o", "none"}, 1, "none: there is no such folder"},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(testing::PrintToString(c.arguments));

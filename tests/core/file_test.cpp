@@ -31,7 +31,6 @@ namespace promin {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 class FileTest : public TempFolder {};
 
@@ -164,9 +163,9 @@ TEST_F(FileTest, ThreadsMayWriteOneFileAtATime) {
 
 TEST_F(FileTest, UnreadableFilesSayWhy) {
   std::ofstream(folder_ / "empty.obj").close();
-  EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasSubstr("the file does not exist"));
-  EXPECT_THAT(message_of_reading(folder_), HasSubstr("is a folder"));
-  EXPECT_THAT(message_of_reading(folder_ / "empty.obj"), HasSubstr("empty"));
+  EXPECT_THAT(message_of_reading(folder_ / "none.obj"), HasProblem("file.missing"));
+  EXPECT_THAT(message_of_reading(folder_), HasProblem("file.folder"));
+  EXPECT_THAT(message_of_reading(folder_ / "empty.obj"), HasProblem("file.empty"));
 }
 
 TEST_F(FileTest, UnwritableTargetsAreRefused) {
@@ -245,7 +244,7 @@ TEST_F(FileTest, ARemovedFolderIsNamedAsTheCause) {
     try {
       work();
     } catch (const RunError& error) {
-      return error.what();
+      return list_problems(error);
     }
     return "";
   };
@@ -253,13 +252,13 @@ TEST_F(FileTest, ARemovedFolderIsNamedAsTheCause) {
   const std::string writing = refusal_of([] { write_text_file("a.txt", "x"); });
   write_text_file(folder_ / "elsewhere.txt", "x");
   fs::current_path(old_folder);
-  EXPECT_THAT(reading, HasSubstr("the current folder no longer exists, a.obj"));
-  EXPECT_THAT(writing, HasSubstr("the current folder no longer exists, a.txt"));
+  EXPECT_THAT(reading, HasProblem("folder.lost a.obj"));
+  EXPECT_THAT(writing, HasProblem("folder.lost a.txt"));
 }
 
 TEST(ErrorTest, SeveralProblemsAreCountedAndIndented) {
-  const InputError error({Problem{"a", "b", "c"}, Problem{"d", "", ""}});
-  EXPECT_STREQ(error.what(), "a, b; c (1 of 2 problems)\n  d");
+  const InputError error({Problem{"file.missing", "a", "b", "c"}, Problem{"file.open", "d", "", ""}});
+  EXPECT_STREQ(error.what(), "b: a; c (1 of 2 problems)\n  d");
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
   }();
   EXPECT_THAT(message,
               testing::StartsWith("there is no room for 4 MB beside the output file until it can be written ("));
-  EXPECT_THAT(message, testing::HasSubstr("a.exr; check the disk"));
+  EXPECT_THAT(message, testing::HasSubstr("a.exr: "));
   EXPECT_EQ(file_count(), 0);
 }
 

@@ -16,6 +16,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 const std::string kPointer =
     "version https://git-lfs.github.com/spec/v1\noid sha256:"
@@ -64,12 +65,12 @@ TEST_P(FileKindTest, IsSaidWhereItIsNotWhatTheNameSays) {
     if (is_own) {
       EXPECT_EQ(message, "");
     } else {
-      EXPECT_THAT(message, AllOf(HasSubstr("the file is "s + GetParam().what), HasSubstr(name + "; "),
-                                 HasSubstr(GetParam().cure)));
+      EXPECT_THAT(message, AllOf(HasProblem("scene.file.ending"), HasSubstr("the file is "s + GetParam().what),
+                                 HasSubstr(name + ": "), HasSubstr(GetParam().cure)));
     }
   }
   EXPECT_THAT(refusal("scene.unknown", GetParam().bytes),
-              AllOf(HasSubstr("unknown scene format \".unknown\", the file is "s + GetParam().what),
+              AllOf(HasProblem("scene.file.ending \".unknown\""), HasSubstr("the file is "s + GetParam().what),
                     HasSubstr(GetParam().cure)));
 }
 
@@ -121,33 +122,33 @@ INSTANTIATE_TEST_SUITE_P(Table, FileKindTest, testing::ValuesIn(kKinds),
 class FilesOfScenesTest : public SceneFolder {};
 
 TEST_F(FilesOfScenesTest, ArchivesAreScenesBySomeEndings) {
-  EXPECT_THAT(refusal("a.usdz", "PK\x03\x04"), HasSubstr("the file is USD"));
-  EXPECT_THAT(refusal("a.3MF", "PK\x03\x04"), HasSubstr("the file is 3MF"));
-  EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasSubstr("the file is a compressed Blender file"));
-  EXPECT_THAT(refusal("a.blend", "\x1F\x8B"), HasSubstr("the file is a compressed Blender file"));
-  EXPECT_THAT(refusal("a.blend", "BLENDER-v300"), HasSubstr("the file is a Blender file"));
+  EXPECT_THAT(refusal("a.usdz", "PK\x03\x04"), HasProblem("scene.file.ending USD"));
+  EXPECT_THAT(refusal("a.3MF", "PK\x03\x04"), HasProblem("scene.file.ending 3MF"));
+  EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasProblem("scene.file.ending compressed Blender"));
+  EXPECT_THAT(refusal("a.blend", "\x1F\x8B"), HasProblem("scene.file.ending compressed Blender"));
+  EXPECT_THAT(refusal("a.blend", "BLENDER-v300"), HasProblem("scene.file.ending Blender"));
 }
 
 TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {
-  const std::string where = "is a folder, not a file, " + folder_.string() + "; ";
-  EXPECT_THAT(refusal(folder_), HasSubstr(where + "name a file that ends in .gltf, .glb"));
+  const std::string where = "file.folder " + folder_.string() + ": ";
+  EXPECT_THAT(refusal(folder_), AllOf(StartsWith(where), HasSubstr("; name a file that ends in .gltf, .glb")));
   write("notes.txt", "");
   write("c.nff", "");
-  EXPECT_THAT(refusal(folder_), HasSubstr(where + "it holds c.nff; name a file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds c.nff; name a file"));
   write("b.GLB", "");
   write("a.obj", "");
-  EXPECT_THAT(refusal(folder_), HasSubstr(where + "it holds a.obj and b.GLB; name a file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds a.obj and b.GLB; name a file"));
   std::filesystem::create_directory(folder_ / "d.gltf");
-  EXPECT_THAT(refusal(folder_ / "d.gltf"), HasSubstr("is a folder"));
+  EXPECT_THAT(refusal(folder_ / "d.gltf"), HasProblem("file.folder"));
 }
 
 TEST_F(FilesOfScenesTest, WhatSaysNothingIsSaidToBeNothing) {
   EXPECT_THAT(refusal("a.obj", "hello\n"), Not(HasSubstr("the file is")));
-  EXPECT_THAT(refusal("a.txt", "hello\n"), HasSubstr("unknown scene format \".txt\", "));
-  EXPECT_THAT(refusal(folder_ / "missing.txt"), HasSubstr("unknown scene format \".txt\", "));
-  EXPECT_THAT(refusal("a.PNG", "hello\n"), HasSubstr("a .png is a picture, not a scene, "));
-  EXPECT_THAT(refusal(folder_ / "missing.exr"), HasSubstr("a .exr is a picture, not a scene, "));
-  EXPECT_THAT(refusal("a.stl", std::string(20, '\0')), HasSubstr("the file is not an STL file"));
+  EXPECT_THAT(refusal("a.txt", "hello\n"), HasProblem("scene.file.format \".txt\""));
+  EXPECT_THAT(refusal(folder_ / "missing.txt"), HasProblem("scene.file.format \".txt\""));
+  EXPECT_THAT(refusal("a.PNG", "hello\n"), HasProblem("scene.file.picture .png"));
+  EXPECT_THAT(refusal(folder_ / "missing.exr"), HasProblem("scene.file.picture .exr"));
+  EXPECT_THAT(refusal("a.stl", std::string(20, '\0')), HasProblem("stl.file.kind"));
   EXPECT_EQ(find_file_kind("", "", 0).name, "");
 }
 
@@ -156,13 +157,13 @@ TEST_F(FilesOfScenesTest, WhatASceneNamesMayBeAPointerToo) {
   gltf.text();
   gltf.json["buffers"][0] = {{"uri", "a.bin"}, {"byteLength", 8}};
   write("a.bin", kPointer);
-  EXPECT_THAT(refusal("a.gltf", gltf.json.dump()), AllOf(HasSubstr("a Git LFS pointer"), HasSubstr("a.bin; run")));
+  EXPECT_THAT(refusal("a.gltf", gltf.json.dump()), AllOf(HasProblem("file.placeholder"), HasSubstr("a.bin: ")));
   write("a.png", kPointer);
   write("b.png", kPage);
   write("a.mtl", "newmtl m\nmap_Kd a.png\nmap_Ks b.png\n");
   EXPECT_THAT(load("a.obj", "mtllib a.mtl\nusemtl m\n" + kObj).warnings,
-              AllOf(Contains(HasSubstr("the file is a Git LFS pointer, image \"a.png\"")),
-                    Contains(HasSubstr("the file is an HTML page, image \"b.png\""))));
+              AllOf(Contains(HasSubstr("image \"a.png\": the file is a Git LFS pointer")),
+                    Contains(HasSubstr("image \"b.png\": the file is an HTML page"))));
 }
 
 }  // namespace

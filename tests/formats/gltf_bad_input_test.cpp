@@ -41,168 +41,167 @@ TEST_P(BadGltfTest, IsRefusedWithPlaceAndCure) {
   ASSERT_EQ(refusal("good.gltf", gltf.text()), "");
   GetParam().spoil(gltf);
   const std::string message = refusal("bad.gltf", gltf.text());
-  EXPECT_THAT(message, HasSubstr(GetParam().what));
+  EXPECT_THAT(message, HasProblem(GetParam().what));
   EXPECT_THAT(message, HasSubstr("bad.gltf: " + std::string(GetParam().where)));
   EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
 }
 
 const BadGltf kBadGltf[] = {
     // The document
-    {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "the file is glTF 1.0", "asset.version"},
-    {"Version3", [](auto& g) { g.json["asset"]["version"] = "3.0"; }, "\"3.0\" is not 2.x", "asset.version"},
-    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "requires glTF \"2.1\"", "asset.minVersion"},
+    {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "gltf.version", "asset.version"},
+    {"Version3", [](auto& g) { g.json["asset"]["version"] = "3.0"; }, "gltf.version \"3.0\"", "asset.version"},
+    {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "gltf.version \"2.1\"", "asset.minVersion"},
     {"RequiredExtension",
      [](auto& g) {
        g.json["extensionsRequired"] = {"EXT_splats"};
        primitive(g)["extensions"]["EXT_splats"] = json::object();
      },
-     "EXT_splats is not implemented", "meshes[0].primitives[0]"},
+     "gltf.extension.required EXT_splats", "meshes[0].primitives[0]"},
     // Types
-    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "3 is given where an array is expected", "nodes"},
-    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "a JSON string is given where an object", "nodes[1]"},
-    {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "where an integer is expected",
-     "nodes[0].mesh"},
-    {"NoAttributes", [](auto& g) { primitive(g).erase("attributes"); }, "\"attributes\" is missing",
+    {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "json.type 3", "nodes"},
+    {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "json.type", "nodes[1]"},
+    {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "json.type", "nodes[0].mesh"},
+    {"NoAttributes", [](auto& g) { primitive(g).erase("attributes"); }, "json.missing \"attributes\"",
      "meshes[0].primitives[0]"},
     {"ShortMatrix",
      [](auto& g) {
        g.json["nodes"][0]["matrix"] = {1, 2, 3};
      },
-     "an array of 16 numbers", "nodes[0].matrix"},
+     "json.type 16", "nodes[0].matrix"},
     {"TextInVector",
      [](auto& g) {
        g.json["nodes"][0]["scale"] = {1, "1", 1};
      },
-     "where a number is expected", "nodes[0].scale[1]"},
+     "json.type", "nodes[0].scale[1]"},
     // Indices
-    {"MeshIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }, "index 9 is out of range", "nodes[0].mesh"},
-    {"NegativeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = -1; }, "index -1 is out of range", "nodes[0].mesh"},
-    {"HugeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 1e30; }, "index 1e+30 is out of range", "nodes[0].mesh"},
-    {"AttributeIndex", [](auto& g) { primitive(g)["attributes"]["POSITION"] = 9; }, "index 9 is out of range",
+    {"MeshIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }, "json.index 9", "nodes[0].mesh"},
+    {"NegativeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = -1; }, "json.index -1", "nodes[0].mesh"},
+    {"HugeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 1e30; }, "json.index 1e+30", "nodes[0].mesh"},
+    {"AttributeIndex", [](auto& g) { primitive(g)["attributes"]["POSITION"] = 9; }, "json.index 9",
      "meshes[0].primitives[0].attributes.POSITION"},
-    {"ChildIndex", [](auto& g) { g.json["nodes"][0]["children"] = {7}; }, "index 7", "nodes[0].children[0]"},
+    {"ChildIndex", [](auto& g) { g.json["nodes"][0]["children"] = {7}; }, "json.index 7", "nodes[0].children[0]"},
     {"ShapeIndex",
      [](auto& g) {
        g.json["meshes"][1]["primitives"][0]["extensions"]["PROMIN_mesh_primitive_implicit_shape"]["shape"] = 2;
      },
-     "index 2", "meshes[1].primitives[0].extensions.PROMIN_mesh_primitive_implicit_shape.shape"},
+     "json.index 2", "meshes[1].primitives[0].extensions.PROMIN_mesh_primitive_implicit_shape.shape"},
     {"VertexIndex",
      [](auto& g) {
        primitive(g)["indices"] = g.template add<uint8_t>({0, 1, 3}, "SCALAR");
      },
-     "index 3 is out of range, there are 3 vertices", "meshes[0].primitives[0].indices, element 2"},
+     "gltf.indices.range 3 3", "meshes[0].primitives[0].indices, element 2"},
     {"RestartIndex",
      [](auto& g) {
        primitive(g)["indices"] = g.template add<uint16_t>({0, 1, 65535}, "SCALAR");
      },
-     "index 65535", "meshes[0].primitives[0].indices"},
+     "gltf.indices.range 65535", "meshes[0].primitives[0].indices"},
     // Enumerations and ranges
-    {"Mode", [](auto& g) { primitive(g)["mode"] = 7; }, "7 is out of range", "meshes[0].primitives[0].mode"},
-    {"ComponentType", [](auto& g) { g.json["accessors"][0]["componentType"] = 5124; }, "is not one of 5120|",
+    {"Mode", [](auto& g) { primitive(g)["mode"] = 7; }, "json.range 7", "meshes[0].primitives[0].mode"},
+    {"ComponentType", [](auto& g) { g.json["accessors"][0]["componentType"] = 5124; }, "json.choice",
      "accessors[0].componentType"},
-    {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "\"VEC5\" is not one of",
+    {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "json.choice \"VEC5\"",
      "accessors[0].type"},
-    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "1.5 is given where an integer",
-     "accessors[0].count"},
+    {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "json.type 1.5", "accessors[0].count"},
     // Shapes
-    {"ZeroRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 0; }, "0 is out of range",
+    {"ZeroRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 0; }, "json.range 0",
      "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
-    {"NegativeRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = -1; }, "-1 is out of range",
+    {"NegativeRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = -1; }, "json.range -1",
      "extensions.KHR_implicit_shapes.shapes[1].cylinder.radiusTop"},
-    {"TinyRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 1e-23; }, "1e-23 is out of range",
+    {"TinyRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 1e-23; }, "json.range 1e-23",
      "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
-    {"HugeRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 1e18; }, "1e+18 is out of range",
+    {"HugeRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 1e18; }, "json.range 1e+18",
      "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
-    {"TinyApexRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = 1e-30; }, "radius of shape shapes[1]",
-     "nodes[2]"},
-    {"ZeroHeight", [](auto& g) { shape(g, 1)["cylinder"]["height"] = 0; }, "0 is out of range",
+    {"TinyApexRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = 1e-30; },
+     "gltf.shape.size radius shapes[1]", "nodes[2]"},
+    {"ZeroHeight", [](auto& g) { shape(g, 1)["cylinder"]["height"] = 0; }, "json.range 0",
      "extensions.KHR_implicit_shapes.shapes[1].cylinder.height"},
     {"NoRadiusAtAll",
      [](auto& g) {
        shape(g, 1)["cylinder"].update({{"radiusTop", 0}, {"radiusBottom", 0}});
      },
-     "both radii of shape shapes[1] are 0", "extensions.KHR_implicit_shapes.shapes[1].cylinder"},
+     "gltf.shape.size shapes[1]", "extensions.KHR_implicit_shapes.shapes[1].cylinder"},
     {"ScaledTooFar",
      [](auto& g) {
        g.json["nodes"][1]["scale"] = {1e16, 1e16, 1e16};
      },
-     "is 1e+16 in the world", "nodes[1]"},
+     "gltf.shape.size 1e+16", "nodes[1]"},
     {"BoxWithoutDepth",
      [](auto& g) {
        shape(g, 0) = {{"type", "box"}, {"box", {{"size", {1, 2, 0}}}}};
      },
-     "0 is out of range", "extensions.KHR_implicit_shapes.shapes[0].box.size"},
+     "json.range 0", "extensions.KHR_implicit_shapes.shapes[0].box.size"},
     {"CapsuleOfNegativeHeight",
      [](auto& g) {
        shape(g, 0) = {{"type", "capsule"}, {"capsule", {{"height", -1}}}};
      },
-     "-1 is out of range", "extensions.KHR_implicit_shapes.shapes[0].capsule.height"},
+     "json.range -1", "extensions.KHR_implicit_shapes.shapes[0].capsule.height"},
     {"CapsuleWithoutRadii",
      [](auto& g) {
        shape(g, 0) = {{"type", "capsule"}, {"capsule", {{"radiusTop", 0}, {"radiusBottom", 0}}}};
      },
-     "both radii of shape shapes[0] are 0", "extensions.KHR_implicit_shapes.shapes[0].capsule"},
-    {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "\"torus\" is not one of",
+     "gltf.shape.size shapes[0]", "extensions.KHR_implicit_shapes.shapes[0].capsule"},
+    {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "json.choice \"torus\"",
      "extensions.KHR_implicit_shapes.shapes[0].type"},
     // Vertices
     {"NanVertex",
      [](auto& g) {
        set_positions(g, {0, 0, 0, 1, kNan, 0, 0, 1, 0});
      },
-     "not finite", "meshes[0].primitives[0].attributes.POSITION, element 1"},
+     "gltf.position.range", "meshes[0].primitives[0].attributes.POSITION, element 1"},
     {"InfiniteVertex",
      [](auto& g) {
        set_positions(g, {0, 0, 0, 1, 0, 0, 0, INFINITY, 0});
      },
-     "not finite", "meshes[0].primitives[0].attributes.POSITION, element 2"},
+     "gltf.position.range", "meshes[0].primitives[0].attributes.POSITION, element 2"},
     {"FarVertex",
      [](auto& g) {
        set_positions(g, {2e15F, 0, 0, 1, 0, 0, 0, 1, 0});
      },
-     "beyond 1e15", "meshes[0].primitives[0].attributes.POSITION, element 0"},
+     "gltf.position.range", "meshes[0].primitives[0].attributes.POSITION, element 0"},
     {"FarNode",
      [](auto& g) {
        g.json["nodes"][0]["scale"] = {1e16, 1, 1};
      },
-     "beyond 1e15", "nodes[0]"},
+     "gltf.position.far", "nodes[0]"},
     {"PositionFormat",
      [](auto& g) {
        primitive(g)["attributes"]["POSITION"] = g.template add<float>({0, 0, 0, 0, 0, 0}, "VEC2");
      },
-     "VEC2 of 5126) is not allowed", "meshes[0].primitives[0].attributes.POSITION"},
+     "gltf.accessor.format VEC2 5126", "meshes[0].primitives[0].attributes.POSITION"},
     {"IndexFormat",
      [](auto& g) {
        primitive(g)["indices"] = g.template add<float>({0, 1, 2}, "SCALAR");
      },
-     "SCALAR of 5126) is not allowed", "meshes[0].primitives[0].indices"},
+     "gltf.accessor.format SCALAR 5126", "meshes[0].primitives[0].indices"},
     // Bytes
-    {"ViewPastTheBuffer", [](auto& g) { g.json["bufferViews"][1]["byteLength"] = 999; }, "ends at byte",
+    {"ViewPastTheBuffer", [](auto& g) { g.json["bufferViews"][1]["byteLength"] = 999; }, "gltf.view.short",
      "bufferViews[1]"},
-    {"ViewOffset", [](auto& g) { g.json["bufferViews"][1]["byteOffset"] = 9007199254740992; }, "ends at byte",
+    {"ViewOffset", [](auto& g) { g.json["bufferViews"][1]["byteOffset"] = 9007199254740992; }, "gltf.view.short",
      "bufferViews[1]"},
-    {"AccessorPastTheView", [](auto& g) { g.json["accessors"][0]["count"] = 4; },
-     "end at byte 48 of a buffer view of 36", "accessors[0]"},
-    {"AccessorOffset", [](auto& g) { g.json["accessors"][0]["byteOffset"] = 4; }, "end at byte 40", "accessors[0]"},
+    {"AccessorPastTheView", [](auto& g) { g.json["accessors"][0]["count"] = 4; }, "gltf.accessor.short 48 36",
+     "accessors[0]"},
+    {"AccessorOffset", [](auto& g) { g.json["accessors"][0]["byteOffset"] = 4; }, "gltf.accessor.short 40",
+     "accessors[0]"},
     {"WrappingCount",
      [](auto& g) {
        g.json["bufferViews"][0]["byteStride"] = 252;
        g.json["accessors"][0]["count"] = 2147483647;
      },
-     "end at byte 541165878804", "accessors[0]"},
-    {"CountPastAnyFile", [](auto& g) { g.json["accessors"][0]["count"] = 18446744073709551615ULL; }, "is out of range",
+     "gltf.accessor.short 541165878804", "accessors[0]"},
+    {"CountPastAnyFile", [](auto& g) { g.json["accessors"][0]["count"] = 18446744073709551615ULL; }, "json.range",
      "accessors[0].count"},
     {"HugeZeros",
      [](auto& g) {
        g.json["accessors"][0].erase("bufferView");
        g.json["accessors"][0]["count"] = 2000000000;
      },
-     "2000000000 zeros is too large", "accessors[0].count"},
+     "gltf.accessor.large 2000000000", "accessors[0].count"},
     {"PositionFormatOfNormals",
      [](auto& g) {
        primitive(g)["attributes"]["POSITION"] = g.template add<uint32_t>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
      },
-     "VEC3 of 5125) is not allowed", "meshes[0].primitives[0].attributes.POSITION"},
-    {"SmallStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 8; }, "less than an element of 12",
+     "gltf.accessor.format VEC3 5125", "meshes[0].primitives[0].attributes.POSITION"},
+    {"SmallStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 8; }, "gltf.accessor.stride 12",
      "accessors[0]"},
     {"SparsePastTheView",
      [](auto& g) {
@@ -210,29 +209,29 @@ const BadGltf kBadGltf[] = {
        g.json["accessors"][0]["sparse"] = {
            {"count", 5}, {"indices", {{"bufferView", view}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
      },
-     "end at byte 5", "accessors[0].sparse.indices"},
+     "gltf.accessor.short 5", "accessors[0].sparse.indices"},
     {"SparseIndex",
      [](auto& g) {
        const size_t view = g.template add_view<uint8_t>({3});
        g.json["accessors"][0]["sparse"] = {
            {"count", 1}, {"indices", {{"bufferView", view}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
      },
-     "sparse index 3 is out of range", "accessors[0].sparse.indices, element 0"},
+     "gltf.accessor.index 3", "accessors[0].sparse.indices, element 0"},
     // Nodes
-    {"OwnChild", [](auto& g) { g.json["nodes"][0]["children"] = {0}; }, "its own ancestor", "nodes[0]"},
+    {"OwnChild", [](auto& g) { g.json["nodes"][0]["children"] = {0}; }, "gltf.node.cycle", "nodes[0]"},
     {"Cycle",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {1};
        g.json["nodes"][1]["children"] = {0};
      },
-     "its own ancestor", "nodes[0]"},
+     "gltf.node.cycle", "nodes[0]"},
     {"OverflowingTree",
      [](auto& g) {
        for (size_t i = 4; i < 20; ++i) {
          g.add_node({{"scale", {1e25, 1e25, 1e25}}, {"children", {i == 4 ? 0 : i - 1}}});
        }
      },
-     "overflows", "nodes["},
+     "gltf.node.far", "nodes["},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadGltfTest, testing::ValuesIn(kBadGltf),
@@ -261,33 +260,33 @@ TEST_P(BadUriTest, IsRefusedWithPlaceAndCure) {
   fs::create_directory_symlink("..", folder_ / "scene/up");
   gltf.json["buffers"] = {{{"byteLength", gltf.bytes.size()}, {"uri", GetParam().uri}}};
   const std::string message = refusal("scene/bad.gltf", gltf.json.dump());
-  EXPECT_THAT(message, HasSubstr(GetParam().what));
+  EXPECT_THAT(message, HasProblem(GetParam().what));
   EXPECT_THAT(message, HasSubstr("; ")) << "no cure";
 }
 
 const BadUri kBadUris[] = {
-    {"Missing", "none.bin", "bad.gltf: buffers[0].uri"},
-    {"Empty", "", "name is empty"},
-    {"EmptyFile", "empty.bin", "the file is empty"},
-    {"Folder", "sub", "is a folder"},
-    {"Short", "short.bin", "has 4 bytes, fewer than its byteLength of 42"},
-    {"Parent", "../secret.bin", "leaves the scene's folder"},
-    {"ParentInside", "sub/../../secret.bin", "leaves the scene's folder"},
-    {"EscapedParent", "%2e%2e/secret.bin", "leaves the scene's folder"},
-    {"EscapedSlash", "..%2Fsecret.bin", "leaves the scene's folder"},
-    {"Backslash", "..\\secret.bin", "leaves the scene's folder"},
-    {"Absolute", "/etc/passwd", "absolute path"},
-    {"EscapedAbsolute", "%2Fetc/passwd", "absolute path"},
-    {"FileScheme", "file:///etc/passwd", "not a relative path"},
-    {"WebScheme", "http://localhost/a.bin", "not a relative path"},
-    {"Link", "link.bin", "through a link"},
-    {"LinkedFolder", "up/secret.bin", "through a link"},
-    {"ZeroByte", "a%00b", "zero byte"},
-    {"BrokenEscape", "a%2", "broken percent escape"},
-    {"DataNotBase64", "data:application/octet-stream,abc", "not base64"},
-    {"DataBroken", "data:application/octet-stream;base64,ab*d", "broken base64"},
-    {"DataEmpty", "data:application/octet-stream;base64,", "has 0 bytes"},
-    {"DataShort", "data:application/octet-stream;base64,AAAA", "has 3 bytes"},
+    {"Missing", "none.bin", "file.missing buffers[0].uri"},
+    {"Empty", "", "scene.name.wrong"},
+    {"EmptyFile", "empty.bin", "file.empty"},
+    {"Folder", "sub", "file.folder"},
+    {"Short", "short.bin", "gltf.buffer.short 4 42"},
+    {"Parent", "../secret.bin", "scene.name.outside"},
+    {"ParentInside", "sub/../../secret.bin", "scene.name.outside"},
+    {"EscapedParent", "%2e%2e/secret.bin", "scene.name.outside"},
+    {"EscapedSlash", "..%2Fsecret.bin", "scene.name.outside"},
+    {"Backslash", "..\\secret.bin", "scene.name.outside"},
+    {"Absolute", "/etc/passwd", "scene.name.outside"},
+    {"EscapedAbsolute", "%2Fetc/passwd", "scene.name.outside"},
+    {"FileScheme", "file:///etc/passwd", "scene.name.outside"},
+    {"WebScheme", "http://localhost/a.bin", "scene.name.outside"},
+    {"Link", "link.bin", "scene.name.outside link"},
+    {"LinkedFolder", "up/secret.bin", "scene.name.outside link"},
+    {"ZeroByte", "a%00b", "scene.name.wrong"},
+    {"BrokenEscape", "a%2", "gltf.uri.broken"},
+    {"DataNotBase64", "data:application/octet-stream,abc", "gltf.uri.broken"},
+    {"DataBroken", "data:application/octet-stream;base64,ab*d", "gltf.uri.broken"},
+    {"DataEmpty", "data:application/octet-stream;base64,", "gltf.buffer.short 0"},
+    {"DataShort", "data:application/octet-stream;base64,AAAA", "gltf.buffer.short 3"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadUriTest, testing::ValuesIn(kBadUris),
@@ -298,10 +297,10 @@ INSTANTIATE_TEST_SUITE_P(Table, BadUriTest, testing::ValuesIn(kBadUris),
 class BadFileTest : public SceneFolder {};
 
 TEST_F(BadFileTest, MissingFoldersAndEmptyFilesSayWhy) {
-  EXPECT_THAT(refusal(folder_ / "none.gltf"), HasSubstr("the file does not exist"));
+  EXPECT_THAT(refusal(folder_ / "none.gltf"), HasProblem("file.missing"));
   fs::create_directories(folder_ / "a.glb");
-  EXPECT_THAT(refusal(folder_ / "a.glb"), HasSubstr("is a folder"));
-  EXPECT_THAT(refusal("b.gltf", ""), HasSubstr("empty"));
+  EXPECT_THAT(refusal(folder_ / "a.glb"), HasProblem("file.folder"));
+  EXPECT_THAT(refusal("b.gltf", ""), HasProblem("file.empty"));
 }
 
 TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
@@ -311,20 +310,20 @@ TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
 
 TEST_F(BadFileTest, BrokenJsonNamesTheLine) {
   EXPECT_THAT(refusal("a.gltf", "{\n\"asset\": ]}"), HasSubstr("line 2"));
-  EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasSubstr("cannot be read"));
-  EXPECT_THAT(refusal("a.gltf", "[]"), HasSubstr("not a JSON object"));
+  EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasProblem("json.syntax"));
+  EXPECT_THAT(refusal("a.gltf", "[]"), HasProblem("json.type"));
 }
 
 TEST_F(BadFileTest, DeepNestingIsRefusedBeforeItIsParsed) {
-  EXPECT_THAT(refusal("a.gltf", std::string(20'000, '[')), HasSubstr("nests 20000 deep"));
+  EXPECT_THAT(refusal("a.gltf", std::string(20'000, '[')), HasProblem("json.depth 20000"));
   const std::string objects = [] {
     std::string text;
     for (int i = 0; i < 20'000; ++i) text += "{\"a\":";
     return text;
   }();
-  EXPECT_THAT(refusal("a.gltf", objects), HasSubstr("nests 20000 deep"));
+  EXPECT_THAT(refusal("a.gltf", objects), HasProblem("json.depth 20000"));
   EXPECT_THAT(refusal("a.gltf", "{\"asset\": {\"version\": \"" + std::string(500, '[') + "\"}}"),
-              HasSubstr("is not 2.x"))
+              HasProblem("gltf.version"))
       << "brackets in strings do not count";
 }
 
@@ -338,8 +337,8 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   };
   const size_t json_length = static_cast<unsigned char>(good[12]) + 256 * static_cast<unsigned char>(good[13]);
   const size_t binary = 20 + json_length;
-  EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasSubstr("GLB header is cut off"));
-  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasSubstr("chunk declares 44 bytes, 40 remain"));
+  EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasProblem("glb.short"));
+  EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasProblem("glb.short 44 40"));
   EXPECT_THAT(spoiled(4, 1), HasSubstr("the file is glTF 1.0"));
   EXPECT_THAT(spoiled(4, 3), HasSubstr("version 3"));
   EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk declares"));
@@ -355,7 +354,7 @@ TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
   std::string bytes = gltf.glb();
   const std::string length = "\"byteLength\":42";
   bytes.replace(bytes.rfind(length), length.size(), "\"byteLength\":48");
-  EXPECT_THAT(refusal("a.glb", bytes), HasSubstr("has 44 bytes, fewer than its byteLength of 48"));
+  EXPECT_THAT(refusal("a.glb", bytes), HasProblem("gltf.buffer.short 44 48"));
 }
 
 /// Whatever reads from a buffer makes its bytes needed.
@@ -395,7 +394,7 @@ TEST_F(BadFileTest, AllProblemsOfAFileComeTogether) {
   gltf.json["accessors"][0]["type"] = "VEC9";
   gltf.json["meshes"][0]["primitives"][0]["mode"] = 9;
   const std::string message = refusal("a.gltf", gltf.text());
-  EXPECT_THAT(message, HasSubstr("(1 of 3 problems)"));
+  EXPECT_EQ(std::ranges::count(message, '\n'), 2);
   EXPECT_THAT(message, HasSubstr("nodes[0].mesh"));
   EXPECT_THAT(message, HasSubstr("accessors[0].type"));
   EXPECT_THAT(message, HasSubstr("meshes[0].primitives[0].mode"));
@@ -405,7 +404,7 @@ TEST_F(BadFileTest, ManyProblemsAreCutShort) {
   GltfBuilder gltf = triangle_gltf();
   for (int i = 0; i < 1000; ++i) gltf.add_node({{"mesh", 100 + i}});
   const std::string message = refusal("a.gltf", gltf.text());
-  EXPECT_THAT(message, HasSubstr("and 950 more"));
+  EXPECT_THAT(message, HasProblem("problems.more 950"));
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 50);
 }
 

@@ -70,9 +70,8 @@ std::string with_metallic_factor(const std::string& number) {
 TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
   for (const std::string& number : {std::string("1e999"), std::string("123456789e400"), "1" + std::string(400, '0')}) {
     const LoadedScene scene = SceneFolder::load("scene.gltf", with_metallic_factor(number));
-    EXPECT_THAT(scene.warnings,
-                ElementsAre("a number is out of range (1.7976931348623157e+308), "
-                            "materials[0].pbrMetallicRoughness.metallicFactor; it is clamped to 0 to 1"))
+    EXPECT_THAT(scene.warnings, ElementsAre("materials[0].pbrMetallicRoughness.metallicFactor: a number is out of "
+                                            "range (1.7976931348623157e+308); it is clamped to 0 to 1"))
         << number;
   }
   EXPECT_THAT(SceneFolder::load("scene.gltf", with_metallic_factor("-1e999")).warnings,
@@ -81,37 +80,37 @@ TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
   EXPECT_THAT(strict_refusal("strict.gltf", with_metallic_factor("1e999")), HasSubstr("is out of range"));
 }
 
-#define PROMIN_CLAMPED(VALUE, PLACE, RANGE) "a number is out of range (" VALUE "), " PLACE "; it is clamped to " RANGE
+#define PROMIN_CLAMPED(VALUE, PLACE, RANGE) PLACE ": a number is out of range (" VALUE "); it is clamped to " RANGE
 #define PROMIN_LIGHT "extensions.KHR_lights_punctual.lights[0]"
 
 const Repair kRepairs[] = {
     // The document
     {"NoAsset", [](auto& g) { g.json.erase("asset"); },
-     "the version is missing, asset.version; it is read as glTF 2.0"},
+     "asset.version: the version is missing; it is read as glTF 2.0"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
-     "the version is not written as glTF requires (2), asset.version; it is read as glTF 2.0"},
-    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "an index is out of range (index 0), scene; it is ignored"},
+     "asset.version: the version is not written as glTF requires (2); it is read as glTF 2.0"},
+    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "scene: an index is out of range (index 0); it is ignored"},
     {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; },
-     "another value is given where a string is expected (7), extensions.KHR_implicit_shapes.shapes[0].name; it is "
+     "extensions.KHR_implicit_shapes.shapes[0].name: another value is given where a string is expected (7); it is "
      "ignored"},
     {"ExtensionsUsed",
      [](auto& g) {
        g.json["extensionsUsed"] = {"KHR_materials_ior", 3};
      },
-     "another value is given where a string is expected (3), extensionsUsed[1]; the object that contains it is "
+     "extensionsUsed[1]: another value is given where a string is expected (3); the object that contains it is "
      "ignored"},
     // Materials
     {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; },
-     "an index is out of range (index 1), meshes[0].primitives[0].material; it is ignored"},
+     "meshes[0].primitives[0].material: an index is out of range (index 1); it is ignored"},
     {"MaterialIsNoObject", [](auto& g) { g.json["materials"][0] = "red"; },
-     "another value is given where an object is expected (a JSON string), materials[0]; it is ignored"},
+     "materials[0]: another value is given where an object is expected (a JSON string); it is ignored"},
     {"MaterialsIsNoArray", [](auto& g) { g.json["materials"] = 1; },
-     "another value is given where an array is expected (1), materials; it is ignored"},
+     "materials: another value is given where an array is expected (1); it is ignored"},
     {"Metallic", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 2; },
      PROMIN_CLAMPED("2", "materials[0].pbrMetallicRoughness.metallicFactor", "0 to 1")},
     {"MetallicIsText", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "1"; },
-     "another value is given where a number is expected (a JSON string), "
-     "materials[0].pbrMetallicRoughness.metallicFactor; it is ignored"},
+     "materials[0].pbrMetallicRoughness.metallicFactor: another value is given where a number is expected (a JSON "
+     "string); it is ignored"},
     {"BaseColor",
      [](auto& g) {
        g.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1.5, 1, 1};
@@ -123,17 +122,17 @@ const Repair kRepairs[] = {
      },
      PROMIN_CLAMPED("-1", "materials[0].emissiveFactor[1]", "0 to 1e+15")},
     {"AlphaMode", [](auto& g) { g.json["materials"][0]["alphaMode"] = "CUTOUT"; },
-     "a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"), materials[0].alphaMode; it is ignored"},
+     "materials[0].alphaMode: a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"); it is ignored"},
     {"Ior",
      [](auto& g) {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
      },
-     "a number is out of range (-1), materials[0].extensions.KHR_materials_ior.ior; it is ignored"},
+     "materials[0].extensions.KHR_materials_ior.ior: a number is out of range (-1); it is ignored"},
     {"PhongIor",
      [](auto& g) {
        material_extension(g, "PROMIN_materials_phong") = {{"ior", 0}};
      },
-     "a number is out of range (0), materials[0].extensions.PROMIN_materials_phong.ior; it is ignored"},
+     "materials[0].extensions.PROMIN_materials_phong.ior: a number is out of range (0); it is ignored"},
     {"Transmission",
      [](auto& g) {
        material_extension(g, "KHR_materials_transmission") = {{"transmissionFactor", 2}};
@@ -143,8 +142,7 @@ const Repair kRepairs[] = {
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationDistance", -1}};
      },
-     "a number is out of range (-1), materials[0].extensions.KHR_materials_volume.attenuationDistance; it is "
-     "ignored"},
+     "materials[0].extensions.KHR_materials_volume.attenuationDistance: a number is out of range (-1); it is ignored"},
     {"AttenuationColor",
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationColor", {1, -1, 1}}};
@@ -169,36 +167,36 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["materials"][0]["normalTexture"] = {{"index", 0}};
      },
-     "an index is out of range (index 0), materials[0].normalTexture.index; the texture is left out"},
+     "materials[0].normalTexture.index: an index is out of range (index 0); the texture is left out"},
     {"TextureWithoutIndex",
      [](auto& g) {
        g.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"texCoord", 0}};
      },
-     "\"index\" is missing, materials[0].pbrMetallicRoughness.baseColorTexture; the texture is left out"},
+     "materials[0].pbrMetallicRoughness.baseColorTexture: \"index\" is missing; the texture is left out"},
     {"SamplerFilter",
      [](auto& g) {
        g.json["samplers"] = {{{"magFilter", 9987}}};
      },
-     "a value is not one of 9728|9729 (\"9987\"), samplers[0].magFilter; it is ignored"},
+     "samplers[0].magFilter: a value is not one of 9728|9729 (\"9987\"); it is ignored"},
     {"SamplerIndex",
      [](auto& g) {
        g.json["textures"] = {{{"sampler", 4}}};
      },
-     "an index is out of range (index 4), textures[0].sampler; it is ignored"},
+     "textures[0].sampler: an index is out of range (index 4); it is ignored"},
     {"ImageView",
      [](auto& g) {
        g.json["images"] = {{{"bufferView", 99}, {"mimeType", "image/png"}}};
      },
-     "an index is out of range (index 99), images[0].bufferView; it is ignored"},
+     "images[0].bufferView: an index is out of range (index 99); it is ignored"},
     {"ImageViewPastItsBuffer",
      [](auto& g) {
        g.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 52}});
        g.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
      },
-     "the buffer view of an image extends beyond its buffer (10 bytes), images[0]; the image is left out"},
+     "images[0]: the buffer view of an image extends beyond its buffer (10 bytes); the image is left out"},
     // Lights and cameras
     {"LightIndex", [](auto& g) { g.json["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 1; },
-     "an index is out of range (index 1), nodes[3].extensions.KHR_lights_punctual.light; the light is left out"},
+     "nodes[3].extensions.KHR_lights_punctual.light: an index is out of range (index 1); the light is left out"},
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; },
      PROMIN_CLAMPED("-1", PROMIN_LIGHT ".intensity", "0 to 1e+15")},
     {"LightType", [](auto& g) { light(g)["type"] = "area"; },
@@ -211,108 +209,107 @@ const Repair kRepairs[] = {
      },
      "a spot's inner cone angle is not less than its outer, " PROMIN_LIGHT ".spot; its edge is sharp"},
     {"CameraIndex", [](auto& g) { g.json["nodes"][3]["camera"] = 1; },
-     "an index is out of range (index 1), nodes[3].camera; it is ignored"},
+     "nodes[3].camera: an index is out of range (index 1); it is ignored"},
     {"FieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"]["yfov"] = 3.2; },
-     "a number is out of range (3.2), cameras[0].perspective.yfov; the camera is left out"},
+     "cameras[0].perspective.yfov: a number is out of range (3.2); the camera is left out"},
     {"NoFieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"] = json::object(); },
-     "\"yfov\" is missing, cameras[0].perspective; the camera is left out"},
+     "cameras[0].perspective: \"yfov\" is missing; the camera is left out"},
     {"AspectRatio", [](auto& g) { g.json["cameras"][0]["perspective"]["aspectRatio"] = 0; },
-     "a number is out of range (0), cameras[0].perspective.aspectRatio; it is ignored"},
+     "cameras[0].perspective.aspectRatio: a number is out of range (0); it is ignored"},
     {"CameraType", [](auto& g) { g.json["cameras"][0]["type"] = "fisheye"; },
-     "a value is not one of perspective|orthographic (\"fisheye\"), cameras[0].type; the camera is left out"},
+     "cameras[0].type: a value is not one of perspective|orthographic (\"fisheye\"); the camera is left out"},
     {"CameraWithoutParameters", [](auto& g) { g.json["cameras"][0].erase("perspective"); },
-     "the camera's parameters are missing, cameras[0]; the camera is left out"},
+     "cameras[0]: the camera's parameters are missing; the camera is left out"},
     {"Sky",
      [](auto& g) {
        g.json["extensions"]["OMI_environment_sky"]["skies"] = {{{"type", 3}}};
      },
-     "another value is given where a string is expected (3), extensions.OMI_environment_sky.skies[0].type; the object "
-     "that "
-     "contains it is ignored"},
+     "extensions.OMI_environment_sky.skies[0].type: another value is given where a string is expected (3); the object "
+     "that contains it is ignored"},
     // Vertices
     {"NegativeColor",
      [](auto& g) {
        primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, 0, 0, 0, -1, 0, 0, 0, 0}, "VEC3");
      },
-     "a vertex colour is negative or not a number (-1.000000), meshes[0].primitives[0].attributes.COLOR_0, element 1; "
+     "meshes[0].primitives[0].attributes.COLOR_0, element 1: a vertex colour is negative or not a number (-1.000000); "
      "0 is used for a negative value, 1 for one that is not a number"},
     {"NanColors",
      [](auto& g) {
        primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, kNan, 0, 0, 0, 0, kNan, 0, 0}, "VEC3");
      },
-     "a vertex colour is negative or not a number (nan), meshes[0].primitives[0].attributes.COLOR_0, element 0 and 1 "
+     "meshes[0].primitives[0].attributes.COLOR_0, element 0: a vertex colour is negative or not a number (nan), and 1 "
      "more; 0 is used for a negative value, 1 for one that is not a number"},
     {"NanTextureCoordinate",
      [](auto& g) {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNan, 0, 1}, "VEC2");
      },
-     "a texture coordinate is not finite or beyond 1e15 (nan), meshes[0].primitives[0].attributes.TEXCOORD_0, element "
-     "1; 0 is used"},
+     "meshes[0].primitives[0].attributes.TEXCOORD_0, element 1: a texture coordinate is not finite or beyond 1e15 "
+     "(nan); 0 is used"},
     {"AttributeCounts",
      [](auto& g) {
        primitive(g)["attributes"]["NORMAL"] = g.template add<float>({0, 0, 1}, "VEC3");
      },
-     "an attribute has another number of elements than there are vertices (1 for 3), "
-     "meshes[0].primitives[0].attributes.NORMAL; the attribute is left out"},
+     "meshes[0].primitives[0].attributes.NORMAL: an attribute has another number of elements than there are vertices "
+     "(1 for 3); the attribute is left out"},
     {"AttributeFormat",
      [](auto& g) {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
      },
-     "the format of an attribute is not allowed (VEC3 of 5126), meshes[0].primitives[0].attributes.TEXCOORD_0; the "
+     "meshes[0].primitives[0].attributes.TEXCOORD_0: the format of an attribute is not allowed (VEC3 of 5126); the "
      "attribute is left out"},
     {"NormalizedIndices", [](auto& g) { g.json["accessors"][1]["normalized"] = true; },
-     "the indices are normalized, meshes[0].primitives[0].indices; they are read as integers"},
+     "meshes[0].primitives[0].indices: the indices are normalized; they are read as integers"},
     {"OddStride",
      [](auto& g) {
        g.json["bufferViews"][0]["byteStride"] = 14;
        g.json["bufferViews"][0]["byteLength"] = 40;
      },
-     "a stride is not a multiple of 4 from 4 to 252 (14), bufferViews[0].byteStride; it is used as it is"},
+     "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (14); it is used as it is"},
     {"NoStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 0; },
-     "a stride is not a multiple of 4 from 4 to 252 (0), bufferViews[0].byteStride; the elements are read as packed"},
+     "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (0); the elements are read as packed"},
     // Nodes
     {"TwoParents",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2};
        g.json["nodes"][1]["children"] = {2};
      },
-     "a node has two parents (nodes[2]), nodes[1].children[0]; it appears below both"},
+     "nodes[1].children[0]: a node has two parents (nodes[2]); it appears below both"},
     {"ChildTwice",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2, 2};
      },
-     "a node lists a child twice (nodes[2]), nodes[0].children[1]; it is shown once"},
+     "nodes[0].children[1]: a node lists a child twice (nodes[2]); it is shown once"},
     {"ChildAsRoot",
      [](auto& g) {
        g.json["nodes"][3]["children"] = {1};
        g.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
      },
-     "a scene lists a node that has a parent (nodes[1]), scenes[0].nodes[1]; it is shown as a root, without the "
+     "scenes[0].nodes[1]: a scene lists a node that has a parent (nodes[1]); it is shown as a root, without the "
      "parent's transform"},
     {"ChildBesideItsParent",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {1};
        g.json["scenes"] = {{{"nodes", {0, 1, 2, 3}}}};
      },
-     "a scene lists a node that lies below another (nodes[1]), scenes[0].nodes[1]; it is shown once, below that node"},
+     "scenes[0].nodes[1]: a scene lists a node that lies below another (nodes[1]); it is shown once, below that node"},
     {"RootTwice",
      [](auto& g) {
        g.json["scenes"] = {{{"nodes", {0, 1, 0, 2}}}};
      },
-     "a scene lists a node twice (nodes[0]), scenes[0].nodes[2]; it is shown once"},
+     "scenes[0].nodes[2]: a scene lists a node twice (nodes[0]); it is shown once"},
     {"MatrixAndScale",
      [](auto& g) {
        g.json["nodes"][0].update({{"scale", {1, 1, 1}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
      },
-     "a node has both a matrix and a translation, rotation or scale, nodes[0]; the matrix is used"},
+     "nodes[0]: a node has both a matrix and a translation, rotation or scale; the matrix is used"},
     {"PerspectiveMatrix",
      [](auto& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
-     "the matrix is not affine (0.5), nodes[0].matrix[3]; its last row is read as 0 0 0 1"},
+     "nodes[0].matrix[3]: the matrix is not affine (0.5); its last row is read as 0 0 0 1"},
     {"ZeroRotation",
      [](auto& g) {
        g.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
      },
-     "a rotation has length 0, nodes[0].rotation; the node is not turned"},
+     "nodes[0].rotation: a rotation has length 0; the node is not turned"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, GltfRepairsTest, testing::ValuesIn(kRepairs),
@@ -350,10 +347,10 @@ TEST_F(GltfRepairTest, RoundedMatricesAreAffine) {
   LoadedScene scene = load(gltf);
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_THAT(corners_of(mesh_of(scene)), ElementsAre(vec3(3, 0, 0), vec3(4, 0, 0), vec3(3, 1, 0)));
-  EXPECT_THAT(strict_refusal("strict.gltf", gltf.text()), HasSubstr("not affine"));
+  EXPECT_THAT(strict_refusal("strict.gltf", gltf.text()), HasProblem("gltf.matrix.affine"));
   gltf.json["nodes"][0]["matrix"][15] = 0.5;
   scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("not affine (0.5), nodes[0].matrix[15]")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("nodes[0].matrix[15]: the matrix is not affine (0.5)")));
   EXPECT_THAT(corners_of(mesh_of(scene))[1], vec3(4, 0, 0));
 }
 
@@ -384,7 +381,7 @@ TEST_F(GltfRepairTest, ManyListedNodesAreOneWarning) {
     listed.push_back(node);
   }
   gltf.json["scenes"] = {{{"nodes", listed}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("and 99 more; it is shown as a root")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr(", and 99 more; it is shown as a root")));
 }
 
 TEST_F(GltfRepairTest, ANodeOfTwoParentsIsShownBelowEach) {
@@ -404,7 +401,7 @@ TEST_F(GltfRepairTest, NodesOfManyParentsEndInARefusal) {
     gltf.add_node({{"children", {below}}});
     gltf.add_node({{"children", {below, below + 1}}});
   }
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasSubstr("appear in too many places"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasProblem("gltf.node.parents"));
 }
 
 TEST_F(GltfRepairTest, TheMatrixCountsAlone) {
@@ -471,8 +468,8 @@ TEST_F(GltfRepairTest, CamerasAndLightsBelowScaleZeroTurnByRotations) {
   scene = load(gltf);
   EXPECT_THAT(scene.cameras, IsEmpty());
   EXPECT_THAT(scene.lights, IsEmpty());
-  EXPECT_THAT(scene.warnings, ElementsAre("a camera has no orientation, nodes[3]; it is left out",
-                                          "a light has no direction, nodes[3]; it is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("nodes[3]: a camera has no orientation; it is left out",
+                                          "nodes[3]: a light has no direction; it is left out"));
 }
 
 TEST_F(GltfRepairTest, PointLightsBelowScaleZeroStay) {
@@ -490,8 +487,8 @@ TEST_F(GltfRepairTest, CamerasAndLightsTooFarAwayAreLeftOut) {
   gltf.json["nodes"][3]["translation"] = {1e15, 0, 0};
   gltf.add_node({{"children", {3}}, {"scale", {2, 2, 2}}});
   const LoadedScene scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre("a camera lies beyond 1e15 in the world, nodes[3]; it is left out",
-                                          "a light lies beyond 1e15 in the world, nodes[3]; it is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("nodes[3]: a camera lies beyond 1e15 in the world; it is left out",
+                                          "nodes[3]: a light lies beyond 1e15 in the world; it is left out"));
   EXPECT_THAT(scene.objects, SizeIs(3));
 }
 
@@ -587,8 +584,9 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
   gltf.text();
   gltf.json["buffers"][0]["byteLength"] = 100;
   LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings, ElementsAre("a buffer is shorter than its byteLength (42 bytes for 100), buffers[0]; "
-                                          "the existing part is read"));
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre("buffers[0]: a buffer is shorter than its byteLength (42 bytes for 100); the existing part is read"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   // Padding that the view counts.
   gltf.json["bufferViews"][1]["byteLength"] = 8;
@@ -596,7 +594,7 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
   EXPECT_THAT(scene.warnings, SizeIs(1));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   gltf.json["bufferViews"][1]["byteLength"] = 10;
-  EXPECT_THAT(refusal("scene.gltf", gltf.json.dump()), HasSubstr("has 42 bytes, fewer than its byteLength of 100"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.json.dump()), HasProblem("gltf.buffer.short 42 100"));
 }
 
 TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
@@ -606,9 +604,8 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   gltf.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 36}});
   gltf.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("a buffer of images cannot be read: a file does not exist (\"none.bin\"), buffers[1]; "
-                          "its images are left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("buffers[1]: a buffer of images cannot be read: a file does not exist "
+                                          "(\"none.bin\"); its images are left out"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
 }
 
@@ -618,9 +615,10 @@ TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
   gltf.json["bufferViews"][2]["byteLength"] = 0;
   gltf.show({{"attributes", {{"POSITION", none}}}});
   const LoadedScene scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("a buffer view has no bytes, bufferViews[2]"),
-                                          HasSubstr("an accessor has no elements, accessors[2].count"),
-                                          HasSubstr("too few corners for a triangle, meshes[1].primitives[0]")));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(HasSubstr("bufferViews[2]: a buffer view has no bytes"),
+                          HasSubstr("accessors[2].count: an accessor has no elements"),
+                          HasSubstr("meshes[1].primitives[0]: a mesh primitive has too few corners for a triangle")));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
 }
 
@@ -631,7 +629,7 @@ TEST_F(GltfRepairTest, TheLastColumnOfAMatrixNeedsNoPadding) {
   gltf.json["accessors"].push_back({{"bufferView", view}, {"componentType", 5121}, {"count", 2}, {"type", "MAT2"}});
   EXPECT_EQ(strict_refusal("scene.gltf", gltf.text()), "");
   gltf.json["bufferViews"][view]["byteLength"] = 13;
-  EXPECT_THAT(strict_refusal("scene.gltf", gltf.text()), HasSubstr("end at byte 14 of a buffer view of 13"));
+  EXPECT_THAT(strict_refusal("scene.gltf", gltf.text()), HasProblem("gltf.accessor.short 14 13"));
 }
 
 TEST_F(GltfRepairTest, EmptyBuffersHoldNothing) {
@@ -639,7 +637,7 @@ TEST_F(GltfRepairTest, EmptyBuffersHoldNothing) {
   gltf.text();
   gltf.json["buffers"].push_back({{"byteLength", 0}});
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings, ElementsAre("a buffer has no bytes, buffers[1]; nothing is read from it"));
+  EXPECT_THAT(scene.warnings, ElementsAre("buffers[1]: a buffer has no bytes; nothing is read from it"));
   EXPECT_NE(strict_refusal("strict.gltf", gltf.json.dump()), "");
 }
 
@@ -701,18 +699,16 @@ TEST_F(GltfRepairTest, VersionOneIsNamedInTextAndGlb) {
   std::string glb = triangle_gltf().glb();
   glb[4] = 1;
   EXPECT_THAT(refusal("a.glb", glb), HasSubstr(kMessage));
-  EXPECT_THAT(refusal("a.glb", glb), HasSubstr("export it as glTF 2.0"));
+  EXPECT_THAT(refusal("a.glb", glb), HasProblem("gltf.version"));
 }
 
 TEST_F(GltfRepairTest, MeshesOfWhichNoneCanBeDrawnAreRefused) {
   GltfBuilder gltf = triangle_gltf();
   primitive(gltf)["mode"] = 1;
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()),
-              HasSubstr("the scene contains nothing to draw (a mesh primitive holds points or lines"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasProblem("scene.geometry.none points lines"));
   gltf.add_node({{"mesh", 0}});
   gltf.json["nodes"][0]["scale"] = {0, 0, 0};
-  EXPECT_THAT(refusal("scene.gltf", gltf.text()),
-              HasSubstr("the scene contains nothing to draw (a mesh primitive holds points or lines"));
+  EXPECT_THAT(refusal("scene.gltf", gltf.text()), HasProblem("scene.geometry.none points lines"));
   gltf.json["nodes"][1]["scale"] = {0, 0, 0};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("nothing to draw"))) << "all is hidden";
 }

@@ -260,19 +260,19 @@ TEST_P(NffRepairTest, CostsAWarning) {
 
 const Repair kRepairs[] = {
     {"NegativeColor", "f 1 -1 1 1 1 1 0 0",
-     "\"f\" has a number that is not from 0 to 1e7 (\"-1\"), line 1; the nearest"},
+     "line 1: \"f\" has a number that is not from 0 to 1e7 (\"-1\"); the nearest"},
     {"NegativeKd", "f 1 1 1 -0.5 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"-0.5\")"},
     {"NanInMaterial", "f nan 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"nan\")"},
     {"WordInMaterial", "f 0,5 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"0,5\")"},
     {"ShortMaterial", "f 1 1 1 1 1 1 0",
-     "\"f\" has too few numbers, line 1; the missing ones are set to the smallest value allowed"},
-    {"LongMaterial", "f 1 1 1 1 1 1 0 0 1 2", "\"f\" has more numbers than it takes (\"1\"), line 1 and 1 more"},
+     "line 1: \"f\" has too few numbers; the missing ones are set to the smallest value allowed"},
+    {"LongMaterial", "f 1 1 1 1 1 1 0 0 1 2", "line 1: \"f\" has more numbers than it takes (\"1\"), and 1 more"},
     {"NegativeBackground", "b 0 0 -1", "\"b\" has a number that is not from 0 to 1e7"},
     {"LongBackground", "b 0 0 1 1", "\"b\" has more numbers"},
     {"NegativeLight", "l 0 0 0 1 1 -1", "\"l\" has a number that is not from 0 to 1e7"},
     {"LightOfTwo", "l 0 0 0 1 1", "\"l\" has too few numbers"},
     {"LightNowhere", "l 0 nan 0 1 1 1",
-     "\"l\" has a coordinate that is not a number up to 1e15 (\"nan\"), line 1; it is"},
+     "line 1: \"l\" has a coordinate that is not a number up to 1e15 (\"nan\"); it is"},
     {"ShortLight", "l 0 0", "\"l\" has a coordinate"},
     {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" lacks from, at, up or angle"},
     {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in the same place"},
@@ -288,7 +288,7 @@ const Repair kRepairs[] = {
     {"TooManyPixels", "v resolution 99999 512", "a resolution that is not two whole"},
     {"HalfAPixel", "v resolution 5.5 512", "a resolution that is not two whole"},
     {"SphereNan", "s nan 0 0 1",
-     "\"s\" has a coordinate that is not a number up to 1e15 (\"nan\"), line 1; it is left"},
+     "line 1: \"s\" has a coordinate that is not a number up to 1e15 (\"nan\"); it is left"},
     {"SphereInfinite", "s 0 0 inf 1", "\"s\" has a coordinate"},
     {"SphereBeyondDouble", "s 1e999 0 0 1", "\"s\" has a coordinate"},
     {"SphereTooFar", "s 1e16 0 0 1", "\"s\" has a coordinate"},
@@ -297,7 +297,7 @@ const Repair kRepairs[] = {
     {"RadiusTooSmall", "s 0 0 0 1e-30", "\"s\" has a radius"},
     {"Radii", "c 0 0 0 0 1 0 0 0", "\"c\" has two radii of 0"},
     {"Signs", "c 0 0 0 1 1 0 0 -1", "\"c\" has one radius that is negative"},
-    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "\"c\" has its base and apex at the same point, or too far apart, line 2"},
+    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "line 2: \"c\" has its base and apex at the same point, or too far apart"},
     {"ConeNan", "c 0 0 0 nan 1 1 1 1", "\"c\" has a coordinate"},
     {"TwoCorners", "p 2 0 0 0 1 1 1", "\"p\" has fewer than 3 corners"},
     {"NoCorners", "pp 0", "\"pp\" has fewer than 3 corners"},
@@ -321,7 +321,7 @@ TEST_F(NffTest, WhatIsForgivenKeepsTheRest) {
 }
 
 TEST_F(NffTest, AFileWhoseShapesAreAllLeftOutIsRefused) {
-  EXPECT_THAT(refusal("s 0 0 0 0\np 1 0 0 0\n"), HasSubstr("nothing to draw (\"s\" has a radius that is 0"));
+  EXPECT_THAT(refusal("s 0 0 0 0\np 1 0 0 0\n"), HasProblem("scene.geometry.none \"s\" radius"));
 }
 
 // Refusals
@@ -333,22 +333,22 @@ TEST_P(BadNffTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadNff[] = {
-    {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "\"q\" is not a statement of NFF", ": line 2"},
-    {"UpperCase", "S 0 0 0 1", "\"S\" is not a statement", ": line 1"},
-    {"TooManyNumbers", "s 0 0 0 1\n 7", "\"7\" is not a statement", ": line 2"},
-    {"NoNumber", "s 0 0\nx 1\n", "\"x\" is not a number", ": line 2"},
-    {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "\"s\" is not a number", ": line 2; write s x y z radius"},
-    {"HugeCount", "p 99999999999999999999 0 0 0", "is not a number of corners", ": line 1"},
-    {"LargeCount", "p 4000000000 0 0 0", "is not a number of corners", ": line 1"},
-    {"NegativeCount", "pp -3 0 0 0", "\"-3\" is not a number of corners", ": line 1"},
-    {"BrokenCount", "p 3.5 0 0 0", "\"3.5\" is not a number of corners", ": line 1"},
-    {"CutInPolygon", "p 3 0 0 0\n1 1 1\n0 1\n", "the file ends within \"p\"", ": line 3"},
-    {"CutInPatch", "pp 3 0 0 0 0 0 1 1 1 1", "the file ends within \"pp\"", ": line 1"},
-    {"CutBeforeCount", "b 0 0 0\np", "the file ends within \"p\"", ": line 2"},
-    {"CutInMaterial", "f 1 1 1 0.5", "the file ends within \"f\"", ": line 1"},
-    {"CutInCone", "c 1 1 1 0.5 2 2 2", "the file ends within \"c\"", ": line 1"},
-    {"CutInView", "v\nfrom 0 0 1\nat 0", "the file ends within \"v\"", ": line 3"},
-    {"Binary", "\x01\x02\xff\n", "is not a statement of NFF", ": line 1"},
+    {"UnknownStatement", "b 1 1 1\nq 1 2 3\n", "nff.statement.unknown \"q\"", ": line 2"},
+    {"UpperCase", "S 0 0 0 1", "nff.statement.unknown \"S\"", ": line 1"},
+    {"TooManyNumbers", "s 0 0 0 1\n 7", "nff.statement.unknown \"7\"", ": line 2"},
+    {"NoNumber", "s 0 0\nx 1\n", "nff.number.wrong \"x\"", ": line 2"},
+    {"ShapeOfThree", "s 0 0 0\ns 0 0 0 1", "nff.number.wrong \"s\"", ": line 2"},
+    {"HugeCount", "p 99999999999999999999 0 0 0", "nff.corners.count", ": line 1"},
+    {"LargeCount", "p 4000000000 0 0 0", "nff.corners.count", ": line 1"},
+    {"NegativeCount", "pp -3 0 0 0", "nff.corners.count \"-3\"", ": line 1"},
+    {"BrokenCount", "p 3.5 0 0 0", "nff.corners.count \"3.5\"", ": line 1"},
+    {"CutInPolygon", "p 3 0 0 0\n1 1 1\n0 1\n", "nff.file.short \"p\"", ": line 3"},
+    {"CutInPatch", "pp 3 0 0 0 0 0 1 1 1 1", "nff.file.short \"pp\"", ": line 1"},
+    {"CutBeforeCount", "b 0 0 0\np", "nff.file.short \"p\"", ": line 2"},
+    {"CutInMaterial", "f 1 1 1 0.5", "nff.file.short \"f\"", ": line 1"},
+    {"CutInCone", "c 1 1 1 0.5 2 2 2", "nff.file.short \"c\"", ": line 1"},
+    {"CutInView", "v\nfrom 0 0 1\nat 0", "nff.file.short \"v\"", ": line 3"},
+    {"Binary", "\x01\x02\xff\n", "nff.statement.unknown", ": line 1"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff), name_of_bad_file);

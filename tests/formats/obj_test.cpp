@@ -30,12 +30,12 @@ class ObjTest : public SceneFolder {
   LoadedScene load(std::string_view text) const { return SceneFolder::load("scene.obj", text); }
   std::string refusal(std::string_view text) const { return SceneFolder::refusal("scene.obj", text); }
 
-  /// Checks that a strict loader refuses a text that another reads, with these words and this place.
+  /// Checks that a strict loader refuses a text that another reads, with this problem and this place.
   void expect_strict_refusal(std::string_view text, const char* what, const std::string& where) const {
     const std::filesystem::path file = write("strict.obj", text);
     EXPECT_EQ(SceneFolder::refusal(file), "");
     const std::string said = message_of([&] { load_scene(file, {.is_strict = true}); });
-    EXPECT_THAT(said, HasSubstr(what));
+    EXPECT_THAT(said, HasProblem(what));
     EXPECT_THAT(said, HasSubstr("strict.obj" + where));
   }
 
@@ -185,10 +185,10 @@ TEST_F(ObjTest, WhatIsNotDrawnIsSaidOnce) {
 }
 
 TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
-  EXPECT_THAT(refusal(kSquare), HasSubstr("4 vertices but no faces"));
-  EXPECT_THAT(refusal("# nothing\n"), HasSubstr("neither vertices nor faces"));
-  EXPECT_THAT(refusal(kSquare + "l 1 2\np 3\n"), HasSubstr("no faces, and lines and points are not drawn"));
-  EXPECT_THAT(refusal(kSquare + "f 1 2\nf 3 4\n"), HasSubstr("all faces have fewer than 3 corners"));
+  EXPECT_THAT(refusal(kSquare), HasProblem("obj.faces.none 4"));
+  EXPECT_THAT(refusal("# nothing\n"), HasProblem("obj.faces.none"));
+  EXPECT_THAT(refusal(kSquare + "l 1 2\np 3\n"), HasProblem("obj.faces.none lines points"));
+  EXPECT_THAT(refusal(kSquare + "f 1 2\nf 3 4\n"), HasProblem("obj.faces.none"));
 }
 
 // Faults that only cost colours, shades or what no face shows
@@ -197,8 +197,8 @@ TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");
   EXPECT_THAT(mesh_of(scene, 0).triangles, SizeIs(1));
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(2)) << "those left out have no number";
-  EXPECT_THAT(scene.warnings, ElementsAre("a face has fewer than 3 corners, line 5 and 2 more; it is left out"));
-  expect_strict_refusal(kSquare + "f 1 2\nf 1 2 3\n", "fewer than 3 corners", ": line 5");
+  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a face has fewer than 3 corners, and 2 more; it is left out"));
+  expect_strict_refusal(kSquare + "f 1 2\nf 1 2 3\n", "obj.face.corners", ": line 5");
 }
 
 TEST_F(ObjTest, VerticesThatNoFaceUsesMayHoldAnything) {
@@ -207,7 +207,7 @@ TEST_F(ObjTest, VerticesThatNoFaceUsesMayHoldAnything) {
   EXPECT_EQ(corners_of(mesh_of(scene)), (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("no face uses"), HasSubstr("\"nan\" is not a number"),
                                                 HasSubstr("line 1 and 4 more"))));
-  expect_strict_refusal(text, "no face uses", ": line 1");
+  expect_strict_refusal(text, "obj.position.range", ": line 1");
 }
 
 TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
@@ -217,24 +217,24 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   ASSERT_THAT(scene.objects, SizeIs(2)) << "an object without a face is none";
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
-                                                HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13 and 2 more"),
-                                                HasSubstr("the face is left out"))));
-  expect_strict_refusal(text, "a face has a vertex that is not three numbers", ": line 13");
-  EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("face"));
+                                                HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13: "),
+                                                HasSubstr(", and 2 more; "), HasSubstr("the face is left out"))));
+  expect_strict_refusal(text, "obj.position.range", ": line 13");
+  EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasProblem("scene.geometry.none face"));
 }
 
 TEST_F(ObjTest, NumbersBehindAVertexCostAWarning) {
   const LoadedScene rgba = load("v 0 0 0 1 0.5 0 1\nv 1 0 0 1 0 0 0.5 9\nv 0 1 0\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(rgba).colors, ElementsAre(vec4(1, 0.5F, 0, 1), vec4(1, 0, 0, 1), vec4(1)));
-  EXPECT_THAT(rgba.warnings, ElementsAre(HasSubstr("more than 6 numbers, line 1 and 1 more")));
+  EXPECT_THAT(rgba.warnings, ElementsAre(HasSubstr("line 1: a vertex has more than 6 numbers, and 1 more")));
   const LoadedScene colors = load("v 0 0 0 nan 0 0\nv 1 0 0 0 -1 0\nv 0 1 0 0.5 0 0\nf 1 2 3\n");
   EXPECT_THAT(mesh_of(colors).colors, ElementsAre(vec4(1), vec4(1), vec4(0.5F, 0, 0, 1)));
   EXPECT_THAT(colors.warnings, ElementsAre(AllOf(HasSubstr("colour is not three"), HasSubstr("line 1 and 1 more"))));
   const LoadedScene others = load("v 0 0 0 1 2\nv 1 0 0 x\nv 0 1 0 0 0 0\nf 1 2 3\n");
   EXPECT_EQ(mesh_of(others).positions.at(1), vec3(1, 0, 0));
   EXPECT_THAT(others.warnings, ElementsAre(AllOf(HasSubstr("neither a weight nor a colour"), HasSubstr("and 1 more"))));
-  expect_strict_refusal("v 0 0 0 1 1 1 1\n" + kSquare + "f 1 2 3\n", "more than 6 numbers", ": line 1");
-  expect_strict_refusal("v 0 0 0 1 x 1\n" + kSquare + "f 1 2 3\n", "colour is not three numbers", ": line 1");
+  expect_strict_refusal("v 0 0 0 1 1 1 1\n" + kSquare + "f 1 2 3\n", "obj.vertex.numbers", ": line 1");
+  expect_strict_refusal("v 0 0 0 1 x 1\n" + kSquare + "f 1 2 3\n", "obj.color.range", ": line 1");
 }
 
 TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
@@ -245,17 +245,17 @@ TEST_F(ObjTest, NormalsThatAreNoNumbersMakeTheirFacesSharp) {
   ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
   EXPECT_EQ(mesh.normals.at(mesh.triangles[0].z), vec3(1, 0, 0));
   for (const size_t sharp : {1, 2}) EXPECT_EQ(mesh.normals.at(mesh.triangles[sharp].x), vec3(0, 0, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a normal is not three numbers up to 1e15 (\"nan\"), line 5 and 2 more; "
-                                          "the faces that use it are shaded flat",
-                                          HasSubstr("a normal has more than 3 numbers, line 8")));
-  expect_strict_refusal(text, "a normal is not three numbers", ": line 5");
+  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a normal is not three numbers up to 1e15 (\"nan\"), and 2 more; the "
+                                          "faces that use it are shaded flat",
+                                          HasSubstr("line 8: a normal has more than 3 numbers")));
+  expect_strict_refusal(text, "obj.normal.range", ": line 5");
 }
 
 TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   const LoadedScene none = load(kSquare + "f 1//1 2//2 3//3\nf 1//1 3//3 4//4\n");
   EXPECT_THAT(mesh_of(none).normals, IsEmpty());
   EXPECT_THAT(none.warnings,
-              ElementsAre("a face refers to a normal that does not exist, line 5 and 1 more; it is shaded flat"));
+              ElementsAre("line 5: a face refers to a normal that does not exist, and 1 more; it is shaded flat"));
   const LoadedScene some = load(kSquare +
                                 "vn 1 0 0\nf 1//1 2//1 3//2\nf 1//1 3//-2 4//0\nf 1//1 3//x 4//1\n"
                                 "f 1//1 2//1 3//1\nf 1//1 2//1 3//99999999999999999999\n");
@@ -264,25 +264,26 @@ TEST_F(ObjTest, NormalsThatAreNotThereMakeTheirFacesSharp) {
   EXPECT_EQ(mesh.normals.at(mesh.triangles[3].x), vec3(1, 0, 0));
   EXPECT_THAT(some.warnings, ElementsAre(HasSubstr("line 6 and 3 more")));
   EXPECT_THAT(load(kSquare + "f 1//1 2//1 3//1\nvn 1 0 0\n").warnings, IsEmpty()) << "normals may follow";
-  expect_strict_refusal(kSquare + "f 1//1 2//1 3//1\n", "refers to a normal that does not exist", ": line 5");
+  expect_strict_refusal(kSquare + "f 1//1 2//1 3//1\n", "obj.normal.index", ": line 5");
 }
 
 TEST_F(ObjTest, TextureCoordinatesThatAreNotThereCostAWarning) {
   const LoadedScene scene = load(kSquare + "vt 0 0\nf 1/1 2/2 3/x\nf 1/-9 2/1 3/0\nf 1/1 2/1 3/1\n");
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3));
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("a face refers to texture coordinates that do not exist, line 6 and 1 more; it "
-                          "is drawn without them"));
-  expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "texture coordinates that do not exist", ": line 5");
-  expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "texture coordinate is not a number", ": line 5");
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre(
+          "line 6: a face refers to texture coordinates that do not exist, and 1 more; it is drawn without them"));
+  expect_strict_refusal(kSquare + "f 1/1 2/1 3/1\n", "obj.uv.index", ": line 5");
+  expect_strict_refusal(kSquare + "vt nan 0\nf 1 2 3\n", "obj.uv.range", ": line 5");
 }
 
 TEST_F(ObjTest, ZeroBytesAtTheEndAreCutOff) {
   const std::string padded = kSquare + "f 1 2 3" + std::string(5, '\0');
   EXPECT_THAT(mesh_of(load(padded)).triangles, SizeIs(1));
   EXPECT_THAT(load(padded).warnings, IsEmpty());
-  EXPECT_THAT(refusal(kSquare + std::string("f 1 2 3\0\n", 9)), HasSubstr("not text"));
-  EXPECT_THAT(refusal(std::string(9, '\0')), HasSubstr("neither vertices nor faces"));
+  EXPECT_THAT(refusal(kSquare + std::string("f 1 2 3\0\n", 9)), HasProblem("obj.file.kind"));
+  EXPECT_THAT(refusal(std::string(9, '\0')), HasProblem("obj.faces.none"));
   write("m.mtl", "newmtl m\nKd 1 0 0" + std::string(3, '\0'));
   const LoadedScene scene = load(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n");
   EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(1, 0, 0));
@@ -657,9 +658,9 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
   EXPECT_THAT(scene.warnings,
               testing::UnorderedElementsAre(
                   testing::StartsWith("a file does not exist (\"none.png\"); materials are drawn without it"),
-                  testing::StartsWith("a picture cannot be used: its format is unknown, image \"broken.png\""),
+                  testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
                   testing::StartsWith("a file's name leaves the scene's folder (\"../b.png\"); materials"),
-                  testing::StartsWith("the file is empty, image \"empty.png\"")));
+                  testing::StartsWith("image \"empty.png\": the file is empty")));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.phong().diffuse, vec3(0.8F));
   EXPECT_EQ(material.phong().specular, vec3(0));
@@ -931,25 +932,26 @@ TEST_P(BadObjTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadObj[] = {
-    {"IndexZero", "f 0 1 2", "\"0\" is not a corner", ": line 5"},
-    {"IndexPastTheEnd", "f 1 2 5", "index 5 is out of range, there are 4 vertices", ": line 5"},
-    {"RelativePastTheStart", "f -1 -2 -5", "\"-5\" is not a corner", ": line 5"},
-    {"IndexOverflows", "f 1 2 99999999999", "\"99999999999\" is not a corner", ": line 5"},
-    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "is not a corner", ": line 5"},
-    {"IndexIsText", "f a b c", "\"a\" is not a corner", ": line 5"},
-    {"TooManySlashes", "f 1/2/3/4 2 3", "\"1/2/3/4\" is not a corner", ": line 5"},
-    {"NoPosition", "f /1 2 3", "is not a corner", ": line 5"},
-    {"NoFaceOfThreeCorners", "f 1 2\nf 1 x 2", "\"x\" is not a corner", ": line 6"},
+    {"IndexZero", "f 0 1 2", "obj.face.corner \"0\"", ": line 5"},
+    {"IndexPastTheEnd", "f 1 2 5", "obj.face.index 5 4", ": line 5"},
+    {"RelativePastTheStart", "f -1 -2 -5", "obj.face.corner \"-5\"", ": line 5"},
+    {"IndexOverflows", "f 1 2 99999999999", "obj.face.corner \"99999999999\"", ": line 5"},
+    {"IndexOverflowsMore", "f 1 2 99999999999999999999", "obj.face.corner", ": line 5"},
+    {"IndexIsText", "f a b c", "obj.face.corner \"a\"", ": line 5"},
+    {"TooManySlashes", "f 1/2/3/4 2 3", "obj.face.corner \"1/2/3/4\"", ": line 5"},
+    {"NoPosition", "f /1 2 3", "obj.face.corner", ": line 5"},
+    {"NoFaceOfThreeCorners", "f 1 2\nf 1 x 2", "obj.face.corner \"x\"", ": line 6"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadObjTest, testing::ValuesIn(kBadObj), name_of_bad_file);
 
 TEST_F(ObjTest, BrokenFilesSayWhy) {
-  EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasSubstr("the file does not exist"));
-  EXPECT_THAT(SceneFolder::refusal(folder_), HasSubstr("is a folder"));
-  EXPECT_THAT(refusal(""), HasSubstr("empty"));
-  EXPECT_THAT(refusal(std::string_view("v 0 0\0 0", 8)), HasSubstr("not text"));
-  EXPECT_THAT(refusal("f 1 2 3\nf a b c\nf 0 1 1\n"), HasSubstr("(1 of 5 problems)"));
+  EXPECT_THAT(SceneFolder::refusal(folder_ / "none.obj"), HasProblem("file.missing"));
+  EXPECT_THAT(SceneFolder::refusal(folder_), HasProblem("file.folder"));
+  EXPECT_THAT(refusal(""), HasProblem("file.empty"));
+  EXPECT_THAT(refusal(std::string_view("v 0 0\0 0", 8)), HasProblem("obj.file.kind"));
+  EXPECT_THAT(refusal("f 1 2 3\nf a b c\nf 0 1 1\n"),
+              testing::ResultOf([](const std::string& list) { return std::ranges::count(list, '\n'); }, 4));
 }
 
 // Polygons

@@ -107,8 +107,8 @@ TEST_F(PictureSourcesTest, WhatIsDamagedButDecodedIsShownWithAWarning) {
   read(file, source);
   EXPECT_EQ(source.image->texels.size(), 256U);
   EXPECT_THAT(report_.warnings(),
-              ElementsAre(AllOf(testing::StartsWith("a picture is damaged (Corrupt JPEG data: "),
-                                testing::EndsWith("), image \"photo\"; the part that can be decoded is shown"))));
+              ElementsAre(AllOf(testing::StartsWith("image \"photo\": a picture is damaged (Corrupt JPEG data: "),
+                                testing::EndsWith("); the part that can be decoded is shown"))));
   LoadReport strict(folder_ / "scene.gltf", true);
   source.file = file;
   decode_pictures({&source, 1}, strict);

@@ -156,7 +156,8 @@ TEST_F(PlyTest, PolygonsAreCutIntoTriangles) {
 TEST_F(PlyTest, SmallFacesAreSaidAndNotDrawn) {
   const LoadedScene scene = load(square("2 0 1\n3 0 1 2\n0\n", 3));
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a face has fewer than 3 corners, line 16 and 1 more; the face is left out"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("line 16: a face has fewer than 3 corners, and 1 more; the face is left out"));
 }
 
 TEST_F(PlyTest, DegenerateTrianglesKeepTheirNumber) {
@@ -186,7 +187,7 @@ TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
   const LoadedScene scene = load(file);
   EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
   EXPECT_THAT(mesh_of(scene).positions, SizeIs(4));
-  EXPECT_THAT(scene.warnings, ElementsAre("a face has a vertex coordinate that is not a number up to 1e15, vertex 4 "
+  EXPECT_THAT(scene.warnings, ElementsAre("vertex 4: a face has a vertex coordinate that is not a number up to 1e15, "
                                           "and 1 more; the face is left out"));
   EXPECT_THROW(load_scene(folder_ / "scene.ply", {.is_strict = true}), InputError);
 }
@@ -194,7 +195,7 @@ TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
 TEST_F(PlyTest, NumbersBeyondDoubleAreThoseOfTheirSide) {
   const std::string file = text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList);
   EXPECT_EQ(mesh_of(load(file + "1e-999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")).positions[0], vec3(0.0F));
-  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasSubstr("not a number up to 1e15"));
+  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasProblem("ply.position.range"));
 }
 
 // Normals and colours
@@ -271,7 +272,7 @@ TEST_F(PlyTest, ColorsOutOfRangeAreClamped) {
   const LoadedScene scene =
       load(triangle("property float red\nproperty float green\nproperty float blue\n", {"-1 2 nan", "0 0 0", "0 0 0"}));
   EXPECT_EQ(mesh_of(scene).colors.at(0), vec4(0, 1, 1, 1));
-  EXPECT_THAT(scene.warnings, ElementsAre("a colour is not a number, line 15; 1 is used",
+  EXPECT_THAT(scene.warnings, ElementsAre("line 15: a colour is not a number; 1 is used",
                                           "vertex colours below 0 or above 1 are clamped"));
 }
 
@@ -407,9 +408,10 @@ TEST_F(PlyTextureTest, FacesHaveTextureCoordinatesAndTexturesOfTheirOwn) {
   EXPECT_EQ(mesh.triangles.at(1), uvec3(0, 2, 3)) << "corners with the same coordinates are shared";
   EXPECT_EQ(mesh.uvs.at(3), vec4(0, 0.5F, 0, 0));
   EXPECT_EQ(mesh.triangles.at(2), uvec3(0, 1, 2));
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("a face does not have two texture coordinates for each corner, line 26; it is "
-                          "drawn without a texture"));
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre(
+          "line 26: a face does not have two texture coordinates for each corner; it is drawn without a texture"));
   EXPECT_THAT(validate(scene), IsEmpty());
 }
 
@@ -452,7 +454,7 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
   EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("format is unknown")));
   EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));
   EXPECT_THAT(warnings("a.png", uvs, "nan 0"),
-              ElementsAre("a texture coordinate is not finite or beyond 1e15, line 15 and 2 more; 0 is used"));
+              ElementsAre("line 15: a texture coordinate is not finite or beyond 1e15, and 2 more; 0 is used"));
 }
 
 TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {
@@ -494,50 +496,49 @@ std::string cut_binary(const std::string& count_of_faces) {
 }
 
 const BadFile kBadPly[] = {
-    {"Empty", text_header("element vertex 0\n" + kPlace + "element face 0\n" + kCornerList), "contains nothing to draw",
-     ""},
-    {"SmallFacesAlone", square("2 0 1\n", 1), "contains nothing to draw (a face has fewer than 3 corners", ""},
+    {"Empty", text_header("element vertex 0\n" + kPlace + "element face 0\n" + kCornerList), "scene.geometry.none", ""},
+    {"SmallFacesAlone", square("2 0 1\n", 1), "scene.geometry.none corners", ""},
     {"NoPosition",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0,5 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-     "\"0,5\" is not a number", ": line 12"},
-    {"NoPly", "solid x\n", "first line is not \"ply\"", ""},
-    {"NoEnd", "ply\nformat ascii 1.0\nelement vertex 3\n", "the header has no end", ": line 3"},
-    {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "states no format", ": line 6"},
-    {"UnknownFormat", "ply\nformat binary 1.0\nend_header\n", "\"binary\" is not a format", ": line 2"},
-    {"UnknownType", text_header("element vertex 3\nproperty half x\n"), "\"half\" is not a type", ": line 6"},
-    {"UnknownListType", text_header("element face 3\nproperty list uchar long x\n"), "\"long\" is not a type",
+     "ply.row.wrong \"0,5\"", ": line 12"},
+    {"NoPly", "solid x\n", "ply.file.kind", ""},
+    {"NoEnd", "ply\nformat ascii 1.0\nelement vertex 3\n", "ply.header.short", ": line 3"},
+    {"NoFormat", "ply\nelement vertex 0\n" + kPlace + "end_header\n", "ply.header.format", ": line 6"},
+    {"UnknownFormat", "ply\nformat binary 1.0\nend_header\n", "ply.header.format \"binary\"", ": line 2"},
+    {"UnknownType", text_header("element vertex 3\nproperty half x\n"), "ply.header.type \"half\"", ": line 6"},
+    {"UnknownListType", text_header("element face 3\nproperty list uchar long x\n"), "ply.header.type \"long\"",
      ": line 6"},
-    {"NegativeCount", text_header("element vertex -1\n"), "\"-1\" is not a number of rows", ": line 5"},
-    {"NoCount", text_header("element vertex\n"), "\"\" is not a number of rows", ": line 5"},
-    {"TwoElements", text_header("element vertex 0\nelement vertex 0\n"), "two elements \"vertex\"", ": line 6"},
-    {"TwoProperties", text_header("element vertex 0\nproperty int x\nproperty float x\n"), "two properties \"x\"",
+    {"NegativeCount", text_header("element vertex -1\n"), "ply.header.count \"-1\"", ": line 5"},
+    {"NoCount", text_header("element vertex\n"), "ply.header.count \"\"", ": line 5"},
+    {"TwoElements", text_header("element vertex 0\nelement vertex 0\n"), "ply.header.twice \"vertex\"", ": line 6"},
+    {"TwoProperties", text_header("element vertex 0\nproperty int x\nproperty float x\n"), "ply.header.twice \"x\"",
      ": line 7"},
-    {"PropertyOfNothing", text_header("property int x\n"), "before any element", ": line 5"},
-    {"NoVertices", text_header("element face 0\n" + kCornerList), "no element \"vertex\"", ""},
-    {"NoPositions", text_header("element vertex 0\nproperty float x\n"), "no x, y and z", ""},
-    {"PointCloud", text_header(kVertexElement) + kSquare, "4 vertices but no faces", ""},
-    {"NoFaces", text_header(kVertexElement + "element face 0\n" + kCornerList) + kSquare, "no faces", ""},
+    {"PropertyOfNothing", text_header("property int x\n"), "ply.header.order", ": line 5"},
+    {"NoVertices", text_header("element face 0\n" + kCornerList), "ply.vertices.missing \"vertex\"", ""},
+    {"NoPositions", text_header("element vertex 0\nproperty float x\n"), "ply.vertices.missing x", ""},
+    {"PointCloud", text_header(kVertexElement) + kSquare, "ply.faces.missing 4", ""},
+    {"NoFaces", text_header(kVertexElement + "element face 0\n" + kCornerList) + kSquare, "ply.faces.missing", ""},
     {"FacesWithoutCorners", text_header(kVertexElement + "element face 1\nproperty int a\n") + kSquare + "1\n",
-     "no faces", ""},
-    {"CountOfALie", text_header("element vertex 1000000000\n" + kPlace) + kSquare, "has room for", ""},
-    {"CountOfAHugeLie", text_header("element vertex 9223372036854775807\n" + kPlace) + kSquare, "has room for", ""},
-    {"CutBinaryHeader", cut_binary("1000"), "1000 rows of \"face\", but the file has room for 9", ""},
-    {"CutBinary", cut_binary("1"), "a list is longer than the rest of the file", ": face 0"},
-    {"CutText", square("3 0 1 2\n", 2), "ends within its rows", ""},
-    {"CutRow", square("3 0 1\n3 0 1 2\n", 2), "fewer numbers", ": line 16"},
-    {"NoNumber", square("3 0 1 x\n", 1), "\"x\" is not a number", ": line 16"},
-    {"IndexPastTheEnd", square("3 0 1 4\n", 1), "refers to a vertex that does not exist, there are 4", ": line 16"},
-    {"NegativeIndex", square("3 0 1 -1\n", 1), "refers to a vertex that does not exist", ": line 16"},
-    {"BrokenIndex", square("3 0 1 1.5\n", 1), "refers to a vertex that does not exist", ": line 16"},
-    {"CountOfNone", square("-3 0 1 2\n", 1), "a list is longer than the rest of the file", ": line 16"},
-    {"CountOfALong", square("99999999 0 1 2\n", 1), "a list is longer than the rest of the file", ": line 16"},
+     "ply.faces.missing", ""},
+    {"CountOfALie", text_header("element vertex 1000000000\n" + kPlace) + kSquare, "ply.file.short", ""},
+    {"CountOfAHugeLie", text_header("element vertex 9223372036854775807\n" + kPlace) + kSquare, "ply.file.short", ""},
+    {"CutBinaryHeader", cut_binary("1000"), "ply.file.short 1000 \"face\" 9", ""},
+    {"CutBinary", cut_binary("1"), "ply.row.wrong list", ": face 0"},
+    {"CutText", square("3 0 1 2\n", 2), "ply.row.wrong ends", ""},
+    {"CutRow", square("3 0 1\n3 0 1 2\n", 2), "ply.row.wrong fewer", ": line 16"},
+    {"NoNumber", square("3 0 1 x\n", 1), "ply.row.wrong \"x\"", ": line 16"},
+    {"IndexPastTheEnd", square("3 0 1 4\n", 1), "ply.row.wrong vertex 4", ": line 16"},
+    {"NegativeIndex", square("3 0 1 -1\n", 1), "ply.row.wrong vertex", ": line 16"},
+    {"BrokenIndex", square("3 0 1 1.5\n", 1), "ply.row.wrong vertex", ": line 16"},
+    {"CountOfNone", square("-3 0 1 2\n", 1), "ply.row.wrong list", ": line 16"},
+    {"CountOfALong", square("99999999 0 1 2\n", 1), "ply.row.wrong list", ": line 16"},
     {"Nan",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0 0\n0 nan 0\n1 0 0\n3 0 1 2\n",
-     "not a number up to 1e15, vertex 1", ""},
+     "ply.position.range", ""},
     {"TooLarge",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) +
          "0 0 0\n0 1 0\n1e16 0 0\n3 0 1 2\n",
-     "not a number up to 1e15, vertex 2", ""},
+     "ply.position.range 2", ""},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly), name_of_bad_file);
@@ -545,7 +546,7 @@ INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly), name_of_
 TEST_F(PlyTest, TooManyCornersAreRefused) {
   std::string face = "10001";
   for (int i = 0; i < 10'001; ++i) face += i % 2 == 0 ? " 0" : " 1";
-  EXPECT_THAT(refusal(square(face + "\n", 1)), HasSubstr("more than 10000 corners"));
+  EXPECT_THAT(refusal(square(face + "\n", 1)), HasProblem("ply.row.wrong 10000"));
 }
 
 }  // namespace

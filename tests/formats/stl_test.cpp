@@ -143,12 +143,10 @@ TEST_F(StlTest, FacetsThatAreNoTrianglesAreSaid) {
       load("solid\n" + begin + "endfacet\n" + begin + "vertex 1 1 0\nvertex 0 1 0\nendfacet\n" + begin +
            "vertex 0 nan inf\nendfacet\n" + begin + "vertex 0 1e16 0\nendfacet\n" + kFacet);
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3)) << "two of the square";
-  EXPECT_THAT(
-      scene.warnings,
-      ElementsAre("a facet has fewer than 3 corners (2), line 5; the facet is left out",
-                  "a facet has more than 3 corners (4), line 11; it is divided into triangles",
-                  "a facet has a vertex coordinate that is not a number up to 1e15 (\"nan\"), line 15 and 1 more; "
-                  "the facet is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a facet has fewer than 3 corners (2); the facet is left out",
+                                          "line 11: a facet has more than 3 corners (4); it is divided into triangles",
+                                          "line 15: a facet has a vertex coordinate that is not a number up to 1e15 "
+                                          "(\"nan\"), and 1 more; the facet is left out"));
   EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
 }
 
@@ -160,9 +158,8 @@ TEST_F(StlTest, BinaryFacetsWithoutAPlaceAreLeftOut) {
   const LoadedScene scene = load(stl.bytes());
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   EXPECT_THAT(mesh_of(scene).colors, testing::Each(vec4(1, 0, 0, 1))) << "that of its facet";
-  EXPECT_THAT(scene.warnings,
-              ElementsAre("a facet has a vertex coordinate that is not a number up to 1e15, facet 0 and 1 "
-                          "more; the facet is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("facet 0: a facet has a vertex coordinate that is not a number up to 1e15, "
+                                          "and 1 more; the facet is left out"));
 }
 
 TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
@@ -177,7 +174,7 @@ TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
     EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
     // Where the size is no sign, the file is refused.
     EXPECT_THAT(refusal(bytes + "x"),
-                testing::AnyOf(HasSubstr("contains nothing to draw"), HasSubstr("has room for 3")));
+                testing::AnyOf(HasProblem("scene.geometry.none"), HasProblem("stl.file.short 3")));
   }
 }
 
@@ -222,7 +219,7 @@ TEST_F(StlTest, ColorsAreThoseOfMagics) {
 
 TEST_F(StlTest, WithoutFacetsThereIsNothingToShow) {
   for (const std::string& file : {StlBuilder().bytes(), std::string("solid x\nendsolid x\n")}) {
-    EXPECT_THAT(refusal(file), HasSubstr("the scene contains nothing to draw"));
+    EXPECT_THAT(refusal(file), HasProblem("scene.geometry.none"));
   }
 }
 
@@ -235,17 +232,16 @@ TEST_P(BadStlTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadFile kBadStl[] = {
-    {"Short", "stl", "the file is not an STL file", ""},
-    {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "\"x\" is not a number", ": line 3"},
-    {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "\"endloop\" is not a number", ": line 4"},
+    {"Short", "stl", "stl.file.kind", ""},
+    {"NoNumber", "solid\nfacet\nvertex 0 x 0\n", "stl.number.wrong \"x\"", ": line 3"},
+    {"TwoNumbers", "solid\nfacet\nvertex 0 0\nendloop\n", "stl.number.wrong \"endloop\"", ": line 4"},
     {"TooLarge", "solid\nfacet\nvertex 0 0 1e16\nvertex 0 0 0\nvertex 1 1 1\nendfacet\n",
-     "nothing to draw (a facet has a vertex coordinate that is not a number up to 1e15 (\"1e16\"), line 3", ""},
-    {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",
-     "nothing to draw (a facet has fewer than 3 corners (2), line 5", ""},
-    {"LostVertex", "solid\nvertex 0 0 0\n", "lies outside of facets", ": line 2"},
-    {"LostEnd", "solid\nendfacet\n", "has no begin", ": line 2"},
-    {"Nested", "solid\nfacet\nfacet\n", "within another", ": line 3"},
-    {"Cut", "solid\nfacet\nvertex 0 0 0\n", "ends within a facet", ": line 3"},
+     "scene.geometry.none \"1e16\" line 3", ""},
+    {"TwoCorners", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n", "scene.geometry.none corners line 5", ""},
+    {"LostVertex", "solid\nvertex 0 0 0\n", "stl.facet.nested", ": line 2"},
+    {"LostEnd", "solid\nendfacet\n", "stl.facet.nested", ": line 2"},
+    {"Nested", "solid\nfacet\nfacet\n", "stl.facet.nested", ": line 3"},
+    {"Cut", "solid\nfacet\nvertex 0 0 0\n", "stl.file.short", ": line 3"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl), name_of_bad_file);
@@ -253,8 +249,8 @@ INSTANTIATE_TEST_SUITE_P(Table, BadStlTest, testing::ValuesIn(kBadStl), name_of_
 TEST_F(StlTest, BrokenBinaryFilesSayWhy) {
   StlBuilder stl;
   for (int i = 0; i < 3; ++i) stl.add({{kTriangle[0], kTriangle[1], kTriangle[2]}});
-  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasSubstr("declares 3 facets, but has room for 2"));
-  EXPECT_THAT(refusal(std::string(100, '\xff')), HasSubstr("declares 4294967295 facets, but has room for 0"));
+  EXPECT_THAT(refusal(stl.bytes().substr(0, 200)), HasProblem("stl.file.short 3 2"));
+  EXPECT_THAT(refusal(std::string(100, '\xff')), HasProblem("stl.file.short 4294967295 0"));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "promin/error.h"
 #include "promin/renderer.h"
 #include "rays/ray_tiles.h"
+#include "support/problems.h"
 #include "trace/kernels/ray_kernel.h"
 #include "trace/kernels/tracing_kernel.h"
 #include "trace/render/caster_access.h"
@@ -358,7 +359,7 @@ TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
     EXPECT_EQ(cast(scene, rays)[0].primitive, kSlivers);
   } catch (const RunError& error) {
     EXPECT_TRUE(device().profile().may_cut_loops);
-    EXPECT_THAT(error.what(), testing::HasSubstr("65535"));
+    EXPECT_THAT(list_problems(error), HasProblem("device.loops.cut"));
   }
 }
 

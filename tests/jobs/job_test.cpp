@@ -76,7 +76,7 @@ class JobTest : public TempFolder {
     try {
       call();
     } catch (const Exception& error) {
-      return error.what();
+      return list_problems(error);
     }
     return "";
   }
@@ -131,7 +131,7 @@ TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
   renumbered.replace(renumbered.find("number 5"), 8, "number 6");
   write(job.file_of(5), renumbered);
   EXPECT_EQ(job.state_of(0), PieceState::kBad);
-  EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasSubstr("is damaged"));
+  EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasProblem("job.piece.damaged"));
   EXPECT_THAT(find_missing(job), ElementsAre(0, 1, 2, 3, 5));
   EXPECT_THAT(run(job), ElementsAre(0, 1, 2, 3, 5));
   EXPECT_THAT(bad_, ElementsAre("0 the piece is damaged", "1 the piece is cut short", "2 the file is empty",
@@ -171,17 +171,18 @@ TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   for (const auto& [change, sentence] : cases) {
     Manifest other = make_manifest();
     change(other);
-    EXPECT_THAT(refusal_of<UsageError>([&] { Job::create(job_folder_, other); }), HasSubstr(sentence));
+    EXPECT_THAT(refusal_of<UsageError>([&] { Job::create(job_folder_, other); }),
+                AllOf(HasProblem("job.other"), HasSubstr(sentence)));
   }
 }
 
 TEST_F(JobTest, FoldersWithoutAJobAreRefused) {
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("there is no such folder"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasProblem("job.folder.missing"));
   fs::create_directories(job_folder_);
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("there is no job in the folder"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasProblem("job.missing"));
   write(job_folder_ / "letter.txt", "dear");
   EXPECT_THAT(refusal_of<UsageError>([&] { Job::create(job_folder_, make_manifest()); }),
-              HasSubstr("the folder has files but no job"));
+              HasProblem("job.folder.used"));
   EXPECT_EQ(read(job_folder_ / "letter.txt"), "dear");
   for (const char* text : {"{", "[]", R"({"promin_job": 1})", R"({"promin_job": 3})"}) {
     write(job_folder_ / "job.json", text);
@@ -270,9 +271,9 @@ TEST_F(JobTest, AManifestThatWasChangedByHandIsDamaged) {
   std::string text = read(job_folder_ / "job.json");
   text.replace(text.find(" \"options\""), 1, "  ");
   write(job_folder_ / "job.json", text);
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("it is damaged"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasProblem("job.manifest.damaged"));
   write(job_folder_ / "job.json", "");
-  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasSubstr("it is damaged"));
+  EXPECT_THAT(refusal_of<InputError>([&] { Job::open(job_folder_); }), HasProblem("job.manifest.damaged"));
 }
 
 TEST_F(JobTest, LeftoversOfTheDeadAreCleared) {
@@ -292,7 +293,7 @@ TEST_F(JobTest, TheLedgerTellsWhatBeginsAndWhatCameOfIt) {
             std::tuple(1U, "part1", content.bytes.size(), PROMIN_VERSION));
   EXPECT_THROW(make_piece(job, 2, kMaker,
                           [](size_t) -> Content {
-                            throw RunError({"the device is gone", "", ""});
+                            throw RunError({"device.lost", "the device is gone", "", ""});
                           }),
                RunError);
   EXPECT_THROW(make_piece(job, 3, kMaker, [](size_t) -> Content { throw Cancelled(); }), Cancelled);
@@ -344,7 +345,7 @@ TEST_F(JobTest, HashesOfFilesAreKnownByTheirStamps) {
 TEST_F(JobTest, WhatMakesNoPieceLeavesNone) {
   const Job job = Job::create(job_folder_, make_manifest());
   const auto fails_at_2 = [](size_t piece) {
-    if (piece == 2) throw RunError({"the device is gone", "here", "try again"});
+    if (piece == 2) throw RunError({"device.lost", "the device is gone", "here", "try again"});
     return make_content(piece);
   };
   EXPECT_THROW(run_share(

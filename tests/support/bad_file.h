@@ -11,10 +11,11 @@
 
 namespace promin {
 
-/// A file, or a part of one, that is refused, and the place that the message must name.
+/// A file, or a part of one, that is refused, and the problem and the place that the message must name.
 struct BadFile {
   const char* name;
   std::string text;
+  /// As for HasProblem.
   const char* what;
   /// The text after the file's name.
   const char* where;
@@ -30,7 +31,7 @@ class BadFileTest : public SceneFolder, public testing::WithParamInterface<BadFi
   /// Loads a file of the test's folder.
   void expect_refusal(const std::string& file, const std::string& text) const {
     const std::string message = refusal(file, text);
-    EXPECT_THAT(message, testing::HasSubstr(GetParam().what));
+    EXPECT_THAT(message, HasProblem(GetParam().what));
     EXPECT_THAT(message, testing::HasSubstr(file + GetParam().where));
     EXPECT_THAT(message, testing::HasSubstr("; ")) << "no cure";
   }

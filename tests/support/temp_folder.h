@@ -10,6 +10,7 @@
 #include <string>
 
 #include "promin/error.h"
+#include "support/problems.h"
 
 namespace promin {
 
@@ -30,13 +31,13 @@ class TempFolder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Returns the message of the InputError that `read` throws; empty if it throws none.
+/// Returns the problems of the InputError that `read` throws, as list_problems does; empty if it throws none.
 template <typename Read>
 std::string message_of(const Read& read) {
   try {
     read();
   } catch (const InputError& error) {
-    return error.what();
+    return list_problems(error);
   }
   return "";
 }

@@ -14,6 +14,7 @@
 #include "pose_options.h"
 #include "promin/error.h"
 #include "render_options.h"
+#include "support/problems.h"
 #include "work/camera_choice.h"
 #include "work/check_spec.h"
 
@@ -58,7 +59,7 @@ TEST(ViewSetupTest, AnUnknownCameraListsThoseThereAre) {
       make_view(make_scene(), options, kSilent);
       ADD_FAILURE() << "accepted " << selection;
     } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("choose one of: 0 (main), 1 (side)"));
+      EXPECT_THAT(list_problems(error), HasProblem("camera.unknown 0 (main), 1 (side)"));
     }
   }
 }

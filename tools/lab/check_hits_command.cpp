@@ -102,7 +102,8 @@ void check(const std::string& file, const std::string& builder, size_t count) {
       scene.file.filename().c_str(), info.driver.c_str(), count, hit_count, max_k, beyond_b1, most_k, others,
       unexcused);
   if (beyond_b1 + unexcused > 0) {
-    throw RunError({"answers are beyond the bounds of docs/accuracy.md", file, "the rays are named above"});
+    throw RunError(
+        {"lab.bounds.exceeded", "answers are beyond the bounds of docs/accuracy.md", file, "the rays are named above"});
   }
 }
 

@@ -89,10 +89,11 @@ void check_options(const LabOptions& options) {
   for (const std::string& scene : options.scenes) measure::open_scene(scene);
   if (!options.rays) return;
   if (options.runs == 0U) {
-    throw UsageError({"--rays goes with pictures, which --runs 0 leaves out", "on the command line", "give some runs"});
+    throw UsageError(
+        {"usage.option.needs", "--rays goes with pictures, which --runs 0 leaves out", "", "give some runs"});
   }
   if (!std::filesystem::is_directory(*options.rays)) {
-    throw RunError({"no such folder", options.rays->string(), "make it first"});
+    throw RunError({"folder.missing", "there is no such folder", options.rays->string(), "make it first"});
   }
 }
 

@@ -75,7 +75,8 @@ void measure_robustness(const LabOptions& options) {
 void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_t samples) {
   world::Scene scene = measure::open_scene(options.scenes.front());
   add_default_lights(scene);
-  if (!fs::is_directory(folder)) throw RunError({"no such folder", folder.string(), "make it first"});
+  if (!fs::is_directory(folder))
+    throw RunError({"folder.missing", "there is no such folder", folder.string(), "make it first"});
   const Session session(options);
   View view = view_of(scene, uvec2(session.side()));
   view.samples_per_pixel = samples;

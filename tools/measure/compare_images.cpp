@@ -21,10 +21,11 @@ std::string name_size(const Image& image) {
 
 void require_same_size(const Image& a, const Image& b) {
   if (a.size != b.size) {
-    throw InputError({"the pictures have different sizes", name_size(a) + " against " + name_size(b),
-                      "render both at the same size"});
+    throw InputError({"picture.pair.sizes", "the pictures have different sizes",
+                      name_size(a) + " against " + name_size(b), "render both at the same size"});
   }
-  if (a.pixels.empty()) throw InputError({"the pictures have no pixels", name_size(a), "render them again"});
+  if (a.pixels.empty())
+    throw InputError({"picture.empty", "the pictures have no pixels", name_size(a), "render them again"});
 }
 
 /// Whether a pixel shows something between the values of a picture there and around it, as far as `slack`.

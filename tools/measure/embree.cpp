@@ -33,7 +33,7 @@ using BuiltScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
 
 Device open_embree() {
   Device device(rtcNewDevice(nullptr));
-  if (!device) throw RunError({"Embree does not start", "rtcNewDevice", "look for its requirements"});
+  if (!device) throw RunError({"embree.start", "Embree does not start", "rtcNewDevice", "look for its requirements"});
   return device;
 }
 
@@ -217,7 +217,8 @@ class Caster final : public EmbreeCaster {
   void check() const {
     const RTCError error = rtcGetDeviceError(device_.get());
     if (error == RTC_ERROR_NONE) return;
-    throw RunError({"Embree reports error " + std::to_string(error), source_.file.string(), "try a smaller scene"});
+    throw RunError({"embree.failed", "Embree reports error " + std::to_string(error), source_.file.string(),
+                    "try a smaller scene"});
   }
 
   const world::Scene& source_;

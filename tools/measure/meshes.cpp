@@ -101,7 +101,8 @@ world::Scene open_scene(const std::string& word) {
   const char* end = word.data() + word.size();
   const auto [rest, error] = std::from_chars(word.data() + colon + 1, end, count);
   if (error != std::errc() || rest != end || count < 16 || count > 50'000'000) {
-    throw UsageError({"no number of triangles from 16 to 50000000", word, "write " + kind + ":100000"});
+    throw UsageError({"usage.option.value", "this is no number of triangles from 16 to 50000000", word,
+                      "write " + kind + ":100000"});
   }
   world::Scene scene = kind == "wavy" ? make_wavy_sphere(count) : make_needles(count);
   scene.file = word;

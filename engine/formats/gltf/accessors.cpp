@@ -84,7 +84,8 @@ std::vector<To> read_accessor(const GltfDocument& document, int index, LoadRepor
   const std::byte* replacements = bytes_of_view(document, sparse.value_view).data() + sparse.value_offset;
   for (size_t i = 0; i < sparse.count; ++i) {
     if (places[i] >= accessor.count) {
-      report.refuse("sparse index " + std::to_string(places[i]) + " is out of range, the accessor has " +
+      report.refuse("gltf.accessor.index",
+                    "sparse index " + std::to_string(places[i]) + " is out of range, the accessor has " +
                         std::to_string(accessor.count) + " elements",
                     "accessors[" + std::to_string(index) + "].sparse.indices, element " + std::to_string(i),
                     "export the file again");

@@ -53,7 +53,8 @@ std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& pl
                                    uint64_t most_bytes = std::numeric_limits<uint64_t>::max()) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos || !has_ending(std::string_view(uri).substr(0, comma), ";base64")) {
-    report.refuse("the data: URI is not base64", place, "write data:application/octet-stream;base64,...");
+    report.refuse("gltf.uri.broken", "the data: URI is not base64", place,
+                  "write data:application/octet-stream;base64,...");
     return std::nullopt;
   }
   std::string_view text = std::string_view(uri).substr(comma + 1);
@@ -66,7 +67,7 @@ std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& pl
   // Four letters are three bytes.
   if (most_bytes / 3 < text.size() / 4) text = text.substr(0, (most_bytes / 3 + 1) * 4);
   std::optional<Bytes> bytes = decode_base64(text);
-  if (!bytes) report.refuse("the data: URI holds broken base64", place, "export the file again");
+  if (!bytes) report.refuse("gltf.uri.broken", "the data: URI holds broken base64", place, "export the file again");
   return bytes;
 }
 
@@ -79,7 +80,7 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
                                                LoadReport& report) {
   const std::optional<std::string> name = decode_percent(uri);
   if (name) return find_beside_scene(*name, place, must_exist, report);
-  report.refuse("the URI holds a broken percent escape", place, "write % as %25");
+  report.refuse("gltf.uri.broken", "the URI holds a broken percent escape", place, "write % as %25");
   return std::nullopt;
 }
 
@@ -218,7 +219,8 @@ class BufferReader {
       // One that cannot be used is null (check_gltf_schema).
       if (source.is_null()) continue;
       if (source["byteLength"] == 0) {
-        report_.repair({"a buffer has no bytes", "", place_of(index), "remove it", "nothing is read from it"});
+        report_.repair({"gltf.buffer.empty", "a buffer has no bytes", "", place_of(index), "remove it",
+                        "nothing is read from it"});
       } else if (needed_[index] == 0) {
         weigh_unneeded(source, index);
       } else if (needed_by_meshes_[index] > 0) {
@@ -256,7 +258,8 @@ class BufferReader {
     } else if (is_chunk(source, index)) {
       bytes = *glb_binary_;
     } else {
-      report.refuse("the buffer has no bytes", place_of(index), "add a uri, or a binary chunk to the GLB file");
+      report.refuse("gltf.buffer.missing", "the buffer has no bytes", place_of(index),
+                    "add a uri, or a binary chunk to the GLB file");
       return;
     }
     if (bytes.size() < source["byteLength"].get<uint64_t>()) repair_length(source["byteLength"], index);
@@ -268,10 +271,11 @@ class BufferReader {
     std::span<const std::byte>& bytes = buffers_.bytes[index];
     const uint64_t needed = needed_by_meshes_[index];
     if (needed > bytes.size() + kMostPadding) {
-      report_.refuse("the buffer " + say_too_short(bytes.size(), length), place_of(index), "export the file again");
+      report_.refuse("gltf.buffer.short", "the buffer " + say_too_short(bytes.size(), length), place_of(index),
+                     "export the file again");
       return;
     }
-    report_.repair({"a buffer is shorter than its byteLength",
+    report_.repair({"gltf.buffer.short", "a buffer is shorter than its byteLength",
                     std::to_string(bytes.size()) + " bytes for " + std::to_string(length), place_of(index),
                     "export the file again", "the existing part is read"});
     if (needed <= bytes.size()) return;
@@ -288,8 +292,8 @@ class BufferReader {
       attempt.throw_if_refused();
     } catch (const InputError& error) {
       buffers_.bytes[index] = {};
-      report_.repair({"a buffer of images cannot be read: " + error.problems().front().what, "", place_of(index),
-                      "export the file again", "its images are left out"});
+      report_.repair({"gltf.buffer.unreadable", "a buffer of images cannot be read: " + error.problems().front().what,
+                      "", place_of(index), "export the file again", "its images are left out"});
     }
     for (const SourceFile& file : attempt.sources()) report_.add_source(file.file);
   }

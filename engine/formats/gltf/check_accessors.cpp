@@ -102,7 +102,8 @@ void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t strid
   const auto available = view["byteLength"].get<uint64_t>();
   const uint64_t end = count == 0 ? 0 : offset + (count - 1) * stride + size;
   if (end <= available) return;
-  report.refuse("the elements end at byte " + std::to_string(end) + " of a buffer view of " +
+  report.refuse("gltf.accessor.short",
+                "the elements end at byte " + std::to_string(end) + " of a buffer view of " +
                     std::to_string(available) + " bytes",
                 place, "correct the count, the offset or the buffer view");
 }
@@ -117,8 +118,8 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
                     LoadReport& report) {
   const auto count = accessor["count"].get<uint64_t>();
   if (count == 0) {
-    report.repair({"an accessor has no elements", "", place + ".count", "remove the parts that use it",
-                   "nothing is drawn from it"});
+    report.repair({"gltf.accessor.empty", "an accessor has no elements", "", place + ".count",
+                   "remove the parts that use it", "nothing is drawn from it"});
   }
   const std::string type = accessor["type"];
   const int component_type = accessor["componentType"];
@@ -128,14 +129,15 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
     const uint64_t stride = stride_of(view, size);
     if (stride < size) {
       report.refuse(
+          "gltf.accessor.stride",
           "a stride of " + std::to_string(stride) + " bytes is less than an element of " + std::to_string(size), place,
           "correct byteStride of its buffer view");
     }
     check_fit(view, accessor.value("byteOffset", uint64_t{0}), count, stride, needed_bytes(type, component_type), place,
               report);
   } else if (is_plain && count > kMaxZeroElements) {
-    report.refuse("an accessor of " + std::to_string(count) + " zeros is too large", place + ".count",
-                  "add a buffer view or use at most " + std::to_string(kMaxZeroElements));
+    report.refuse("gltf.accessor.large", "an accessor of " + std::to_string(count) + " zeros is too large",
+                  place + ".count", "add a buffer view or use at most " + std::to_string(kMaxZeroElements));
   }
 
   if (!accessor.contains("sparse")) return;
@@ -168,8 +170,8 @@ std::string say_format(const json& accessor) {
 
 void check_format(const json& accessor, std::string_view attribute, const std::string& place, LoadReport& report) {
   if (has_format(accessor, attribute) || !is_read_attribute(attribute)) return;
-  report.refuse("the accessor's format (" + say_format(accessor) + ") is not allowed here", place,
-                "export it as the glTF specification requires");
+  report.refuse("gltf.accessor.format", "the accessor's format (" + say_format(accessor) + ") is not allowed here",
+                place, "export it as the glTF specification requires");
 }
 
 /// Checks the attributes of instances against each other.
@@ -182,6 +184,7 @@ void check_attributes(const json& attributes, const json& accessors, const std::
     if (first_count == 0) first_count = count;
     if (count != first_count) {
       report.refuse(
+          "gltf.accessor.count",
           "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(first_count),
           place + "." + name, "give all attributes one count");
     }
@@ -194,10 +197,10 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   const auto count = accessor["count"].get<uint64_t>();
   const bool has_wrong_format = is_read_attribute(name) && !has_format(accessor, name);
   if (has_wrong_format) {
-    report.repair({"the format of an attribute is not allowed", say_format(accessor), place,
+    report.repair({"gltf.accessor.format", "the format of an attribute is not allowed", say_format(accessor), place,
                    "export it as the glTF specification requires", "the attribute is left out"});
   } else if (count != vertex_count) {
-    report.repair({"an attribute has another number of elements than there are vertices",
+    report.repair({"gltf.accessor.count", "an attribute has another number of elements than there are vertices",
                    std::to_string(count) + " for " + std::to_string(vertex_count), place,
                    "give all attributes one count", "the attribute is left out"});
   }
@@ -232,7 +235,8 @@ void check_instances(const json& node, const json& accessors, const std::string&
   check_attributes(attributes, accessors, attributes_place, report);
   for (const auto& [name, index] : attributes.items()) {
     if (accessors[index.get<size_t>()].contains("bufferView")) continue;
-    report.refuse("the instances have no buffer view, so all are 0", attributes_place + "." + name, "add the bytes");
+    report.refuse("gltf.instances.missing", "the instances have no buffer view, so all are 0",
+                  attributes_place + "." + name, "add the bytes");
   }
 }
 
@@ -242,8 +246,8 @@ void check_primitive(json& primitive, const json& accessors, const std::string& 
   const json& indices = accessors[primitive["indices"].get<size_t>()];
   check_format(indices, "indices", place + ".indices", report);
   if (indices.value("normalized", false)) {
-    report.repair(
-        {"the indices are normalized", "", place + ".indices", "write integers", "they are read as integers"});
+    report.repair({"gltf.accessor.format", "the indices are normalized", "", place + ".indices", "write integers",
+                   "they are read as integers"});
   }
 }
 
@@ -270,17 +274,20 @@ std::vector<bool> find_structural_views(const json& document) {
 void check_view(const json& view, uint64_t available, const std::string& place, LoadReport& report) {
   const uint64_t end = view.value("byteOffset", uint64_t{0}) + view["byteLength"].get<uint64_t>();
   if (end > available) {
-    report.refuse("the buffer view ends at byte " + std::to_string(end) + " of a buffer of " +
+    report.refuse("gltf.view.short",
+                  "the buffer view ends at byte " + std::to_string(end) + " of a buffer of " +
                       std::to_string(available) + " bytes",
                   place, "correct its byteOffset or byteLength");
   }
   if (view["byteLength"] == 0) {
-    report.repair({"a buffer view has no bytes", "", place, "remove the parts that use it", "nothing is read of it"});
+    report.repair({"gltf.view.empty", "a buffer view has no bytes", "", place, "remove the parts that use it",
+                   "nothing is read of it"});
   }
   if (const auto stride = view.find("byteStride"); stride != view.end()) {
     if (*stride >= 4 && *stride <= 252 && stride->get<uint64_t>() % 4 == 0) return;
-    report.repair({"a stride is not a multiple of 4 from 4 to 252", stride->dump(), place + ".byteStride",
-                   "pad the elements", *stride == 0 ? "the elements are read as packed" : "it is used as it is"});
+    report.repair({"gltf.view.stride", "a stride is not a multiple of 4 from 4 to 252", stride->dump(),
+                   place + ".byteStride", "pad the elements",
+                   *stride == 0 ? "the elements are read as packed" : "it is used as it is"});
   }
 }
 
@@ -295,8 +302,9 @@ void check_images(json& document, LoadReport& report) {
     const auto available = document["buffers"][view["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
     const uint64_t end = view.value("byteOffset", uint64_t{0}) + view["byteLength"].get<uint64_t>();
     if (end <= available) continue;
-    report.repair({"the buffer view of an image extends beyond its buffer", std::to_string(end - available) + " bytes",
-                   place, "export the file again", "the image is left out"});
+    report.repair({"gltf.view.short", "the buffer view of an image extends beyond its buffer",
+                   std::to_string(end - available) + " bytes", place, "export the file again",
+                   "the image is left out"});
     image.erase("bufferView");
   }
 }

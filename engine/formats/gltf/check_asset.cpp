@@ -13,7 +13,7 @@ void check_gltf_cameras(json& document, LoadReport& report) {
   for (size_t i = 0; i < cameras->size(); ++i) {
     json& camera = (*cameras)[i];
     if (camera.is_null() || camera.contains(camera["type"].get<std::string>())) continue;
-    report.repair({"the camera's parameters are missing", "", "cameras[" + std::to_string(i) + "]",
+    report.repair({"json.missing", "the camera's parameters are missing", "", "cameras[" + std::to_string(i) + "]",
                    "add them under the name of its type", "the camera is left out"});
     camera = nullptr;
   }

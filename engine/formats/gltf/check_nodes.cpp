@@ -37,12 +37,13 @@ std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
     take_out(nodes[i]["children"], [&](size_t child, size_t position) {
       const std::string place = node_place(i) + ".children[" + std::to_string(position) + "]";
       if (parents[child] == i) {
-        report.repair({"a node lists a child twice", node_place(child), place, "list it once", "it is shown once"});
+        report.repair({"gltf.node.twice", "a node lists a child twice", node_place(child), place, "list it once",
+                       "it is shown once"});
         return true;
       }
       if (parent_counts[child]++ > 0) {
-        report.repair(
-            {"a node has two parents", node_place(child), place, "copy the node instead", "it appears below both"});
+        report.repair({"gltf.node.parents", "a node has two parents", node_place(child), place, "copy the node instead",
+                       "it appears below both"});
       }
       parents[child] = i;
       return false;
@@ -68,7 +69,7 @@ void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadR
   }
   if (reached_count == nodes.size()) return;
   const auto lost = std::ranges::find_if(parent_counts, [](uint32_t count) { return count > 0; });
-  report.refuse("the node is its own ancestor or lies below one that is",
+  report.refuse("gltf.node.cycle", "the node is its own ancestor or lies below one that is",
                 node_place(static_cast<size_t>(lost - parent_counts.begin())),
                 "remove the child that closes the cycle");
 }
@@ -80,8 +81,9 @@ void make_affine(json& matrix, const std::string& place, bool is_strict, LoadRep
     const auto number = matrix[i].get<double>();
     if (number == wanted) continue;
     if (std::abs(number - wanted) > kMostRounding || is_strict) {
-      report.repair({"the matrix is not affine", matrix[i].dump(), place + ".matrix[" + std::to_string(i) + "]",
-                     "make its last row 0 0 0 1", "its last row is read as 0 0 0 1"});
+      report.repair({"gltf.matrix.affine", "the matrix is not affine", matrix[i].dump(),
+                     place + ".matrix[" + std::to_string(i) + "]", "make its last row 0 0 0 1",
+                     "its last row is read as 0 0 0 1"});
     }
     matrix[i] = wanted;
   }
@@ -91,14 +93,14 @@ void check_transform(json& node, const std::string& place, bool is_strict, LoadR
   if (node.contains("matrix")) {
     make_affine(node["matrix"], place, is_strict, report);
     if (node.erase("translation") + node.erase("rotation") + node.erase("scale") > 0) {
-      report.repair({"a node has both a matrix and a translation, rotation or scale", "", place, "keep one of them",
-                     "the matrix is used"});
+      report.repair({"gltf.node.transform", "a node has both a matrix and a translation, rotation or scale", "", place,
+                     "keep one of them", "the matrix is used"});
     }
   }
   const dvec4 rotation = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
   if (glm::dot(rotation, rotation) >= 1e-12) return;
-  report.repair(
-      {"a rotation has length 0", "", place + ".rotation", "use a unit quaternion", "the node is not turned"});
+  report.repair({"gltf.rotation.zero", "a rotation has length 0", "", place + ".rotation", "use a unit quaternion",
+                 "the node is not turned"});
   node.erase("rotation");
 }
 
@@ -127,13 +129,14 @@ void check_scene(json& listed, const json& nodes, const std::vector<uint32_t>& p
     const bool is_twice = is_listed[node];
     is_listed[node] = true;
     if (is_twice) {
-      report.repair({"a scene lists a node twice", node_place(node), at, "list it once", "it is shown once"});
+      report.repair(
+          {"gltf.node.twice", "a scene lists a node twice", node_place(node), at, "list it once", "it is shown once"});
     } else if (is_below[node]) {
-      report.repair({"a scene lists a node that lies below another", node_place(node), at, "list root nodes only",
-                     "it is shown once, below that node"});
+      report.repair({"gltf.node.root", "a scene lists a node that lies below another", node_place(node), at,
+                     "list root nodes only", "it is shown once, below that node"});
     } else if (parent_counts[node] > 0) {
-      report.repair({"a scene lists a node that has a parent", node_place(node), at, "list root nodes only",
-                     "it is shown as a root, without the parent's transform"});
+      report.repair({"gltf.node.root", "a scene lists a node that has a parent", node_place(node), at,
+                     "list root nodes only", "it is shown as a root, without the parent's transform"});
     }
     return is_twice || is_below[node];
   });

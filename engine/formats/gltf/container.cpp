@@ -27,16 +27,16 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-[[noreturn]] void refuse_file(LoadReport& report, const std::string& what, const std::string& place) {
-  report.refuse(what, place, kExportAgain);
+[[noreturn]] void refuse_file(ProblemCode code, LoadReport& report, const std::string& what, const std::string& place) {
+  report.refuse(code, what, place, kExportAgain);
   report.throw_if_refused();
-  throw InputError({what, place, kExportAgain});
+  throw InputError({code, what, place, kExportAgain});
 }
 
 /// Compares the length in the header with the end of the chunks.
 void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
   if (length != end) {
-    report.repair({"the GLB header declares another number of bytes than the chunks have",
+    report.repair({"glb.length", "the GLB header declares another number of bytes than the chunks have",
                    std::to_string(length) + " for " + std::to_string(end), "byte 8", kExportAgain,
                    "the chunks are read"});
   }
@@ -44,13 +44,15 @@ void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
 }
 
 uint32_t read_length(std::span<const std::byte> bytes, LoadReport& report) {
-  if (bytes.size() < kHeaderBytes + kChunkHeaderBytes) refuse_file(report, "the GLB header is cut off", "byte 0");
+  if (bytes.size() < kHeaderBytes + kChunkHeaderBytes)
+    refuse_file("glb.short", report, "the GLB header is cut off", "byte 0");
   const uint32_t version = read_u32(bytes, 4);
   if (version == 1) {
-    report.refuse("the file is glTF 1.0, which is not read", "byte 4", "export it as glTF 2.0");
+    report.refuse("gltf.version", "the file is glTF 1.0, which is not read", "byte 4", "export it as glTF 2.0");
     report.throw_if_refused();
   }
-  if (version != 2) refuse_file(report, "GLB version " + std::to_string(version) + " is not 2", "byte 4");
+  if (version != 2)
+    refuse_file("gltf.version", report, "GLB version " + std::to_string(version) + " is not 2", "byte 4");
   return read_u32(bytes, 8);
 }
 
@@ -61,9 +63,9 @@ std::span<const std::byte> take_chunk(std::span<const std::byte> bytes, size_t o
   if (length <= left) return bytes.subspan(offset, length);
   const std::string what =
       "a GLB chunk declares " + std::to_string(length) + " bytes, " + std::to_string(left) + " remain";
-  if (length - left > kMostPadding) refuse_file(report, what, place);
-  report.repair({"a GLB chunk extends beyond the end of the file", std::to_string(length - left) + " bytes", place,
-                 kExportAgain, "the existing part is read"});
+  if (length - left > kMostPadding) refuse_file("glb.short", report, what, place);
+  report.repair({"glb.short", "a GLB chunk extends beyond the end of the file",
+                 std::to_string(length - left) + " bytes", place, kExportAgain, "the existing part is read"});
   return bytes.subspan(offset);
 }
 
@@ -77,7 +79,7 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
   while (offset < end) {
     const std::string place = "byte " + std::to_string(offset);
     if (end - offset < kChunkHeaderBytes) {
-      report.repair({"a GLB chunk header is cut off", "", place, kExportAgain, "the bytes are ignored"});
+      report.repair({"glb.short", "a GLB chunk header is cut off", "", place, kExportAgain, "the bytes are ignored"});
       offset = end;
       break;
     }
@@ -86,9 +88,10 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
     offset += kChunkHeaderBytes;
     const auto chunk = take_chunk(bytes, offset, chunk_length, place, report);
     offset += chunk_length;
-    if (is_first && chunk_type != kJsonChunk) refuse_file(report, "the first GLB chunk must be JSON", place);
+    if (is_first && chunk_type != kJsonChunk)
+      refuse_file("glb.chunks", report, "the first GLB chunk must be JSON", place);
     if (!is_first && chunk_type == kJsonChunk) {
-      report.repair({"a second GLB chunk is JSON", "", place, kExportAgain, "it is ignored"});
+      report.repair({"glb.chunks", "a second GLB chunk is JSON", "", place, kExportAgain, "it is ignored"});
     }
     if (is_first) container.json = as_text(chunk);
     if (chunk_type == kBinaryChunk && !container.binary) container.binary = chunk;

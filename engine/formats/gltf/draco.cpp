@@ -280,7 +280,7 @@ void decode_gltf_draco(GltfDocument& document, LoadReport& report) {
       take_result(document, task);
       continue;
     }
-    report.refuse("the Draco stream cannot be used: " + task.problem,
+    report.refuse("gltf.draco.damaged", "the Draco stream cannot be used: " + task.problem,
                   "meshes[" + std::to_string(task.mesh) + "].primitives[" + std::to_string(task.primitive) +
                       "].extensions.KHR_draco_mesh_compression",
                   "compress the file again");

@@ -166,10 +166,11 @@ std::vector<FileExtension> check_gltf_extensions(const json& document, bool is_s
     list.push_back({extension.name, extension.is_known, extension.required >= 0});
     if (extension.is_known) continue;
     if (is_strict && extension.required >= 0) {
-      report.refuse("the required extension " + extension.name + " is not implemented",
+      report.refuse("gltf.extension.required", "the required extension " + extension.name + " is not implemented",
                     "extensionsRequired[" + std::to_string(extension.required) + "]", "export the scene without it");
     } else if (extension.required >= 0 && !extension.geometry_place.empty()) {
       report.refuse(
+          "gltf.extension.required",
           "the required extension " + extension.name + " is not implemented, and without it the geometry is unknown",
           extension.geometry_place, "export the scene without it");
     } else {

@@ -38,8 +38,9 @@ class InstanceReader {
       if (glm::dot(rotation, rotation) >= 1e-12) {
         matrix = glm::mat4_cast(glm::normalize(rotation));
       } else {
-        report_.repair({"a rotation has length 0", "", place_ + "ROTATION, element " + std::to_string(instance),
-                        "use a unit quaternion", "the instance is not turned"});
+        report_.repair({"gltf.rotation.zero", "a rotation has length 0", "",
+                        place_ + "ROTATION, element " + std::to_string(instance), "use a unit quaternion",
+                        "the instance is not turned"});
       }
     }
     for (int i = 0; i < 3 && !scales_.empty(); ++i) matrix[i] *= scales_[3 * instance + static_cast<size_t>(i)];
@@ -58,8 +59,8 @@ class InstanceReader {
     for (size_t i = 0; i < numbers.size(); ++i) {
       if (std::isfinite(numbers[i])) continue;
       const size_t components = document_.accessors[accessor->get<size_t>()].component_count;
-      report_.refuse("a number is not finite", place_ + name + ", element " + std::to_string(i / components),
-                     "export the file again");
+      report_.refuse("gltf.number.range", "a number is not finite",
+                     place_ + name + ", element " + std::to_string(i / components), "export the file again");
       break;
     }
     return numbers;
@@ -91,7 +92,7 @@ std::vector<dmat4> place_gltf_instances(const GltfDocument& document, const Plac
   for (size_t i = 0; i < *count; ++i) {
     places.push_back(placed.world_from_object * reader.transform(i));
     if (is_finite(places.back())) continue;
-    report.refuse("an instance's place in the world overflows",
+    report.refuse("gltf.node.far", "an instance's place in the world overflows",
                   "nodes[" + std::to_string(placed.node) + "], instance " + std::to_string(i),
                   "use smaller translations and scales");
     break;

@@ -141,7 +141,7 @@ class RuleCheck {
       return std::max(level - 1, 0);
     }
     if (!rule_.is_required || end < path.size()) return 0;
-    const bool may_stay = fail(quote(name), "", "is missing", place, "add it");
+    const bool may_stay = fail("json.missing", quote(name), "", "is missing", place, "add it");
     return may_stay ? 0 : level_ - 1;
   }
 
@@ -181,21 +181,22 @@ class RuleCheck {
   }
 
   /// Repairs or refuses what is wrong with a value: `shown` is the value, `subject` names its kind.
-  bool fail(const std::string& subject, const std::string& shown, const std::string& predicate, const Place& place,
-            const std::string& cure) {
+  bool fail(ProblemCode code, const std::string& subject, const std::string& shown, const std::string& predicate,
+            const Place& place, const std::string& cure) {
     const std::string where = place.outer == nullptr ? "the top level" : place.text();
     if (rule_.is_repaired) {
-      report_.repair({subject + " " + predicate, shown, where, cure, say_left_out(rule_)});
+      report_.repair({code, subject + " " + predicate, shown, where, cure, say_left_out(rule_)});
       return false;
     }
-    report_.refuse((shown.empty() ? subject : shown) + " " + predicate, where, cure);
+    report_.refuse(code, (shown.empty() ? subject : shown) + " " + predicate, where, cure);
     return true;
   }
 
   bool expect(bool is_met, const json& value, const Place& place, const std::string& wanted) {
     if (is_met) return true;
     const std::string got = value.is_number() ? value.dump() : std::string("a JSON ") + value.type_name();
-    return fail("another value", got, "is given where " + wanted + " is expected", place, "write " + wanted);
+    return fail("json.type", "another value", got, "is given where " + wanted + " is expected", place,
+                "write " + wanted);
   }
 
   /// JSON has one kind of number: 3.0 is a valid index, and 1e99 an integer out of range.
@@ -222,10 +223,11 @@ class RuleCheck {
     const bool is_rounded = number >= rule_.lo - lo_rounding && number <= rule_.hi + kMostRounding;
     const bool is_kept = rule_.is_clamped || (is_rounded && !is_strict_);
     if (!rule_.is_repaired || !is_kept || rule_.kind == JsonKind::kInteger) {
-      return fail("a number", value.dump(), "is out of range", place, cure);
+      return fail("json.range", "a number", value.dump(), "is out of range", place, cure);
     }
     if (!is_rounded || is_strict_) {
-      report_.repair({"a number is out of range", value.dump(), place.text(), cure, "it is clamped to " + range});
+      report_.repair(
+          {"json.range", "a number is out of range", value.dump(), place.text(), cure, "it is clamped to " + range});
     }
     value = std::clamp(number, rule_.lo, rule_.hi);
     return true;
@@ -254,7 +256,7 @@ class RuleCheck {
     const std::string cure = used_.empty()
                                  ? "add the array " + target + " that it points into"
                                  : "use 0 to " + std::to_string(used_.size() - 1) + ", the elements of " + target;
-    return fail("an index", "index " + value.dump(), "is out of range", place, cure);
+    return fail("json.index", "an index", "index " + value.dump(), "is out of range", place, cure);
   }
 
   bool check_choice(json& value, const Place& place) {
@@ -266,7 +268,8 @@ class RuleCheck {
       if (got == rest.substr(0, end)) return check_choice_type(value, place);
       rest = rest.substr(std::min(end + 1, rest.size()));
     }
-    return fail("a value", quote(got), "is not one of " + std::string(rule_.target), place, "use one of them");
+    return fail("json.choice", "a value", quote(got), "is not one of " + std::string(rule_.target), place,
+                "use one of them");
   }
 
   /// "5126", a string, is not the number 5126.

@@ -80,8 +80,8 @@ class SceneReader {
   /// The node that shows a skinned mesh does not place it (glTF 2.0, section 3.7.3.3).
   void read_skinned_mesh(const PlacedNode& placed) {
     if (count_gltf_instances(document_, placed)) {
-      report_.warn({"a skinned mesh has instances", "", "nodes[" + std::to_string(placed.node) + "]", "",
-                    "it is drawn once, at its joints"});
+      report_.warn({"gltf.skin.instances", "a skinned mesh has instances", "",
+                    "nodes[" + std::to_string(placed.node) + "]", "", "it is drawn once, at its joints"});
     }
     const GltfPose& pose = skins_->find(document_.nodes[static_cast<size_t>(placed.node)].skin);
     PlacedNode posed = placed;
@@ -101,7 +101,8 @@ class SceneReader {
     const bool has_room = triangle_count <= triangle_room / instance_count &&
                           primitive_count <= (kMaxObjects - scene_.objects.size()) / instance_count;
     if (has_room) return true;
-    report_.refuse("its " + std::to_string(instance_count) + " instances of " + std::to_string(triangle_count) +
+    report_.refuse("scene.size.limit",
+                   "its " + std::to_string(instance_count) + " instances of " + std::to_string(triangle_count) +
                        " triangles in " + std::to_string(primitive_count) +
                        " primitives are more than a scene can hold",
                    "nodes[" + std::to_string(placed.node) + "]", "use fewer instances, or a simpler mesh");
@@ -138,7 +139,7 @@ class SceneReader {
     if (geometry == Object::kNoGeometry) return;
     triangle_count_ += primitive_count(scene_.geometries[geometry]);
     if (triangle_count_ > kMaxTriangles) {
-      report_.refuse("the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
+      report_.refuse("scene.size.limit", "the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
                      "nodes[" + std::to_string(placed.node) + "]", "use the mesh in fewer nodes, or simplify it");
     }
     place_gltf_mesh(placed, geometry,

@@ -47,7 +47,7 @@ bool has_length(const dvec3& normal) {
 }
 
 void warn_of_normals(const std::string& place, LoadReport& report) {
-  report.warn({"a mesh primitive has normals of no length", "", place, "", "it is shaded flat"});
+  report.warn({"gltf.normals.zero", "a mesh primitive has normals of no length", "", place, "", "it is shaded flat"});
 }
 
 /// Returns a valid component of a vertex colour: not negative, and 1, which has no effect, for a NaN.
@@ -75,11 +75,12 @@ class PrimitiveReader {
   Mesh read() {
     const int positions = accessor_of("POSITION");
     if (primitive_.mode < kGltfTriangles) {
-      report_.warn({"a mesh primitive holds points or lines", "", place_, "", "they are not drawn"});
+      report_.warn(
+          {"gltf.primitive.lines", "a mesh primitive holds points or lines", "", place_, "", "they are not drawn"});
       return {};
     }
     if (positions < 0) {
-      report_.warn({"a mesh primitive has no POSITION", "", place_, "", "it is not drawn"});
+      report_.warn({"gltf.primitive.positions", "a mesh primitive has no POSITION", "", place_, "", "it is not drawn"});
       return {};
     }
     vertex_count_ = document_.accessors[static_cast<size_t>(positions)].count;
@@ -87,7 +88,8 @@ class PrimitiveReader {
     Mesh mesh;
     mesh.triangles = assemble(read_corners());
     if (mesh.triangles.empty()) {
-      report_.warn({"a mesh primitive has too few corners for a triangle", "", place_, "", "it is not drawn"});
+      report_.warn({"gltf.primitive.short", "a mesh primitive has too few corners for a triangle", "", place_, "",
+                    "it is not drawn"});
       return {};
     }
     keep_used_vertices(mesh.triangles);
@@ -118,7 +120,8 @@ class PrimitiveReader {
     std::vector<uint32_t> corners = read_indices(document_, primitive_.indices, report_);
     const auto wrong = std::find_if(corners.begin(), corners.end(), [&](uint32_t i) { return i >= vertex_count_; });
     if (wrong == corners.end()) return corners;
-    report_.refuse("index " + std::to_string(*wrong) + " is out of range, there are " + std::to_string(vertex_count_) +
+    report_.refuse("gltf.indices.range",
+                   "index " + std::to_string(*wrong) + " is out of range, there are " + std::to_string(vertex_count_) +
                        " vertices",
                    place_ + ".indices, element " + std::to_string(wrong - corners.begin()), "export the file again");
     return {};
@@ -132,7 +135,8 @@ class PrimitiveReader {
       triangles.reserve(count / 3);
       for (size_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
       if (count % 3 != 0) {
-        report_.warn({"a mesh primitive ends in an incomplete triangle", "", place_, "", "that is ignored"});
+        report_.warn({"gltf.primitive.incomplete", "a mesh primitive ends in an incomplete triangle", "", place_, "",
+                      "that is ignored"});
       }
     } else if (primitive_.mode == kGltfTriangleStrip) {
       for (size_t i = 0; i + 2 < count; ++i) {
@@ -171,7 +175,7 @@ class PrimitiveReader {
       if (weights_[target] == 0.0 || found == primitive_.targets[target].end()) continue;
       const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(found->second)];
       if (3 * accessor.count != values.size() || accessor.component_count != 3) {
-        report_.warn({"a morph target has another number of vertices", "",
+        report_.warn({"gltf.morph.count", "a morph target has another number of vertices", "",
                       place_ + ".targets[" + std::to_string(target) + "]", "", "it is ignored"});
         continue;
       }
@@ -190,8 +194,8 @@ class PrimitiveReader {
     for (const uint32_t vertex : used_vertices_) {
       const float* p = &values[3 * size_t{vertex}];
       if (!is_in_range(dvec3(p[0], p[1], p[2]))) {
-        report_.refuse("a vertex coordinate is not finite or beyond 1e15", element_place("POSITION", vertex),
-                       "export the mesh again, in a larger unit of length");
+        report_.refuse("gltf.position.range", "a vertex coordinate is not finite or beyond 1e15",
+                       element_place("POSITION", vertex), "export the mesh again, in a larger unit of length");
         return;
       }
       // -0 becomes 0, as under a transform, so that no morph target and one without effect give the same result.
@@ -224,7 +228,7 @@ class PrimitiveReader {
       const vec4 given(c[0], c[1], c[2], components == 4 ? c[3] : 1.0F);
       const vec4 color(drawable(given.r), drawable(given.g), drawable(given.b), std::min(drawable(given.a), 1.0F));
       if (const int wrong = find_wrong_component(given, color); wrong >= 0) {
-        report_.repair({"a vertex colour is negative or not a number", std::to_string(given[wrong]),
+        report_.repair({"gltf.color.range", "a vertex colour is negative or not a number", std::to_string(given[wrong]),
                         element_place("COLOR_0", vertex), "export the mesh again",
                         "0 is used for a negative value, 1 for one that is not a number"});
       }
@@ -252,7 +256,7 @@ class PrimitiveReader {
       for (size_t i = 0; i < used_vertices_.size(); ++i) {
         const float* uv = &values[2 * size_t{used_vertices_[i]}];
         if (!is_coordinate(uv[0]) || !is_coordinate(uv[1])) {
-          report_.repair({"a texture coordinate is not finite or beyond 1e15",
+          report_.repair({"gltf.uv.range", "a texture coordinate is not finite or beyond 1e15",
                           std::to_string(is_coordinate(uv[0]) ? uv[1] : uv[0]),
                           element_place(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", used_vertices_[i]),
                           "export the mesh again", "0 is used"});
@@ -272,7 +276,7 @@ class PrimitiveReader {
       const float* t = &values[4 * size_t{vertex}];
       const vec4 tangent(t[0], t[1], t[2], t[3] < 0.0F ? -1.0F : 1.0F);
       if (!has_length(dvec3(vec3(tangent)))) {
-        report_.warn({"a mesh primitive has tangents of no length", "", place_, "",
+        report_.warn({"gltf.tangents.zero", "a mesh primitive has tangents of no length", "", place_, "",
                       "they are computed from its texture coordinates"});
         return;
       }
@@ -298,8 +302,8 @@ class PrimitiveReader {
     for (int set = 0; accessor_of(("JOINTS_" + std::to_string(set)).c_str()) >= 0; ++set)
       add_influences(set, influences);
     if (influences.per_vertex == 0) {
-      report_.repair({"a primitive of a skinned mesh has no joints and weights", "", place_, "export the mesh again",
-                      "it is drawn without its skin"});
+      report_.repair({"gltf.skin.weights", "a primitive of a skinned mesh has no joints and weights", "", place_,
+                      "export the mesh again", "it is drawn without its skin"});
       return std::nullopt;
     }
     for (size_t i = 0; i < used_vertices_.size(); ++i) {
@@ -339,8 +343,8 @@ class PrimitiveReader {
     for (const float weight : weights) sum += static_cast<double>(weight);
     // Written so that NaN fails.
     if (std::abs(sum) >= 1e-6 && std::abs(sum) <= kMaxCoordinate) return;
-    report_.repair({"a vertex of a skinned mesh has no weights, or weights that are not numbers", "",
-                    element_place("WEIGHTS_0", used_vertices_[vertex]), "export the mesh again",
+    report_.repair({"gltf.skin.weights", "a vertex of a skinned mesh has no weights, or weights that are not numbers",
+                    "", element_place("WEIGHTS_0", used_vertices_[vertex]), "export the mesh again",
                     "it follows the first of its joints"});
     std::ranges::fill(weights, 0.0F);
     weights[0] = 1.0F;
@@ -351,6 +355,7 @@ class PrimitiveReader {
     for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
       if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;
       report_.refuse(
+          "gltf.skin.joint",
           "joint " + std::to_string(influences.joints[i]) + " is out of range, the skin has " +
               std::to_string(pose_->joint_matrices.size()) + " joints",
           element_place(("JOINTS_" + std::to_string(i % influences.per_vertex / 4)).c_str(), used_vertices_[vertex]),
@@ -393,7 +398,8 @@ void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::str
   object.world_from_object = placed.world_from_object;
   const Mesh& mesh = std::get<Mesh>(scene.geometries[geometry]);
   if (!is_mesh_in_range(mesh, placed.world_from_object)) {
-    report.refuse("a vertex lies beyond 1e15 in the world", "nodes[" + std::to_string(placed.node) + "]",
+    report.refuse("gltf.position.far", "a vertex lies beyond 1e15 in the world",
+                  "nodes[" + std::to_string(placed.node) + "]",
                   "use a smaller translation or scale in it and its parents");
     return;
   }

@@ -70,14 +70,17 @@ void check_view(const json& document, size_t index, LoadReport& report) {
   const Stream stream = stream_of(*extension);
   const auto available = document["buffers"][(*extension)["buffer"].get<size_t>()]["byteLength"].get<uint64_t>();
   if (stream.offset + stream.length > available) {
-    report.refuse("the compressed bytes end at byte " + std::to_string(stream.offset + stream.length) +
+    report.refuse("gltf.meshopt.short",
+                  "the compressed bytes end at byte " + std::to_string(stream.offset + stream.length) +
                       " of a buffer of " + std::to_string(available) + " bytes",
                   place_of(index), "correct their byteOffset or byteLength");
   }
-  if (const char* wrong = find_wrong_stride(stream)) report.refuse(wrong, place_of(index), "compress the file again");
+  if (const char* wrong = find_wrong_stride(stream))
+    report.refuse("gltf.meshopt.stride", wrong, place_of(index), "compress the file again");
   // In 64 bits this does not wrap: the schema keeps counts below 2^31 and strides below 257.
   if (const auto length = view["byteLength"].get<uint64_t>(); length != stream.decoded_bytes()) {
-    report.refuse("the view has " + std::to_string(length) + " bytes, its stream " + std::to_string(stream.count) +
+    report.refuse("gltf.meshopt.count",
+                  "the view has " + std::to_string(length) + " bytes, its stream " + std::to_string(stream.count) +
                       " elements of " + std::to_string(stream.stride),
                   place_of(index), "compress the file again");
   }
@@ -119,7 +122,8 @@ class Decoder {
     if (!has_room_for(stream, is_later_version, index)) return;
     Bytes bytes(stream.decoded_bytes());
     if (!decode(stream, compressed, bytes)) {
-      return refuse(is_later_version
+      return refuse("gltf.meshopt.damaged",
+                    is_later_version
                         ? "the compressed bytes are damaged, or their version is unknown to this libmeshoptimizer: " +
                               std::to_string(static_cast<unsigned>(compressed[0]) - kAttributesHeader)
                         : "the compressed bytes are damaged",
@@ -138,11 +142,13 @@ class Decoder {
     const uint64_t ratio = is_later_version ? kMaxRatioOfVersion1 : kMaxRatio;
     const uint64_t wanted = stream.decoded_bytes();
     if (wanted > ratio * stream.length) {
-      refuse(std::to_string(stream.length) + " compressed bytes are too few for " + std::to_string(wanted), index);
+      refuse("gltf.meshopt.ratio",
+             std::to_string(stream.length) + " compressed bytes are too few for " + std::to_string(wanted), index);
       return false;
     }
     if (wanted > room_) {
       refuse(
+          "gltf.meshopt.ratio",
           "all compressed views together expand to more than " + std::to_string(kMaxRatio) + " times the file's bytes",
           index);
       return false;
@@ -151,8 +157,8 @@ class Decoder {
     return true;
   }
 
-  void refuse(const std::string& what, size_t index) {
-    report_.refuse(what, place_of(index), "compress the file again");
+  void refuse(ProblemCode code, const std::string& what, size_t index) {
+    report_.refuse(code, what, place_of(index), "compress the file again");
   }
 
   GltfDocument& document_;

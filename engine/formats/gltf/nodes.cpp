@@ -99,13 +99,15 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
     const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
     if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
     if (!is_finite(next.world_from_object)) {
-      report.refuse("the node's place in the world overflows", "nodes[" + std::to_string(next.node) + "]",
+      report.refuse("gltf.node.far", "the node's place in the world overflows",
+                    "nodes[" + std::to_string(next.node) + "]",
                     "use smaller translations and scales in it and its parents");
       continue;
     }
     placed.push_back(next);
     if (placed.size() > document.nodes.size() + kMostFurtherPlaces) {
-      report.refuse("the nodes with several parents appear in too many places", "nodes", "give each node one parent");
+      report.refuse("gltf.node.parents", "the nodes with several parents appear in too many places", "nodes",
+                    "give each node one parent");
       return {};
     }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {

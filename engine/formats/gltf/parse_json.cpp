@@ -73,7 +73,8 @@ json parse_bounded(std::string_view text) {
 json parse_json(std::string_view text, LoadReport& report, const std::string& cure) {
   const int depth = depth_of(text);
   if (depth > kMaxJsonDepth) {
-    report.refuse("the JSON nests " + std::to_string(depth) + " deep, more than " + std::to_string(kMaxJsonDepth), "",
+    report.refuse("json.depth",
+                  "the JSON nests " + std::to_string(depth) + " deep, more than " + std::to_string(kMaxJsonDepth), "",
                   cure);
   }
   report.throw_if_refused();
@@ -84,7 +85,7 @@ json parse_json(std::string_view text, LoadReport& report, const std::string& cu
     // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
     std::string message = error.what();
     if (const size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
-    report.refuse("the JSON cannot be read: " + message, "", cure);
+    report.refuse("json.syntax", "the JSON cannot be read: " + message, "", cure);
   }
   report.throw_if_refused();
   return document;

@@ -56,12 +56,13 @@ class ShapeReader {
     const std::string node = "nodes[" + std::to_string(node_) + "]";
     const dvec3 magnitude = glm::abs(center_of(shape, at_));
     if (!(std::max({magnitude.x, magnitude.y, magnitude.z}) <= kMaxCoordinate)) {
-      report_.refuse("shape " + title_ + " lies beyond 1e15 in the world", node,
+      report_.refuse("gltf.shape.far", "shape " + title_ + " lies beyond 1e15 in the world", node,
                      "use a smaller translation in it and its parents");
     }
     for (const NamedSize& size : sizes_of(shape, at_)) {
       if (is_valid(size)) continue;
       report_.refuse(
+          "gltf.shape.size",
           "the " + std::string(size.name) + " of shape " + title_ + " is " + json(size.size).dump() + " in the world",
           node, "use a scale that keeps it between 1e-22 and 1e15");
     }
@@ -88,8 +89,8 @@ class ShapeReader {
 
   bool is_line(double top, double bottom) {
     if (top != 0.0 || bottom != 0.0) return false;
-    report_.refuse("both radii of shape " + title_ + " are 0", place_ + "." + shape_["type"].get<std::string>(),
-                   "make radiusTop or radiusBottom positive");
+    report_.refuse("gltf.shape.size", "both radii of shape " + title_ + " are 0",
+                   place_ + "." + shape_["type"].get<std::string>(), "make radiusTop or radiusBottom positive");
     return true;
   }
 
@@ -99,7 +100,7 @@ class ShapeReader {
     }
     const Plane plane;
     if (!place(plane, at_)) {
-      report_.refuse("the scale flattens plane " + title_, "nodes[" + std::to_string(node_) + "]",
+      report_.refuse("gltf.shape.flat", "the scale flattens plane " + title_, "nodes[" + std::to_string(node_) + "]",
                      "use a scale other than 0");
       return plane;
     }

@@ -23,8 +23,8 @@ void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
     double& number = matrix[column][3];
     // Written so that NaN fails.
     if (!(std::abs(number - wanted) <= kMostRounding)) {
-      report.repair({"an inverse bind matrix is not affine", std::to_string(number), place, "make its last row 0 0 0 1",
-                     "its last row is read as 0 0 0 1"});
+      report.repair({"gltf.matrix.affine", "an inverse bind matrix is not affine", std::to_string(number), place,
+                     "make its last row 0 0 0 1", "its last row is read as 0 0 0 1"});
     }
     number = wanted;
   }
@@ -39,7 +39,8 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
   if (accessor == skin.end()) return matrices;
   const std::vector<float> numbers = read_floats(document, *accessor, report);
   if (numbers.size() < 16 * joint_count) {
-    report.refuse("a skin has " + std::to_string(numbers.size() / 16) + " inverse bind matrices for " +
+    report.refuse("gltf.skin.count",
+                  "a skin has " + std::to_string(numbers.size() / 16) + " inverse bind matrices for " +
                       std::to_string(joint_count) + " joints",
                   place, "give one for each joint");
     return matrices;
@@ -61,8 +62,8 @@ GltfSkins::GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>
   if (count > 0) world_from_node_ = place_all_gltf_nodes(document, placed, report.center());
   for (size_t skin = 0; skin < count; ++skin) {
     if (has_joints(static_cast<int>(skin))) continue;
-    report.repair({"a skin has no joints", "", "skins[" + std::to_string(skin) + "]", "export the file again",
-                   "its meshes are placed by their nodes"});
+    report.repair({"gltf.skin.empty", "a skin has no joints", "", "skins[" + std::to_string(skin) + "]",
+                   "export the file again", "its meshes are placed by their nodes"});
   }
 }
 
@@ -85,7 +86,8 @@ GltfPose GltfSkins::make_pose(int skin) const {
     dmat4& matrix = pose.joint_matrices[joint];
     matrix = world_from_node_[source["joints"][joint].get<size_t>()] * matrix;
     if (!is_finite(matrix)) {
-      report_.refuse("a joint's place in the world overflows", place + ".joints[" + std::to_string(joint) + "]",
+      report_.refuse("gltf.node.far", "a joint's place in the world overflows",
+                     place + ".joints[" + std::to_string(joint) + "]",
                      "use smaller translations and scales in it and its parents");
       return {};
     }

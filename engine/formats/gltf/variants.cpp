@@ -18,10 +18,11 @@ size_t find_variant(const json& document, const std::string& name, const std::fi
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<size_t>(found - names.begin());
   const std::string what = "the scene has no variant " + quote(name);
-  if (names.empty()) throw UsageError({what + "or any other", file.string(), "leave the variant out"});
+  if (names.empty())
+    throw UsageError({"scene.variant.unknown", what + " or any other", file.string(), "leave the variant out"});
   std::string known;
   for (const std::string& other : names) known += (known.empty() ? "" : ", ") + quote(other);
-  throw UsageError({what, file.string(), "choose one of: " + known});
+  throw UsageError({"scene.variant.unknown", what, file.string(), "choose one of: " + known});
 }
 
 /// Returns the material of a mesh primitive in a variant; `otherwise` if it has no mapping.

@@ -57,8 +57,8 @@ class PolygonMesh {
   bool has_directions(std::span<const vec3> normals) {
     const bool result = std::ranges::find(normals, vec3(0.0F)) == normals.end();
     if (!result) {
-      report_.repair({"a polygon has a normal that is 0 or not a number", "", "", "give each corner a direction",
-                      "the polygon is shaded flat"});
+      report_.repair({"nff.normal.zero", "a polygon has a normal that is 0 or not a number", "", "",
+                      "give each corner a direction", "the polygon is shaded flat"});
     }
     return result;
   }

@@ -60,9 +60,9 @@ class NffParser {
     const Statement* found = find_statement(keyword);
     const bool is_further_number = statement_ != nullptr && !statement_->is_shape && parse_any_number(keyword);
     if (found == nullptr && is_further_number)
-      return repair("has more numbers than it takes", keyword, "they are ignored");
+      return repair("nff.numbers.many", "has more numbers than it takes", keyword, "they are ignored");
     if (found == nullptr) {
-      return refuse(quote(keyword) + " is not a statement of NFF",
+      return refuse("nff.statement.unknown", quote(keyword) + " is not a statement of NFF",
                     "use v b l f c s p or pp, each with all its numbers");
     }
     statement_ = found;
@@ -70,21 +70,23 @@ class NffParser {
     (this->*found->read)();
   }
 
-  void refuse(const std::string& what, const std::string& cure) {
-    if (!is_broken_) report_.refuse(what, words_.place(), cure);
+  void refuse(ProblemCode code, const std::string& what, const std::string& cure) {
+    if (!is_broken_) report_.refuse(code, what, words_.place(), cure);
     is_broken_ = true;
   }
 
-  void refuse(const std::string& what) { refuse(what, std::string("write ") + statement_->form); }
+  void refuse(ProblemCode code, const std::string& what) {
+    refuse(code, what, std::string("write ") + statement_->form);
+  }
 
   /// `what` is said of the statement.
-  void repair(const std::string& what, std::string_view word, const std::string& repair) {
-    report_.repair({quote(statement_->keyword) + " " + what, word.empty() ? "" : quote(word), words_.place(),
+  void repair(ProblemCode code, const std::string& what, std::string_view word, const std::string& repair) {
+    report_.repair({code, quote(statement_->keyword) + " " + what, word.empty() ? "" : quote(word), words_.place(),
                     std::string("write ") + statement_->form, repair});
   }
 
-  void leave_out(const std::string& what) {
-    repair(what, {}, "it is left out");
+  void leave_out(ProblemCode code, const std::string& what) {
+    repair(code, what, {}, "it is left out");
     if (statement_->is_shape) report_.lose_geometry();
   }
 
@@ -93,13 +95,13 @@ class NffParser {
   double take_any_number() {
     if (is_broken_) return 0.0;
     if (words_.next().empty()) {
-      refuse("the file ends within " + quote(statement_->keyword));
+      refuse("nff.file.short", "the file ends within " + quote(statement_->keyword));
       return 0.0;
     }
     const bool is_other = find_statement(words_.next()) != nullptr || is_view_part(words_.next());
     word_ = is_other && !statement_->is_shape ? std::string_view() : words_.take();
     const std::optional<double> number = parse_any_number(word_);
-    if (!number && statement_->is_shape) refuse(quote(word_) + " is not a number");
+    if (!number && statement_->is_shape) refuse("nff.number.wrong", quote(word_) + " is not a number");
     return number.value_or(std::numeric_limits<double>::quiet_NaN());
   }
 
@@ -108,9 +110,9 @@ class NffParser {
     const double number = take_any_number();
     if (is_broken_ || (number >= least && number <= most)) return number;
     if (word_.empty()) {
-      repair("has too few numbers", {}, "the missing ones are set to the smallest value allowed");
+      repair("nff.numbers.few", "has too few numbers", {}, "the missing ones are set to the smallest value allowed");
     } else {
-      repair(std::string("has a number that is not ") + range, word_,
+      repair("nff.number.range", std::string("has a number that is not ") + range, word_,
              "the nearest allowed value is used, or else the smallest");
     }
     return number > most ? most : least;
@@ -121,7 +123,7 @@ class NffParser {
     // Written so that NaN fails.
     if (std::abs(number) <= kMaxCoordinate) return number;
     if (is_placed_ && !is_broken_) {
-      repair("has a coordinate that is not a number up to 1e15", word_, "it is left out");
+      repair("nff.position.range", "has a coordinate that is not a number up to 1e15", word_, "it is left out");
       if (statement_->is_shape) report_.lose_geometry();
     }
     is_placed_ = false;
@@ -150,7 +152,7 @@ class NffParser {
     const double radius = take_coordinate();
     const bool is_valid = std::abs(radius) >= kMinSize || (may_be_zero && radius == 0.0);
     if (is_good() && !is_valid) {
-      leave_out("has a radius that is 0 or too small");
+      leave_out("nff.size.range", "has a radius that is 0 or too small");
       is_placed_ = false;
     }
     return radius;
@@ -195,13 +197,14 @@ class NffParser {
     const dvec3 apex = take_place();
     const double apex_radius = take_radius(true);
     if (!is_good()) return;
-    if (base_radius == 0.0 && apex_radius == 0.0) return leave_out("has two radii of 0");
-    if (base_radius * apex_radius < 0.0) return leave_out("has one radius that is negative and one that is not");
+    if (base_radius == 0.0 && apex_radius == 0.0) return leave_out("nff.size.range", "has two radii of 0");
+    if (base_radius * apex_radius < 0.0)
+      return leave_out("nff.size.range", "has one radius that is negative and one that is not");
     const dvec3 center = 0.5 * (base + apex);
     const dvec3 axis = apex - base;
     const double half_height = 0.5 * glm::length(axis);
     if (!(half_height >= kMinSize && half_height <= kMaxCoordinate)) {
-      return leave_out("has its base and apex at the same point, or too far apart");
+      return leave_out("nff.size.range", "has its base and apex at the same point, or too far apart");
     }
     if (base_radius == apex_radius) {
       add(Cylinder{center, axis, half_height, std::abs(base_radius), true});
@@ -214,12 +217,13 @@ class NffParser {
   void read_patch() { read_corners(true); }
 
   void read_corners(bool has_normals) {
-    if (words_.next().empty()) return refuse("the file ends within " + quote(statement_->keyword));
+    if (words_.next().empty()) return refuse("nff.file.short", "the file ends within " + quote(statement_->keyword));
     const std::string_view word = words_.take();
     const std::optional<int64_t> count = parse_integer(word);
     constexpr auto kMostCorners = static_cast<int64_t>(kMaxPolygonCorners);
     if (!count || *count < 0 || *count > kMostCorners) {
-      return refuse(quote(word) + " is not a number of corners", "give 3 to " + std::to_string(kMostCorners));
+      return refuse("nff.corners.count", quote(word) + " is not a number of corners",
+                    "give 3 to " + std::to_string(kMostCorners));
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {
@@ -227,7 +231,7 @@ class NffParser {
       if (has_normals) out_.normals.push_back(take_normal());
     }
     if (*count >= 3) return add(polygon);
-    if (is_good()) leave_out("has fewer than 3 corners");
+    if (is_good()) leave_out("nff.corners.count", "has fewer than 3 corners");
   }
 
   /// Returns 0 if it is not a direction.
@@ -256,9 +260,10 @@ class NffParser {
       if (part == "resolution") camera.resolution = take_resolution();
     }
     if (!is_good()) return;
-    if (!from || !at || !up || !angle) return leave_out("lacks from, at, up or angle");
+    if (!from || !at || !up || !angle) return leave_out("nff.view.incomplete", "lacks from, at, up or angle");
     // Written so that NaN fails.
-    if (!(*angle >= 1e-3 && *angle <= 179.9)) return leave_out("has an angle that is not from 0.001 to 179.9 degrees");
+    if (!(*angle >= 1e-3 && *angle <= 179.9))
+      return leave_out("nff.number.range", "has an angle that is not from 0.001 to 179.9 degrees");
     camera.yfov = static_cast<float>(glm::radians(*angle));
     if (camera.resolution.x > 0) {
       camera.aspect_ratio = static_cast<float>(camera.resolution.x) / static_cast<float>(camera.resolution.y);
@@ -267,7 +272,8 @@ class NffParser {
     const dvec3 side = glm::cross(look, glm::normalize(*up));
     // Written so that NaN, which coinciding points give, is refused too.
     if (!(glm::length(side) >= kLeastSine)) {
-      return leave_out("has from and at in the same place, or an up that is 0 or parallel to the view");
+      return leave_out("nff.view.direction",
+                       "has from and at in the same place, or an up that is 0 or parallel to the view");
     }
     camera.eye = vec3(*from);
     camera.look = vec3(look);
@@ -281,7 +287,8 @@ class NffParser {
     for (int i = 0; i < 2; ++i) size[i] = take_any_number();
     const auto is_side = [](double side) { return side >= 1.0 && side <= kMaxSide && side == std::floor(side); };
     if (is_broken_ || (is_side(size.x) && is_side(size.y))) return uvec2(size);
-    repair("has a resolution that is not two whole numbers from 1 to 32768", {}, "its resolution is ignored");
+    repair("nff.resolution", "has a resolution that is not two whole numbers from 1 to 32768", {},
+           "its resolution is ignored");
     return uvec2(0);
   }
 

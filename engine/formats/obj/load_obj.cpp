@@ -178,7 +178,9 @@ bool has_texture(const Material& material) {
 }
 
 void refuse_without_faces(const ObjText& text, LoadReport& report) {
-  const auto refuse = [&](const std::string& what) { report.refuse(what, "", "export it with faces"); };
+  const auto refuse = [&](const std::string& what) {
+    report.refuse("obj.faces.none", what, "", "export it with faces");
+  };
   const std::string vertices = "the file has " + std::to_string(text.positions.size()) + " vertices but no faces";
   if (text.small_face_count > 0) return refuse("all faces have fewer than 3 corners: there is nothing to draw");
   if (text.has_lines_or_points) return refuse(vertices + ", and lines and points are not drawn");

@@ -169,14 +169,16 @@ class MtlParser {
       if (count == 0 && (word == "spectral" || word == "xyz")) return ignore_color(keyword, word);
       const std::optional<double> number = parse_number(word);
       if (!number || std::abs(*number) > kMaxCoordinate || (keyword == "illum" && *number < 0.0)) {
-        return report_.repair({keyword + " of a material is not a number from 0 to 1e15", quote(word), place(),
-                               "use numbers from 0, with a decimal point", "the statement is ignored"});
+        return report_.repair({"mtl.number.range", keyword + " of a material is not a number from 0 to 1e15",
+                               quote(word), place(), "use numbers from 0, with a decimal point",
+                               "the statement is ignored"});
       }
       is_negative = is_negative || *number < 0.0;
       numbers[count++] = *number;
     }
     if (is_negative && !is_among(kOfAnySign, keyword)) {
-      report_.repair({keyword + " of a material is negative", "", place(), "use numbers from 0", "0 is used"});
+      report_.repair(
+          {"mtl.number.range", keyword + " of a material is negative", "", place(), "use numbers from 0", "0 is used"});
       numbers = glm::max(numbers, dvec3(0.0));
     }
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;

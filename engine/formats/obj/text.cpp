@@ -81,10 +81,13 @@ class ObjParser {
     }
   }
 
-  void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
+  void refuse(ProblemCode code, const std::string& what, const std::string& cure) {
+    report_.refuse(code, what, lines_.place(), cure);
+  }
 
-  void repair(const std::string& what, std::string_view value, const std::string& cure, const std::string& repair) {
-    report_.repair({what, value.empty() ? "" : quote(value), lines_.place(), cure, repair});
+  void repair(ProblemCode code, const std::string& what, std::string_view value, const std::string& cure,
+              const std::string& repair) {
+    report_.repair({code, what, value.empty() ? "" : quote(value), lines_.place(), cure, repair});
   }
 
   /// The numbers of a statement.
@@ -130,8 +133,8 @@ class ObjParser {
     if (!numbers.are_good(3)) return add_bad_vertex(numbers);
     if (numbers.word_count >= 6) return read_color(numbers);
     if (numbers.word_count == 5 || !numbers.bad_word.empty()) {
-      repair("the numbers after x y z of a vertex are neither a weight nor a colour", numbers.bad_word, kVertexCure,
-             "they are ignored");
+      repair("obj.vertex.numbers", "the numbers after x y z of a vertex are neither a weight nor a colour",
+             numbers.bad_word, kVertexCure, "they are ignored");
     }
   }
 
@@ -145,12 +148,13 @@ class ObjParser {
   void read_color(const Numbers& numbers) {
     const std::array<double, 6>& n = numbers.values;
     if (numbers.word_count > 6) {
-      repair("a vertex has more than 6 numbers", "", kVertexCure, "those after its colour are ignored");
+      repair("obj.vertex.numbers", "a vertex has more than 6 numbers", "", kVertexCure,
+             "those after its colour are ignored");
     }
     vec3 color(n[3], n[4], n[5]);
     if (!numbers.are_good(6) || n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) {
-      repair("a vertex colour is not three numbers of 0 or more", numbers.bad_word, "use numbers from 0",
-             "white is used");
+      repair("obj.color.range", "a vertex colour is not three numbers of 0 or more", numbers.bad_word,
+             "use numbers from 0", "white is used");
       color = vec3(1.0F);
     }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
@@ -168,7 +172,7 @@ class ObjParser {
       if (number && std::abs(*number) <= kMaxCoordinate) {
         uv[i] = *number;
       } else {
-        repair("a texture coordinate is not a number up to 1e15", word, kNumberCure, "0 is used");
+        repair("obj.uv.range", "a texture coordinate is not a number up to 1e15", word, kNumberCure, "0 is used");
       }
     }
     out_.uvs.push_back(uv);
@@ -178,13 +182,14 @@ class ObjParser {
     const Numbers numbers = read_numbers(rest);
     const std::array<double, 6>& n = numbers.values;
     if (!numbers.are_good(3)) {
-      repair("a normal is not three numbers up to 1e15", numbers.bad_word, kNumberCure,
+      repair("obj.normal.range", "a normal is not three numbers up to 1e15", numbers.bad_word, kNumberCure,
              "the faces that use it are shaded flat");
       out_.normals.emplace_back(std::numeric_limits<float>::quiet_NaN());
       return;
     }
     if (numbers.word_count > 3) {
-      repair("a normal has more than 3 numbers", "", "give it x y z", "those after the third are ignored");
+      repair("obj.normal.numbers", "a normal has more than 3 numbers", "", "give it x y z",
+             "those after the third are ignored");
     }
     out_.normals.emplace_back(n[0], n[1], n[2]);
   }
@@ -203,10 +208,11 @@ class ObjParser {
     if (count < 3) {
       ++out_.small_face_count;
       out_.corners.resize(first);
-      return repair("a face has fewer than 3 corners", "", "give it 3 or more, on one line", "it is left out");
+      return repair("obj.face.corners", "a face has fewer than 3 corners", "", "give it 3 or more, on one line",
+                    "it is left out");
     }
     if (count > kMaxPolygonCorners) {
-      refuse("a face has " + std::to_string(count) + " corners",
+      refuse("obj.face.corners", "a face has " + std::to_string(count) + " corners",
              "give it 3 to " + std::to_string(kMaxPolygonCorners) + ", on one line");
       return;
     }
@@ -230,7 +236,8 @@ class ObjParser {
     }
     corner.position = read_index(parts[0], out_.positions.size());
     if (!word.empty() || corner.position == kMissing) {
-      refuse(quote(whole) + " is not a corner of a face", "use indices from 1, or from -1 back to the first vertex");
+      refuse("obj.face.corner", quote(whole) + " is not a corner of a face",
+             "use indices from 1, or from -1 back to the first vertex");
       return false;
     }
     if (!parts[1].empty()) corner.uv = read_index(parts[1], out_.uvs.size());
@@ -258,12 +265,12 @@ class ObjParser {
       const std::span corners(&out_.corners[out_.faces[i].first_corner], out_.faces[i].corner_count);
       is_drawn[i] = check_positions(corners, face_lines_[i]);
       if (forget_past_the_end(corners, &ObjCorner::uv, out_.uvs.size())) {
-        report_.repair({"a face refers to texture coordinates that do not exist", "", place_of(face_lines_[i]),
-                        "use an index up to their number", "it is drawn without them"});
+        report_.repair({"obj.uv.index", "a face refers to texture coordinates that do not exist", "",
+                        place_of(face_lines_[i]), "use an index up to their number", "it is drawn without them"});
       }
       if (forget_past_the_end(corners, &ObjCorner::normal, out_.normals.size())) {
-        report_.repair({"a face refers to a normal that does not exist", "", place_of(face_lines_[i]),
-                        "use an index up to their number", "it is shaded flat"});
+        report_.repair({"obj.normal.index", "a face refers to a normal that does not exist", "",
+                        place_of(face_lines_[i]), "use an index up to their number", "it is shaded flat"});
       }
     }
     for (const BadVertex& vertex : bad_vertices_) report_bad_vertex(vertex);
@@ -305,14 +312,15 @@ class ObjParser {
     bool is_placed = true;
     for (const ObjCorner& corner : corners) {
       if (corner.position >= out_.positions.size()) {
-        report_.refuse("index " + std::to_string(uint64_t{corner.position} + 1) + " is out of range, there are " +
+        report_.refuse("obj.face.index",
+                       "index " + std::to_string(uint64_t{corner.position} + 1) + " is out of range, there are " +
                            std::to_string(out_.positions.size()) + " vertices",
                        place_of(line), "use an index up to their number");
       } else if (BadVertex* bad = find_bad_vertex(corner.position); bad != nullptr) {
         bad->is_used = true;
         if (is_placed) {
-          report_.repair({"a face has a vertex that is not three numbers up to 1e15", bad->what, place_of(bad->line),
-                          kVertexCure, "the face is left out"});
+          report_.repair({"obj.position.range", "a face has a vertex that is not three numbers up to 1e15", bad->what,
+                          place_of(bad->line), kVertexCure, "the face is left out"});
         }
         is_placed = false;
       }
@@ -338,8 +346,8 @@ class ObjParser {
 
   void report_bad_vertex(const BadVertex& vertex) {
     if (vertex.is_used) return;
-    report_.repair({"a vertex that no face uses is not three numbers up to 1e15", vertex.what, place_of(vertex.line),
-                    kVertexCure, "it is left out"});
+    report_.repair({"obj.position.range", "a vertex that no face uses is not three numbers up to 1e15", vertex.what,
+                    place_of(vertex.line), kVertexCure, "it is left out"});
   }
 
   void use_material(const std::string& name) {
@@ -370,7 +378,7 @@ class ObjParser {
 ObjText parse_obj_text(std::string_view text, LoadReport& report) {
   text = without_zero_bytes_at_end(text);
   if (text.find('\0') != std::string_view::npos) {
-    report.refuse("the file is not text", "", "name a Wavefront OBJ file");
+    report.refuse("obj.file.kind", "the file is not text", "", "name a Wavefront OBJ file");
     return {};
   }
   return ObjParser(text, report).parse();

@@ -88,7 +88,7 @@ class BodyReader {
       if (element.properties.empty()) continue;
       read_element(element);
       if (!problem_.empty() || !rows_.problem().empty()) {
-        report_.refuse(problem_.empty() ? rows_.problem() : problem_, place_, "export the file again");
+        report_.refuse("ply.row.wrong", problem_.empty() ? rows_.problem() : problem_, place_, "export the file again");
         return {};
       }
     }
@@ -216,7 +216,8 @@ class BodyReader {
   double clamp(double share, const char* element) {
     if (share >= 0.0 && share <= 1.0) return share;
     if (std::isnan(share)) {
-      report_.repair({"a colour is not a number", "", place_of(element), "export the mesh again", "1 is used"});
+      report_.repair(
+          {"ply.color.range", "a colour is not a number", "", place_of(element), "export the mesh again", "1 is used"});
       return 1.0;
     }
     has_wild_colors_ = true;
@@ -226,8 +227,8 @@ class BodyReader {
   vec2 uv_of(double u, double v, const char* element) {
     // Written so that NaN fails.
     if (std::abs(u) <= kMaxCoordinate && std::abs(v) <= kMaxCoordinate) return vec2(dvec2(u, v));
-    report_.repair({"a texture coordinate is not finite or beyond 1e15", "", place_of(element), "export the mesh again",
-                    "0 is used"});
+    report_.repair({"ply.uv.range", "a texture coordinate is not finite or beyond 1e15", "", place_of(element),
+                    "export the mesh again", "0 is used"});
     return vec2(0.0F);
   }
 
@@ -262,7 +263,8 @@ class BodyReader {
       out_.corners.push_back(*corner);
     }
     if (list_.size() < 3) {
-      report_.repair({"a face has fewer than 3 corners", "", place_of("face"), "give it 3", "the face is left out"});
+      report_.repair({"ply.face.corners", "a face has fewer than 3 corners", "", place_of("face"), "give it 3",
+                      "the face is left out"});
       out_.corners.resize(out_.corners.size() - list_.size());
       return;
     }
@@ -284,8 +286,8 @@ class BodyReader {
   uint32_t texture_of(const Layout& layout, const Row& row) {
     if (has_corner_uvs_ && !has_own_uvs()) {
       if (!uv_list_.empty()) {
-        report_.repair({"a face does not have two texture coordinates for each corner", "", place_of("face"),
-                        "export the mesh again", "it is drawn without a texture"});
+        report_.repair({"ply.uv.count", "a face does not have two texture coordinates for each corner", "",
+                        place_of("face"), "export the mesh again", "it is drawn without a texture"});
       }
       return PlyBody::kNoTexture;
     }
@@ -295,8 +297,8 @@ class BodyReader {
       return static_cast<uint32_t>(number);
     }
     if (number != -1.0) {
-      report_.repair({"a face refers to a texture that does not exist", "", place_of("face"), "export the mesh again",
-                      "it is drawn without a texture"});
+      report_.repair({"ply.texture.index", "a face refers to a texture that does not exist", "", place_of("face"),
+                      "export the mesh again", "it is drawn without a texture"});
     }
     return PlyBody::kNoTexture;
   }

@@ -85,7 +85,7 @@ class HeaderParser {
 
   PlyHeader parse() {
     if (!lines_.advance() || without_byte_order_mark(lines_.line()) != "ply") {
-      report_.refuse("the first line is not \"ply\"", "", "name a PLY file");
+      report_.refuse("ply.file.kind", "the first line is not \"ply\"", "", "name a PLY file");
       return {};
     }
     while (lines_.advance()) {
@@ -95,17 +95,19 @@ class HeaderParser {
       }
       read_statement(lines_.line());
     }
-    refuse("the header has no end", kExportAgain);
+    refuse("ply.header.short", "the header has no end", kExportAgain);
     return {};
   }
 
  private:
-  void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, lines_.place(), cure); }
+  void refuse(ProblemCode code, const std::string& what, const std::string& cure) {
+    report_.refuse(code, what, lines_.place(), cure);
+  }
 
   void finish() {
     out_.size_bytes = lines_.next();
     out_.line_count = lines_.number();
-    if (!has_format_) refuse("the header states no format", kExportAgain);
+    if (!has_format_) refuse("ply.header.format", "the header states no format", kExportAgain);
     check_counts(file_.size() - out_.size_bytes);
   }
 
@@ -140,7 +142,8 @@ class HeaderParser {
     } else if (name == "binary_big_endian") {
       out_.encoding = PlyEncoding::kBigEndian;
     } else {
-      refuse(quote(name) + " is not a format of PLY", "use ascii, binary_little_endian or binary_big_endian");
+      refuse("ply.header.format", quote(name) + " is not a format of PLY",
+             "use ascii, binary_little_endian or binary_big_endian");
     }
   }
 
@@ -148,15 +151,17 @@ class HeaderParser {
     const std::string_view name = take_word(line);
     const std::string_view word = take_word(line);
     const std::optional<int64_t> count = parse_integer(word);
-    if (!count || *count < 0) refuse(quote(word) + " is not a number of rows", "write \"element NAME COUNT\"");
-    if (find_named(out_.elements, name) != nullptr) refuse("there are two elements " + quote(name), kExportAgain);
+    if (!count || *count < 0)
+      refuse("ply.header.count", quote(word) + " is not a number of rows", "write \"element NAME COUNT\"");
+    if (find_named(out_.elements, name) != nullptr)
+      refuse("ply.header.twice", "there are two elements " + quote(name), kExportAgain);
     if (!has_room(out_.elements, "elements")) return;
     out_.elements.push_back(
         {.name = std::string(name), .row_count = static_cast<uint64_t>(std::max(count.value_or(0), int64_t{0}))});
   }
 
   void read_property(std::string_view line) {
-    if (out_.elements.empty()) return refuse("a property comes before any element", kExportAgain);
+    if (out_.elements.empty()) return refuse("ply.header.order", "a property comes before any element", kExportAgain);
     PlyProperty property;
     std::string_view type = take_word(line);
     property.is_list = type == "list";
@@ -168,7 +173,7 @@ class HeaderParser {
     property.name = take_word(line);
     std::vector<PlyProperty>& properties = out_.elements.back().properties;
     if (find_named(properties, property.name) != nullptr) {
-      refuse("there are two properties " + quote(property.name), kExportAgain);
+      refuse("ply.header.twice", "there are two properties " + quote(property.name), kExportAgain);
     }
     if (has_room(properties, "properties")) properties.push_back(property);
   }
@@ -177,14 +182,16 @@ class HeaderParser {
   template <class Named>
   bool has_room(const std::vector<Named>& all, const std::string& what) {
     if (all.size() < kMaxNames) return true;
-    report_.refuse("the header has more than " + std::to_string(kMaxNames) + " " + what, "", kExportAgain);
+    report_.refuse("ply.header.large", "the header has more than " + std::to_string(kMaxNames) + " " + what, "",
+                   kExportAgain);
     return false;
   }
 
   PlyType read_type(std::string_view name) {
     const auto found = std::ranges::find(kTypes, name, &TypeName::name);
     if (found != kTypes.end()) return found->type;
-    refuse(quote(name) + " is not a type of numbers", "use char, uchar, short, ushort, int, uint, float or double");
+    refuse("ply.header.type", quote(name) + " is not a type of numbers",
+           "use char, uchar, short, ushort, int, uint, float or double");
     return PlyType::kFloat32;
   }
 
@@ -201,7 +208,8 @@ class HeaderParser {
       }
       const uint64_t rows = row_bytes == 0 ? element.row_count : room / row_bytes;
       if (element.row_count > rows) {
-        report_.refuse("the header declares " + std::to_string(element.row_count) + " rows of " + quote(element.name) +
+        report_.refuse("ply.file.short",
+                       "the header declares " + std::to_string(element.row_count) + " rows of " + quote(element.name) +
                            ", but the file has room for " + std::to_string(rows),
                        "", "the file is cut short: copy or export it again");
         return;

@@ -68,17 +68,19 @@ bool has_rounded_coordinates(const PlyHeader& header) {
 void check_elements(const PlyHeader& header, LoadReport& report) {
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr) {
-    report.refuse("the file has no element \"vertex\"", "", "name a PLY file that holds a mesh");
+    report.refuse("ply.vertices.missing", "the file has no element \"vertex\"", "",
+                  "name a PLY file that holds a mesh");
     return;
   }
   if (!has_property(*vertices, "x") || !has_property(*vertices, "y") || !has_property(*vertices, "z")) {
-    report.refuse("the vertices have no x, y and z", "", "export it with positions");
+    report.refuse("ply.vertices.missing", "the vertices have no x, y and z", "", "export it with positions");
   }
-  if (vertices->row_count >= kUnused) report.refuse("the file has too many vertices", "", "divide the mesh");
+  if (vertices->row_count >= kUnused)
+    report.refuse("ply.vertices.many", "the file has too many vertices", "", "divide the mesh");
   if (vertices->row_count == 0 || lists_vertices(header.find("face")) || lists_vertices(header.find("tristrips")))
     return;
-  report.refuse("the file has " + std::to_string(vertices->row_count) + " vertices but no faces", "",
-                "export it with faces; point clouds are not drawn");
+  report.refuse("ply.faces.missing", "the file has " + std::to_string(vertices->row_count) + " vertices but no faces",
+                "", "export it with faces; point clouds are not drawn");
 }
 
 /// Makes a mesh from the content of a file.
@@ -187,7 +189,7 @@ class MeshMaker {
   bool is_drawable(std::span<const uint32_t> corners) {
     for (const uint32_t corner : corners) {
       if (is_in_range(dvec3(body_.positions[corner]))) continue;
-      report_.repair({"a face has a vertex coordinate that is not a number up to 1e15", "",
+      report_.repair({"ply.position.range", "a face has a vertex coordinate that is not a number up to 1e15", "",
                       "vertex " + std::to_string(corner), "export the mesh again, in a larger unit of length",
                       "the face is left out"});
       return false;
@@ -231,8 +233,8 @@ class MeshMaker {
   /// A triangle without area is never hit, so any normal will do for it.
   void add_sharp_triangle(const uvec3& places) {
     const uint32_t* corners = &body_.corners[first_corner_];
-    report_.repair({"a face has a normal that is 0 or not a number", "", "vertex " + std::to_string(corners[places.x]),
-                    "export the mesh again", "the face is shaded flat"});
+    report_.repair({"ply.normal.zero", "a face has a normal that is 0 or not a number", "",
+                    "vertex " + std::to_string(corners[places.x]), "export the mesh again", "the face is shaded flat"});
     const dvec3 a(body_.positions[corners[places.x]]);
     const dvec3 b(body_.positions[corners[places.y]]);
     const dvec3 c(body_.positions[corners[places.z]]);

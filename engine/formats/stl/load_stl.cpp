@@ -119,7 +119,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
   for (uint64_t i = 0; i < count; ++i) {
     const auto corners = read_number<std::array<vec3, 3>>(file, kFirstFacet + kFacetBytes * i + kNormalBytes);
     if (!std::ranges::all_of(corners, [](const vec3& p) { return is_in_range(dvec3(p)); })) {
-      report.repair({"a facet has a vertex coordinate that is not a number up to 1e15", "",
+      report.repair({"stl.position.range", "a facet has a vertex coordinate that is not a number up to 1e15", "",
                      "facet " + std::to_string(i), "export the mesh again, in a larger unit of length",
                      "the facet is left out"});
       continue;
@@ -132,7 +132,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
 
 std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   if (file.size() < kFirstFacet) {
-    report.refuse("the file is not an STL file", "", "name an STL file, binary or text");
+    report.refuse("stl.file.kind", "the file is not an STL file", "", "name an STL file, binary or text");
     return {};
   }
   uint64_t count = facet_count(file);
@@ -140,12 +140,13 @@ std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   // A program that writes to a pipe cannot go back to write the count.
   const bool is_open = count == 0 || count == std::numeric_limits<uint32_t>::max();
   if (is_open && room > 0 && file.size() == kFirstFacet + kFacetBytes * room) {
-    report.repair({"the number of facets was never written", std::to_string(count), "", "export the file again",
-                   "all facets that the file holds are read"});
+    report.repair({"stl.count.missing", "the number of facets was never written", std::to_string(count), "",
+                   "export the file again", "all facets that the file holds are read"});
     count = room;
   }
   if (count > room) {
-    report.refuse("the file declares " + std::to_string(count) + " facets, but has room for " + std::to_string(room),
+    report.refuse("stl.file.short",
+                  "the file declares " + std::to_string(count) + " facets, but has room for " + std::to_string(room),
                   "", "the file is cut short or is not an STL file: copy or export it again");
     return {};
   }

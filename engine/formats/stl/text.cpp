@@ -37,7 +37,8 @@ class StlParser {
 
   std::vector<StlSolid> parse() {
     while (!words_.next().empty()) read_statement(words_.take());
-    if (is_in_facet_) report_.refuse("the file ends within a facet", words_.place(), "export the file again");
+    if (is_in_facet_)
+      report_.refuse("stl.file.short", "the file ends within a facet", words_.place(), "export the file again");
     if (ignored_count_ > 0) {
       report_.warn(std::to_string(ignored_count_) + " statements of STL are ignored, the first is " + first_ignored_);
     }
@@ -45,9 +46,11 @@ class StlParser {
   }
 
  private:
-  void refuse(const std::string& what, const std::string& cure) { report_.refuse(what, words_.place(), cure); }
-  void repair(const char* what, const std::string& value, const char* repair) {
-    report_.repair({what, value, words_.place(), "export the file again", repair});
+  void refuse(ProblemCode code, const std::string& what, const std::string& cure) {
+    report_.refuse(code, what, words_.place(), cure);
+  }
+  void repair(ProblemCode code, const char* what, const std::string& value, const char* repair) {
+    report_.repair({code, what, value, words_.place(), "export the file again", repair});
   }
 
   /// Ordered by how often they come.
@@ -81,7 +84,7 @@ class StlParser {
 
   /// The normal may be anything, as it is not used.
   void begin_facet() {
-    if (is_in_facet_) refuse("a facet begins within another", "export the file again");
+    if (is_in_facet_) refuse("stl.facet.nested", "a facet begins within another", "export the file again");
     if (solids_.empty()) solids_.emplace_back();
     is_in_facet_ = true;
     is_placed_ = true;
@@ -92,16 +95,17 @@ class StlParser {
   }
 
   void read_vertex() {
-    if (!is_in_facet_) return refuse("a vertex lies outside of facets", "export the file again");
+    if (!is_in_facet_) return refuse("stl.facet.nested", "a vertex lies outside of facets", "export the file again");
     vec3 corner;
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.take();
       const std::optional<double> number = parse_any_number(word);
-      if (!number) return refuse(quote(word) + " is not a number", "give each vertex x y z");
+      if (!number) return refuse("stl.number.wrong", quote(word) + " is not a number", "give each vertex x y z");
       // Written so that NaN fails.
       if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
         is_placed_ = false;
-        repair("a facet has a vertex coordinate that is not a number up to 1e15", quote(word), "the facet is left out");
+        repair("stl.position.range", "a facet has a vertex coordinate that is not a number up to 1e15", quote(word),
+               "the facet is left out");
       }
       corner[i] = static_cast<float>(*number - report_.center()[i]);
     }
@@ -109,17 +113,20 @@ class StlParser {
   }
 
   void end_facet() {
-    if (!is_in_facet_) return refuse("the end of a facet has no beginning", "export the file again");
+    if (!is_in_facet_)
+      return refuse("stl.facet.nested", "the end of a facet has no beginning", "export the file again");
     is_in_facet_ = false;
     std::vector<vec3>& all = solids_.back().corners;
     if (corners_.size() < 3) {
-      repair("a facet has fewer than 3 corners", std::to_string(corners_.size()), "the facet is left out");
+      repair("stl.facet.corners", "a facet has fewer than 3 corners", std::to_string(corners_.size()),
+             "the facet is left out");
     } else if (corners_.size() > kMaxPolygonCorners) {
-      refuse("a facet has " + std::to_string(corners_.size()) + " corners", "give it 3");
+      refuse("stl.facet.corners", "a facet has " + std::to_string(corners_.size()) + " corners", "give it 3");
     } else if (is_placed_ && corners_.size() == 3) {
       all.insert(all.end(), corners_.begin(), corners_.end());
     } else if (is_placed_) {
-      repair("a facet has more than 3 corners", std::to_string(corners_.size()), "it is divided into triangles");
+      repair("stl.facet.corners", "a facet has more than 3 corners", std::to_string(corners_.size()),
+             "it is divided into triangles");
       for (const uvec3& triangle : triangulate_polygon(corners_)) {
         for (int i = 0; i < 3; ++i) all.push_back(corners_[triangle[i]]);
       }

@@ -25,8 +25,9 @@ uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View
   const uint64_t steps = most_steps(view.max_depth, refracted_rays(features), layers);
   const uint64_t entries = (1 + steps) * (uint64_t{1} + scene.constants().light_count);
   if (entries > kMostLogBytes / sizeof(layout::RayLog)) {
-    throw RunError({"a pixel may need " + std::to_string(entries) + " rays and light sources, too many to explain",
-                    "in this scene with so many bounces", "use a smaller depth", Setting::kDepth});
+    throw RunError({"explain.rays.many",
+                    "a pixel may need " + std::to_string(entries) + " rays and light sources, too many to explain", "",
+                    "use a smaller depth", Setting::kDepth});
   }
   return entries;
 }

@@ -150,7 +150,7 @@ struct RayKernel::Impl {
     hits->read(head_bytes, sizeof(layout::Dispatch));
     for (size_t i = 0; i < input.size(); ++i) {
       if (heads[i].a.x != counts[i]) {
-        throw RunError({"the device lists other crossings of a ray than it has counted", "on this device",
+        throw RunError({"device.lists.differ", "the device lists other crossings of a ray than it has counted", "",
                         "use another device", Setting::kDevice});
       }
     }

@@ -365,11 +365,12 @@ void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
 double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, const ProgressCallback& progress) {
   if (rays.size() != hits.size()) {
     throw UsageError(
-        {"the call gives " + std::to_string(hits.size()) + " hits for " + std::to_string(rays.size()) + " rays",
-         "in Caster::cast", "give as many hits as rays"});
+        {"rays.results",
+         "the call gives " + std::to_string(hits.size()) + " hits for " + std::to_string(rays.size()) + " rays",
+         "Caster::cast", "give as many hits as rays"});
   }
   if (query != HitQuery::kNearest && query != HitQuery::kAny) {
-    throw UsageError({"cast() returns one hit per ray, neither a count nor a list", "in Caster::cast",
+    throw UsageError({"rays.query", "cast() returns one hit per ray, neither a count nor a list", "Caster::cast",
                       "call Caster::count or Caster::list"});
   }
   return impl_->trace_all(rays, hits, query, progress, [&](const HitRecord& record, const Ray* scaled) {
@@ -379,9 +380,10 @@ double Caster::cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery que
 
 double Caster::occluded(std::span<const Ray> rays, std::span<bool> are_occluded, const ProgressCallback& progress) {
   if (rays.size() != are_occluded.size()) {
-    throw UsageError({"the call gives " + std::to_string(are_occluded.size()) + " results for " +
+    throw UsageError({"rays.results",
+                      "the call gives " + std::to_string(are_occluded.size()) + " results for " +
                           std::to_string(rays.size()) + " rays",
-                      "in Caster::occluded", "give as many results as rays"});
+                      "Caster::occluded", "give as many results as rays"});
   }
   return impl_->trace_all(rays, are_occluded, HitQuery::kAny, progress,
                           [](const HitRecord& record, const Ray*) { return record.a.y != layout::NO_ORDER; });
@@ -390,8 +392,9 @@ double Caster::occluded(std::span<const Ray> rays, std::span<bool> are_occluded,
 double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const ProgressCallback& progress) {
   if (rays.size() != counts.size()) {
     throw UsageError(
-        {"the call gives " + std::to_string(counts.size()) + " counts for " + std::to_string(rays.size()) + " rays",
-         "in Caster::count", "give as many counts as rays"});
+        {"rays.results",
+         "the call gives " + std::to_string(counts.size()) + " counts for " + std::to_string(rays.size()) + " rays",
+         "Caster::count", "give as many counts as rays"});
   }
   if (impl_->counts_by_lists(rays)) {
     const auto take = [&](const HitList& list) {
@@ -425,7 +428,8 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
       size_t end = begin + 1;
       while (end < chunk.size() && total + counts[end] <= most) total += counts[end++];
       if (total > most_listed) {
-        throw RunError({"the ray has " + std::to_string(total) + " hits, and a buffer of the device holds " +
+        throw RunError({"rays.hits.many",
+                        "the ray has " + std::to_string(total) + " hits, and a buffer of the device holds " +
                             std::to_string(most_listed),
                         "ray " + std::to_string(first + begin), "divide the ray into parts by tmin and tmax"});
       }

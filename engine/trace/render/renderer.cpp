@@ -13,8 +13,8 @@
 namespace promin {
 namespace {
 
-void check(bool is_so, const char* what, const char* where, const char* cure) {
-  if (!is_so) throw UsageError({what, where, cure});
+void check(ProblemCode code, bool is_so, const char* what, const char* where, const char* cure) {
+  if (!is_so) throw UsageError({code, what, where, cure});
 }
 
 void check_view(const View& view) {
@@ -76,10 +76,11 @@ namespace {
 void check_copies(const std::set<uint32_t>& copied, std::span<const Material> materials) {
   for (const uint32_t i : copied) {
     if (hides_copies(materials[i])) continue;
-    throw InputError({"the material was opaque when the tree was built, so the tree keeps one of more than " +
+    throw InputError({"scene.copies.opaque",
+                      "the material was opaque when the tree was built, so the tree keeps one of more than " +
                           std::to_string(kMostCopies) +
                           " identical primitives, and the others cannot be seen through it",
-                      "material " + std::to_string(i) + " in set_materials", "create a renderer of the changed scene"});
+                      "material " + std::to_string(i) + " of set_materials", "create a renderer of the changed scene"});
   }
 }
 
@@ -88,9 +89,10 @@ void check_copies(const std::set<uint32_t>& copied, std::span<const Material> ma
 void Renderer::set_materials(std::span<const Material> materials) {
   throw_if_invalid(materials);
   if (materials.size() != impl_->tracer.scene().material_count()) {
-    throw InputError({"the call gives " + std::to_string(materials.size()) + " materials to a scene that has " +
+    throw InputError({"scene.materials.count",
+                      "the call gives " + std::to_string(materials.size()) + " materials to a scene that has " +
                           std::to_string(impl_->tracer.scene().material_count()),
-                      "in set_materials", "give one for each of the scene's materials, in their order"});
+                      "set_materials", "give one for each of the scene's materials, in their order"});
   }
   check_copies(impl_->tracer.scene().copied_materials(), materials);
   gpu::translate_vulkan_errors([&] {
@@ -109,8 +111,8 @@ void Renderer::set_environment(const Environment& environment) {
 
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
   check_view(view);
-  check(pixel.x < view.size.x && pixel.y < view.size.y, "the pixel to explain lies outside the picture", "pixel",
-        "name a pixel inside");
+  check("view.pixel.outside", pixel.x < view.size.x && pixel.y < view.size.y,
+        "the pixel to explain lies outside the picture", "pixel", "name a pixel inside");
   Explanation explanation;
   gpu::translate_vulkan_errors([&] { explanation = impl_->tracer.explain(view, pixel); });
   return explanation;
@@ -118,8 +120,10 @@ Explanation Renderer::explain(const View& view, const uvec2& pixel) {
 
 RenderResult Renderer::render_within(const View& view, double seconds, const ProgressCallback& progress) {
   check_view(view);
-  check(view.error_target.has_value(), "the view has no target error", "view.error_target", "set a target error");
-  check(std::isfinite(seconds), "the time limit is not finite", "seconds", "give a finite number of seconds");
+  check("view.target.missing", view.error_target.has_value(), "the view has no target error", "view.error_target",
+        "set a target error");
+  check("argument.range", std::isfinite(seconds), "the time limit is not finite", "seconds",
+        "give a finite number of seconds");
   RenderResult result;
   gpu::translate_vulkan_errors([&] { result = impl_->tracer.render_within(view, seconds, progress); });
   return result;
@@ -135,12 +139,12 @@ RenderResult Renderer::render(const View& view, const ProgressCallback& progress
 void Renderer::render_progressively(const View& view, double budget_ms,
                                     const std::function<bool(const Image&, const View&)>& on_picture) {
   check_view(view);
-  check(!view.crop, "render_progressively does not support a crop", "view.crop",
+  check("view.crop.unsupported", !view.crop, "render_progressively does not support a crop", "view.crop",
         "show the whole picture, or call render for the crop");
-  check(budget_ms > 0.0 && std::isfinite(budget_ms), "the budget is not positive and finite", "budget_ms",
-        "give a positive number of milliseconds");
-  check(static_cast<bool>(on_picture), "the function that receives the pictures is empty", "on_picture",
-        "give a function");
+  check("argument.range", budget_ms > 0.0 && std::isfinite(budget_ms), "the budget is not positive and finite",
+        "budget_ms", "give a positive number of milliseconds");
+  check("argument.missing", static_cast<bool>(on_picture), "the function that receives the pictures is empty",
+        "on_picture", "give a function");
   gpu::translate_vulkan_errors([&] { impl_->tracer.render_progressively(view, budget_ms, on_picture); });
 }
 

@@ -89,7 +89,7 @@ def create(kind: str, arguments: list[str], folder: str | os.PathLike[str]) -> J
     known = {"--tiles", "--size"}
     for word in arguments[1:]:
         if word.startswith("--") and word not in known:
-            raise UsageError(f"{word} is not known, on the command line; see --help")
+            raise UsageError(f"{word} is not known; see --help")
     manifest = {
         "fake_job": 1,
         "kind": kind,
