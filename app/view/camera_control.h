@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "view/motion.h"
-#include "work/camera.h"
+#include "work/pictures/camera.h"
 
 namespace promin::app {
 

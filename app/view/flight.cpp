@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "work/camera.h"
-#include "work/quantiles.h"
-#include "work_names.h"
+#include "output/work_names.h"
+#include "work/pictures/camera.h"
+#include "work/pictures/quantiles.h"
 
 namespace promin::app {
 

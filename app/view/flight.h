@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "view/finished_frame.h"
-#include "work/camera_path.h"
+#include "view/display/finished_frame.h"
+#include "work/pictures/camera_path.h"
 
 namespace promin::app {
 

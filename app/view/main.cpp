@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "run_program.h"
+#include "output/run_program.h"
 #include "view/view_command.h"
 
 int main(int argc, char** argv) {

@@ -9,18 +9,18 @@
 #include <cstdlib>
 #include <memory>
 
-#include "load_options.h"
-#include "outputs.h"
+#include "options/load_options.h"
+#include "options/render_options.h"
+#include "options/tracing_options.h"
+#include "output/outputs.h"
+#include "output/run_program.h"
 #include "promin/error.h"
-#include "render_options.h"
-#include "run_program.h"
-#include "tracing_options.h"
 #include "view/viewer.h"
-#include "work/camera_choice.h"
-#include "work/camera_path.h"
-#include "work/check_spec.h"
-#include "work/tracing_run.h"
-#include "work/view_setup.h"
+#include "work/pictures/camera_choice.h"
+#include "work/pictures/camera_path.h"
+#include "work/pictures/tracing_run.h"
+#include "work/pictures/view_setup.h"
+#include "work/spec/check_spec.h"
 
 namespace promin::app {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "arguments.h"
+#include "options/arguments.h"
 
 namespace promin::app {
 

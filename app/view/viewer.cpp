@@ -10,12 +10,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "deferred_signals.h"
-#include "explanation.h"
+#include "output/deferred_signals.h"
+#include "output/explanation.h"
+#include "output/run_program.h"
 #include "promin/error.h"
 #include "promin/image.h"
-#include "run_program.h"
-#include "work/view_setup.h"
+#include "work/pictures/view_setup.h"
 
 namespace promin::app {
 namespace {

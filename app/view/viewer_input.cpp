@@ -7,12 +7,12 @@
 
 #include <cstdio>
 
-#include "outputs.h"
+#include "output/outputs.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "view/viewer.h"
-#include "work/check_spec.h"
-#include "work/tracing_run.h"
+#include "work/pictures/tracing_run.h"
+#include "work/spec/check_spec.h"
 
 namespace promin::app {
 

@@ -13,18 +13,18 @@
 #include <utility>
 #include <vector>
 
-#include "arguments.h"
 #include "bind.h"
+#include "options/arguments.h"
+#include "options/render_options.h"
+#include "options/spec_options.h"
+#include "options/typed_words.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/setup_stats.h"
 #include "records.h"
-#include "render_options.h"
-#include "spec_options.h"
-#include "typed_words.h"
-#include "work/picture_run.h"
-#include "work/view_setup.h"
+#include "work/pictures/picture_run.h"
+#include "work/pictures/view_setup.h"
 
 namespace nb = nanobind;
 

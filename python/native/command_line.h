@@ -17,7 +17,7 @@
 #include "promin/renderer.h"
 #include "promin/scene.h"
 #include "promin/view.h"
-#include "work/render_spec.h"
+#include "work/spec/render_spec.h"
 
 namespace promin::python {
 

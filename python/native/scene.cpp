@@ -21,10 +21,10 @@
 #include "promin/validate.h"
 #include "records.h"
 #include "watched.h"
-#include "work/camera_choice.h"
-#include "work/check_spec.h"
-#include "work/environment_choice.h"
-#include "work/view_setup.h"
+#include "work/pictures/camera_choice.h"
+#include "work/pictures/view_setup.h"
+#include "work/spec/check_spec.h"
+#include "work/spec/environment_choice.h"
 
 namespace nb = nanobind;
 

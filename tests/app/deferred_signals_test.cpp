@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "deferred_signals.h"
+#include "output/deferred_signals.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli_fixture.h"
-#include "explanation.h"
+#include "output/explanation.h"
 
 namespace promin {
 namespace {

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "cli_fixture.h"
-#include "work/frame_plan.h"
+#include "work/pictures/frame_plan.h"
 
 namespace promin {
 namespace {

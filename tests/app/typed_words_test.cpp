@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "typed_words.h"
+#include "options/typed_words.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,12 +8,12 @@
 #include <CLI/App.hpp>
 #include <sstream>
 
-#include "arguments.h"
-#include "cast_options.h"
-#include "console.h"
+#include "options/arguments.h"
+#include "options/cast_options.h"
+#include "options/render_options.h"
+#include "output/console.h"
 #include "promin/error.h"
-#include "render_options.h"
-#include "work/view_setup.h"
+#include "work/pictures/view_setup.h"
 
 namespace promin::app {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The version of results (engine/work/results_version.h), which jobs depend on: it must be raised if the stored
+// The version of results (engine/work/jobs/results_version.h), which jobs depend on: it must be raised if the stored
 // pictures or the casts of three scenes change. results.txt has the hashes of each, and the version at which they were
 // recorded. PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes it.
-#include "work/results_version.h"
+#include "work/jobs/results_version.h"
 
 #include <gtest/gtest.h>
 
@@ -122,9 +122,10 @@ TEST_F(ResultsTest, AreThoseOfTheirVersion) {
       if (!updates) std::printf("no %s is recorded; tools/update_goldens records it\n", subject.c_str());
       continue;
     }
-    EXPECT_EQ(known->second, hash) << "the results changed (" << subject
-                                   << "): raise kResultsVersion in engine/work/results_version.h, because jobs that "
-                                      "were begun before must not go on, and run tools/update_goldens";
+    EXPECT_EQ(known->second, hash)
+        << "the results changed (" << subject
+        << "): raise kResultsVersion in engine/work/jobs/results_version.h, because jobs that "
+           "were begun before must not go on, and run tools/update_goldens";
   }
   if (!updates || HasFailure()) return;
   stored.hashes.merge(now);

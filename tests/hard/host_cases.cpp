@@ -9,7 +9,7 @@
 #include "hard/hard_case.h"
 #include "support/gltf_builder.h"
 #include "support/scene_folder.h"
-#include "work/camera.h"
+#include "work/pictures/camera.h"
 
 namespace promin::hard {
 namespace {

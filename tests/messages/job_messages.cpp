@@ -6,19 +6,19 @@
 
 #include "cast_job.h"
 #include "command_job.h"
-#include "console.h"
+#include "commands/merge_command.h"
 #include "core/file.h"
-#include "job_words.h"
 #include "jobs/job.h"
-#include "merge_command.h"
 #include "merge_job.h"
 #include "messages/message_cases.h"
 #include "missing_pieces.h"
+#include "options/job_words.h"
+#include "output/console.h"
+#include "output/run_program.h"
 #include "picture_job.h"
 #include "promin/ray.h"
 #include "ray_source.h"
 #include "rays/npy.h"
-#include "run_program.h"
 
 namespace promin {
 namespace {

@@ -3,16 +3,16 @@
 #include <CLI/App.hpp>
 
 #include "app/cli_fixture.h"
-#include "bvh_commands.h"
-#include "cast_command.h"
-#include "compare_command.h"
-#include "devices_command.h"
-#include "info_command.h"
-#include "merge_command.h"
+#include "commands/bvh_commands.h"
+#include "commands/cast_command.h"
+#include "commands/compare_command.h"
+#include "commands/devices_command.h"
+#include "commands/info_command.h"
+#include "commands/merge_command.h"
+#include "commands/render_command.h"
+#include "commands/sheet_commands.h"
 #include "messages/message_cases.h"
-#include "render_command.h"
-#include "run_program.h"
-#include "sheet_commands.h"
+#include "output/run_program.h"
 
 namespace promin {
 namespace {

@@ -15,7 +15,7 @@
 #include "image/dither.h"
 #include "promin/display.h"
 #include "promin/image.h"
-#include "view/traced_picture.h"
+#include "view/display/traced_picture.h"
 
 namespace promin::app {
 namespace {

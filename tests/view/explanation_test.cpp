@@ -10,8 +10,8 @@
 #include <memory>
 
 #include "gpu/test_scenes.h"
-#include "view/overlay.h"
-#include "view/show_explanation.h"
+#include "view/panel/overlay.h"
+#include "view/panel/show_explanation.h"
 
 namespace promin::app {
 namespace {

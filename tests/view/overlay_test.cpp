@@ -3,7 +3,7 @@
 
 // The overlay without a window: its panel is laid out and clicked in memory.
 
-#include "view/overlay.h"
+#include "view/panel/overlay.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,13 +10,13 @@
 
 #include "device_scene/pack_scene.h"
 #include "support/temp_folder.h"
-#include "view/describe_command.h"
-#include "view/file_dialog.h"
+#include "view/display/screenshot.h"
 #include "view/flight.h"
 #include "view/keys.h"
-#include "view/scene_preparer.h"
-#include "view/screen_area.h"
-#include "view/screenshot.h"
+#include "view/panel/describe_command.h"
+#include "view/panel/screen_area.h"
+#include "view/scene/file_dialog.h"
+#include "view/scene/scene_preparer.h"
 
 namespace promin::app {
 namespace {

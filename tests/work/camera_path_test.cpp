@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "work/camera_path.h"
+#include "work/pictures/camera_path.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "promin/error.h"
 #include "support/temp_folder.h"
-#include "work/camera.h"
+#include "work/pictures/camera.h"
 
 namespace promin {
 namespace {

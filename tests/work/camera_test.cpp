@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "work/camera.h"
+#include "work/pictures/camera.h"
 
 #include <gtest/gtest.h>
 

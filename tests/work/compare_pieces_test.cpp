@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // What two devices may differ by on one piece of a job.
-#include "work/compare_pieces.h"
+#include "work/jobs/compare_pieces.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

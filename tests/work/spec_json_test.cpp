@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "work/spec_json.h"
+#include "work/spec/spec_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@
 #include <random>
 #include <set>
 
-#include "arguments.h"
-#include "cast_options.h"
+#include "options/arguments.h"
+#include "options/cast_options.h"
+#include "options/render_options.h"
 #include "promin/error.h"
-#include "render_options.h"
 
 namespace promin::work {
 namespace {

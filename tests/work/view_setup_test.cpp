@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include "work/view_setup.h"
+#include "work/pictures/view_setup.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,15 +8,15 @@
 #include <CLI/App.hpp>
 #include <cmath>
 
-#include "arguments.h"
-#include "console.h"
 #include "core/rounding.h"
-#include "pose_options.h"
+#include "options/arguments.h"
+#include "options/pose_options.h"
+#include "options/render_options.h"
+#include "output/console.h"
 #include "promin/error.h"
-#include "render_options.h"
 #include "support/problems.h"
-#include "work/camera_choice.h"
-#include "work/check_spec.h"
+#include "work/pictures/camera_choice.h"
+#include "work/spec/check_spec.h"
 
 namespace promin::app {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "run_program.h"
+#include "output/run_program.h"
 
 // The commands of promin-lab. Each adds its own options and returns its work.
 namespace promin::lab {

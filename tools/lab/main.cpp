@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/commands.h"
-#include "run_program.h"
+#include "output/run_program.h"
 
 int main(int argc, char** argv) {
   using namespace promin::lab;

@@ -17,6 +17,7 @@
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
 #include "measure/samples.h"
+#include "options/tracing_options.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "textbook_camera_stage.spv.h"
@@ -25,7 +26,6 @@
 #include "textbook_trace_shadow_rays.spv.h"
 #include "trace/render/caster_access.h"
 #include "trace/render/renderer_impl.h"
-#include "tracing_options.h"
 
 namespace promin::lab {
 namespace {

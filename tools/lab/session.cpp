@@ -14,7 +14,7 @@
 
 #include "core/file.h"
 #include "device/device.h"
-#include "tracing_options.h"
+#include "options/tracing_options.h"
 
 namespace promin::lab {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "arguments.h"
+#include "options/arguments.h"
 #include "promin/device.h"
 #include "promin/view.h"
 #include "scene/world_scene.h"

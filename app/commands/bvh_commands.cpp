@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/bvh_commands.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "bvh/find_tree_faults.h"
+#include "bvh/read_node.h"
+#include "core/file.h"
+#include "core/stopwatch.h"
+#include "device_scene/pack_scene.h"
+#include "options/load_options.h"
+#include "options/tracing_options.h"
+#include "output/console.h"
+#include "output/deferred_signals.h"
+#include "output/outputs.h"
+#include "output/progress.h"
+#include "output/rows.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
+
+namespace promin::app {
+namespace {
+
+constexpr const char* kProgram = "promin-bvh";
+constexpr uint32_t kMaxThreads = 1024;
+
+struct BvhOptions {
+  std::filesystem::path scene;
+  LoadOptions load;
+  std::filesystem::path file;
+  std::string builder{builder_names().front()};
+  /// 0 takes one thread per core.
+  unsigned thread_count = 0;
+  bool is_quiet = false;
+  bool is_verbose = false;
+
+  Verbosity verbosity() const { return verbosity_of(is_quiet, is_verbose); }
+};
+
+void add_scene_row(OptionTable& table, BvhOptions& options) {
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
+                     [&](const OptionValues& w) { options.scene = w.text(); });
+}
+
+void add_file_row(OptionTable& table, BvhOptions& options) {
+  table.add_required("FILE.pbvh", "", "BVH file of promin-bvh build",
+                     [&](const OptionValues& w) { options.file = w.text(); });
+}
+
+void add_common_rows(OptionTable& table, BvhOptions& options) {
+  add_strict_option(table, options.load);
+  add_root_option(table, options.load);
+  table.add("--threads", "N", fmt::format("Number of threads, 1 to {} [one per core]", kMaxThreads),
+            [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
+  table.add_flag("--quiet", "Print only errors", options.is_quiet);
+  table.add_flag("-v,--verbose", "Print each step and how long it takes", options.is_verbose);
+}
+
+Scene load(const BvhOptions& options, const Console& console) {
+  const Stopwatch loading;
+  Scene scene = load_scene(options.scene, options.load);
+  for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
+  console.detail(fmt::format("loaded {}: {:.1f} ms", options.scene.string(), loading.ms()));
+  return scene;
+}
+
+void build(const BvhOptions& options) {
+  if (lower_case_ending(options.file) != ".pbvh") {
+    throw UsageError({"output.ending", "the output's ending \"" + options.file.extension().string() + "\" is unknown",
+                      options.file.string(), "use .pbvh"});
+  }
+  check_outputs({options.scene}, {options.file}, std::nullopt);
+  const Console console(options.verbosity(), kProgram);
+  const Scene scene = load(options, console);
+
+  PackedScene packed;
+  {
+    Progress progress(console.is_quiet(), kProgram);
+    packed = pack_scene(world::flatten(scene, world::Purpose::kHits), options.builder,
+                        {options.thread_count, progress.callback()});
+  }
+  const TreeView tree = packed.tree();
+  console.detail(fmt::format("built {} nodes, depth {}: {:.1f} ms", tree.stats.nodes, tree.stats.depth, packed.bvh_ms));
+
+  const DeferredSignals while_writing;
+  const Stopwatch writing;
+  write_bvh_file(options.file, tree);
+  console.detail(fmt::format("wrote {}: {:.1f} ms", options.file.string(), writing.ms()));
+  if (!console.is_quiet()) {
+    fmt::print("{} references to {} primitives by {}, SAH cost {:.4g}, in {:.1f} ms: {}\n", tree.references.size(),
+               tree.primitive_count, tree.stats.builder, tree.stats.sah_cost, packed.bvh_ms, options.file.string());
+  }
+}
+
+/// Leaves by their size.
+std::string describe_leaf_sizes(const TreeView& tree) {
+  std::map<uint32_t, uint64_t> counts;
+  for (const layout::Node& node : tree.nodes) {
+    for (uint32_t i = 0; i < layout::NODE_WIDTH; ++i) {
+      const NodeChild child = child_of(node, i);
+      if (child.kind == ChildKind::kLeaf) ++counts[child.count];
+    }
+  }
+  std::vector<std::string> texts;
+  for (const auto& [size, count] : counts) texts.push_back(fmt::format("{}: {}", size, count));
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string describe_memory(const TreeView& tree) {
+  const auto per_primitive = [&](double bytes) { return bytes / std::max(1U, tree.primitive_count); };
+  const auto nodes = static_cast<double>(tree.nodes.size_bytes());
+  const double records =
+      static_cast<double>(tree.references.size()) * (sizeof(layout::Primitive) + sizeof(layout::SurfaceRecord));
+  return fmt::format("{:.1f} bytes per primitive on the device: {:.1f} of nodes, {:.1f} of the contents of leaves",
+                     per_primitive(nodes + records), per_primitive(nodes), per_primitive(records));
+}
+
+void print_info(const std::filesystem::path& path) {
+  const BvhFile file(path);
+  const TreeView& tree = file.tree();
+  print_row("file", fmt::format("{}, {} bytes", path.string(), file.size_bytes()));
+  print_row("builder", tree.stats.builder);
+  print_row("primitives", std::to_string(tree.primitive_count));
+  print_row("references",
+            fmt::format("{} ({:.3f} a primitive)", tree.references.size(),
+                        static_cast<double>(tree.references.size()) / std::max(1U, tree.primitive_count)));
+  print_row("SAH cost", fmt::format("{:.6g}", tree.stats.sah_cost));
+  print_row("depth", fmt::format("{}; the traversal stack takes {}", tree.stats.depth, tree.stack_size));
+  print_row("nodes", fmt::format("{} of two children, {} of up to {} on the device",
+                                 tree.stats.nodes - tree.stats.leaves, tree.nodes.size(), layout::NODE_WIDTH));
+  print_row("leaves", fmt::format("{} (by size: {})", tree.stats.leaves, describe_leaf_sizes(tree)));
+  print_row("memory", describe_memory(tree));
+  print_row("scene hash", fmt::format("{:016x}", tree.geometry_hash));
+}
+
+void verify(const BvhOptions& options) {
+  const Console console(options.verbosity(), kProgram);
+  const Scene scene = load(options, console);
+  const PackedScene packed = pack_scene_with(options.file, world::flatten(scene, world::Purpose::kHits));
+  console.detail(fmt::format("read {}: {:.1f} ms", options.file.string(), packed.bvh_ms));
+  TreeFaults faults;
+  {
+    Progress progress(console.is_quiet(), kProgram);
+    faults = find_tree_faults(packed, {options.thread_count, progress.callback()});
+  }
+  if (faults.count > 0) {
+    throw InputError({"bvh.tree.wrong",
+                      fmt::format("the tree is wrong in {} places, first: {}", faults.count, faults.first),
+                      options.file.string(), "build it again with promin-bvh build"});
+  }
+  if (console.is_quiet()) return;
+  fmt::print("{} nodes, {} references to {} primitives, no fault: {}\n", packed.tree().nodes.size(),
+             packed.references.size(), packed.bounded_count, options.file.string());
+}
+
+}  // namespace
+
+Command add_build_command(CLI::App& program) {
+  CLI::App& command = add_command(program, "build", "Build the BVH of a scene and write it to a file");
+  const auto options = std::make_shared<BvhOptions>();
+  OptionTable table(command);
+  add_scene_row(table, *options);
+  table.add_required("-o,--output", "FILE.pbvh", "BVH file to write",
+                     [options](const OptionValues& w) { options->file = w.text(); });
+  table.add("--builder", "NAME",
+            fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), options->builder),
+            [options](const OptionValues& w) { options->builder = w.choice(builder_names()); });
+  add_common_rows(table, *options);
+  return {&command, [options] { build(*options); }};
+}
+
+Command add_bvh_info_command(CLI::App& program) {
+  CLI::App& command = add_command(program, "info", "Check a BVH file and describe its contents");
+  const auto options = std::make_shared<BvhOptions>();
+  OptionTable table(command);
+  add_file_row(table, *options);
+  return {&command, [options] { print_info(options->file); }};
+}
+
+Command add_verify_command(CLI::App& program) {
+  CLI::App& command = add_command(
+      program, "verify", "Check that a BVH file is complete and that its boxes contain the scene's primitives");
+  const auto options = std::make_shared<BvhOptions>();
+  OptionTable table(command);
+  add_scene_row(table, *options);
+  add_file_row(table, *options);
+  add_common_rows(table, *options);
+  return {&command, [options] { verify(*options); }};
+}
+
+}  // namespace promin::app

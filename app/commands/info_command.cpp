@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/info_command.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "device_scene/pack_scene.h"
+#include "device_scene/pack_shading.h"
+#include "environment/pack_sky.h"
+#include "options/load_options.h"
+#include "options/render_options.h"
+#include "output/console.h"
+#include "output/rows.h"
+#include "output/run_program.h"
+#include "output/scene_json.h"
+#include "promin/load_scene.h"
+#include "scene/features.h"
+#include "textures/pack_images.h"
+#include "work/pictures/scene_counts.h"
+#include "work/pictures/view_setup.h"
+#include "work/spec/environment_choice.h"
+
+namespace promin::app {
+namespace {
+
+std::string describe_objects(const SceneCounts& counts, const Scene& scene) {
+  std::vector<std::string> kinds;
+  for (size_t i = 0; i < counts.objects.size(); ++i) {
+    std::string name(kObjectNames[i]);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (counts.objects[i] > 0) kinds.push_back(fmt::format("{}: {}", name, counts.objects[i]));
+  }
+  if (kinds.empty()) return "0";
+  return fmt::format("{} ({})", scene.objects.size(), fmt::join(kinds, ", "));
+}
+
+std::string count_lights(const std::vector<Light>& lights) {
+  if (lights.empty()) return "0";
+  std::vector<std::string> kinds;
+#define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)                     \
+  if (LightKind::ENUMERATOR != LightKind::kHeadlight) {                                        \
+    const auto is_it = [](const Light& light) { return light.kind == LightKind::ENUMERATOR; }; \
+    kinds.push_back(fmt::format("{}: {}", #PREFIX, std::ranges::count_if(lights, is_it)));     \
+  }
+#include "promin/kinds/lights.def"
+  return fmt::format("{} ({})", lights.size(), fmt::join(kinds, ", "));
+}
+
+std::string describe_background(const Environment& environment, const AssumedLight& assumed) {
+  if (environment.shows_sky) return "the sky";
+  const auto words_of = [](const vec3& color) {
+    return fmt::format("{:.4g} {:.4g} {:.4g}", color.r, color.g, color.b);
+  };
+  if (!environment.backdrop) return words_of(environment.background);
+  const Backdrop& backdrop = *environment.backdrop;
+  return fmt::format("{} above to {} below, as shown{}", words_of(backdrop.top), words_of(backdrop.bottom),
+                     assumed.has_background ? " (assumed)" : "");
+}
+
+std::string describe_display(const DisplayTransform& display) {
+  return fmt::format("exposure {:+g} EV, tone mapping {}", display.exposure_ev,
+                     tone_mapping_names()[static_cast<size_t>(display.tone_mapping)]);
+}
+
+/// A place in the scene as one in the world.
+std::string describe_place(const vec3& place, const dvec3& center, int digits) {
+  const dvec3 world = center + dvec3(place);
+  // Far from the origin the digits of the scene's own coordinates would not be enough.
+  if (center != dvec3(0.0)) digits = 12;
+  return fmt::format("{:.{}g} {:.{}g} {:.{}g}", world.x, digits, world.y, digits, world.z, digits);
+}
+
+std::string describe_camera(size_t index, const Camera& camera, const dvec3& center) {
+  std::string text = fmt::format("{} {}", index, camera.name.empty() ? "(no name)" : camera.name);
+  if (camera.projection == Projection::kPerspective) {
+    text += fmt::format(", perspective, vertical field of view {:.4g} degrees", glm::degrees(camera.yfov));
+  } else {
+    text += fmt::format(", orthographic, {:.4g} units high", 2.0F * camera.ymag);
+  }
+  if (camera.resolution != uvec2(0)) text += fmt::format(", {}x{}", camera.resolution.x, camera.resolution.y);
+  if (camera.aspect_ratio > 0.0F) text += fmt::format(", aspect ratio {:.4g}", camera.aspect_ratio);
+  text += fmt::format(", near {:.4g}, eye {}", camera.near, describe_place(camera.eye, center, 4));
+  return text;
+}
+
+std::vector<std::string> describe_cameras(const Scene& scene) {
+  if (scene.cameras.empty()) return {"0; assumed: " + describe_framing(framing_of(scene))};
+  std::vector<std::string> rows;
+  for (size_t i = 0; i < scene.cameras.size(); ++i) {
+    rows.push_back(describe_camera(i, scene.cameras[i], scene.center));
+  }
+  return rows;
+}
+
+struct SkyDescription {
+  std::string operator()(std::monostate) const { return "none"; }
+  std::string operator()(const Studio&) const { return "studio"; }
+  std::string operator()(const GradientSky&) const { return "gradient"; }
+  std::string operator()(const Panorama& panorama) const {
+    return fmt::format("panorama of {}x{}", panorama.image->size.x, panorama.image->size.y);
+  }
+};
+
+std::string describe_sky(const Environment& environment) {
+  std::string text = std::visit(SkyDescription(), environment.sky);
+  if (!environment.has_sky()) return text;
+  if (environment.rotation != 0.0F) {
+    text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
+  }
+  if (environment.intensity != 1.0F) text += fmt::format(", times {:.4g}", environment.intensity);
+  return text;
+}
+
+std::string describe_bounds(const Bounds& bounds, const dvec3& center) {
+  if (bounds.is_empty()) return "nothing finite";
+  return describe_place(bounds.lo, center, 6) + " to " + describe_place(bounds.hi, center, 6);
+}
+
+/// The file's extensions, grouped by whether they are used.
+std::vector<std::string> describe_extensions(const Scene& scene) {
+  std::vector<std::string> rows;
+  for (const bool is_used : {true, false}) {
+    std::vector<std::string> names;
+    for (const FileExtension& extension : scene.extensions) {
+      if (extension.is_used == is_used) names.push_back(extension.name + (extension.is_required ? " (required)" : ""));
+    }
+    if (!names.empty()) rows.push_back(fmt::format("{}: {}", is_used ? "used" : "ignored", fmt::join(names, ", ")));
+  }
+  return rows.empty() ? std::vector<std::string>{"none"} : rows;
+}
+
+/// Sizes of images with how many have them, the largest first.
+std::vector<std::string> describe_image_sizes(const Scene& scene) {
+  std::map<std::pair<uint64_t, uint32_t>, size_t, std::greater<>> counts;
+  for (const auto& image : scene.images) ++counts[{uint64_t{image->size.x} * image->size.y, image->size.x}];
+  std::vector<std::string> sizes;
+  for (const auto& [key, count] : counts) {
+    const auto [area, width] = key;
+    sizes.push_back(area == 0 ? fmt::format("{} absent", count)
+                              : fmt::format("{} of {}x{}", count, width, area / width));
+  }
+  return sizes;
+}
+
+std::string describe_textures(const Scene& scene, uint64_t image_bytes) {
+  if (scene.textures.empty()) return "0";
+  return fmt::format("{} of {} images ({}), {:.3f} MB on the device{}", scene.textures.size(), scene.images.size(),
+                     fmt::join(describe_image_sizes(scene), ", "), 1e-6 * static_cast<double>(image_bytes),
+                     image_bytes > kDefaultTextureBytes ? ", more than --texture-memory leaves them by default" : "");
+}
+
+struct InfoOptions {
+  std::filesystem::path file;
+  LoadOptions load;
+  EnvironmentOptions environment;
+  /// Whether images are not decoded.
+  bool skips_texels = false;
+  bool is_json = false;
+};
+
+/// Adds warnings of `promin render` that depend on the scene and were not found in the file.
+void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surroundings) {
+  for (const std::string& warning : surroundings.warnings()) scene.warnings.push_back(warning);
+  const std::optional<Problem> halved = warn_of(fit_images(scene.images, scene.textures, kDefaultTextureBytes));
+  if (halved) scene.warnings.push_back(message_of(*halved));
+  if (scene.cameras.empty() || default_size(scene.cameras.front())) return;
+  scene.warnings.push_back(fmt::format("the camera's aspect ratio of {} gives no sensible width; give --size",
+                                       scene.cameras.front().aspect_ratio));
+}
+
+/// A scene as it would be rendered, with added lights.
+struct LitScene {
+  AssumedLight assumed;
+  world::Scene flat;
+  /// Without texels.
+  PackedScene packed;
+};
+
+LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
+  LitScene lit{.assumed = light_up(scene, {}, surroundings), .flat = world::flatten(scene), .packed = {}};
+  for (auto& image : lit.flat.images) {
+    image = std::make_shared<const TextureImage>(TextureImage{image->name, image->size, {}, image->use});
+  }
+  lit.packed = pack_scene(lit.flat, builder_names().front());
+  for (const Problem& warning : lit.packed.warnings) scene.warnings.push_back(message_of(warning));
+  return lit;
+}
+
+void print_json(Scene scene, const EnvironmentChoice& surroundings) {
+  nlohmann::json json = json_of(scene);
+  const LitScene lit = light_and_pack(scene, surroundings);
+  const DisplayTransform display = display_of(scene);
+  json["counts"]["degenerate_triangles"] = lit.packed.degenerate_count;
+  json["environment"] = json_of(scene.environment);
+  json["display"] = json_of(display);
+  json["assumed"] = list_assumptions(scene, {}, lit.assumed, display);
+  json["features"] = feature_names(features_of(lit.flat));
+  json["warnings"] = scene.warnings;
+  fmt::print("{}", write_json(json));
+}
+
+/// Returns the number of materials, and the names of the first.
+std::string describe_materials(const Scene& scene) {
+  constexpr size_t kMostNames = 12;
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) {
+    if (!material.name.empty()) names.push_back(material.name);
+  }
+  std::string text = std::to_string(scene.materials.size());
+  if (names.empty()) return text;
+  const bool is_cut = names.size() > kMostNames;
+  names.resize(std::min(names.size(), kMostNames));
+  return fmt::format("{} ({}{})", text, fmt::join(names, ", "), is_cut ? ", ..." : "");
+}
+
+void print_table(Scene scene, const std::filesystem::path& file, const EnvironmentChoice& surroundings) {
+  const SceneCounts counts = count_scene(scene);
+  const uint64_t image_bytes = packed_image_bytes(scene.images, scene.textures);
+  std::string lights = count_lights(scene.lights);
+  const LitScene lit = light_and_pack(scene, surroundings);
+  if (const std::string light = describe_light(lit.assumed); !light.empty()) lights.append("; assumed: ").append(light);
+  const PackedScene& packed = lit.packed;
+  print_row("scene", file.string());
+  print_row("objects", describe_objects(counts, scene));
+  print_row("primitives", std::to_string(counts.primitives));
+  print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
+  print_row("materials", describe_materials(scene));
+  print_row("textures", describe_textures(scene, image_bytes));
+  if (!scene.variants.empty()) print_rows("variants", scene.variants);
+  print_row("lights", lights);
+  print_row("background", describe_background(scene.environment, lit.assumed));
+  print_row("sky", describe_sky(scene.environment));
+  print_row("display", describe_display(display_of(scene)));
+  print_rows("cameras", describe_cameras(scene));
+  print_row("bounds", describe_bounds(bounds_of(scene), scene.center));
+  if (scene.center != dvec3(0.0)) print_row("center", describe_place(vec3(0.0F), scene.center, 6));
+  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(lit.flat)), ", ")));
+  print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
+                               packed.bvh.depth, packed.bvh.sah_cost));
+  const uint64_t shading_bytes = scene.materials.size() * sizeof(layout::MaterialRecord) +
+                                 pack_lights(scene.lights).records.size() * sizeof(layout::LightRecord) +
+                                 packed_sky_bytes(scene.environment) + image_bytes;
+  print_row("memory", fmt::format("{:.3f} MB of geometry on the host, {:.3f} MB on the device",
+                                  1e-6 * static_cast<double>(counts.geometry_bytes),
+                                  1e-6 * static_cast<double>(packed.size_bytes() + shading_bytes)));
+  print_rows("extensions", describe_extensions(scene));
+  print_rows("warnings", scene.warnings.empty() ? std::vector<std::string>{"none"} : scene.warnings);
+}
+
+void print_info(const InfoOptions& options) {
+  LoadOptions load = options.load;
+  load.decodes_images = !options.skips_texels;
+  Scene scene = load_scene(options.file, load);
+  const EnvironmentChoice surroundings(options.environment);
+  add_warnings_of_pictures(scene, surroundings);
+  if (options.is_json) {
+    print_json(std::move(scene), surroundings);
+  } else {
+    print_table(std::move(scene), options.file, surroundings);
+  }
+}
+
+}  // namespace
+
+Command add_info_command(CLI::App& program) {
+  CLI::App& command = add_command(program, "info", "Print the contents of a scene and which parts of it are modelled");
+  const auto options = std::make_shared<InfoOptions>();
+  OptionTable table(command);
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
+                     [options](const OptionValues& w) { options->file = w.text(); });
+  add_strict_option(table, options->load);
+  add_root_option(table, options->load);
+  add_variant_option(table, options->load);
+  add_environment_options(table, options->environment);
+  table.add_flag("--json", "Print JSON (docs/usage.md, \"Scenes as JSON\")", options->is_json);
+  table.add_flag("--no-texels", "Read only the sizes of images: faster, but damaged images are not found",
+                 options->skips_texels);
+  return {&command, [options] { print_info(*options); }};
+}
+
+}  // namespace promin::app

@@ -1,0 +1,448 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/render_command.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "commands/job_run.h"
+#include "core/count_of.h"
+#include "core/file.h"
+#include "core/stopwatch.h"
+#include "formats/file_kind.h"
+#include "options/render_help.h"
+#include "options/render_options.h"
+#include "options/spec_options.h"
+#include "options/tracing_options.h"
+#include "output/console.h"
+#include "output/deferred_signals.h"
+#include "output/explanation.h"
+#include "output/outputs.h"
+#include "output/picture_spool.h"
+#include "output/progress.h"
+#include "output/standard_output.h"
+#include "promin/error.h"
+#include "promin/image.h"
+#include "trace/film/refinement.h"
+#include "work/jobs/picture_job.h"
+#include "work/jobs/render_job.h"
+#include "work/pictures/picture_files.h"
+#include "work/pictures/picture_run.h"
+#include "work/pictures/tracing_run.h"
+#include "work/spec/check_spec.h"
+
+namespace promin::app {
+namespace {
+
+/// A picture that takes longer than this factor of its time limit is late.
+constexpr double kLateShare = 1.2;
+/// With less than this share of the time limit a picture could have used more of it.
+constexpr double kEarlyShare = 0.67;
+
+PictureHeader make_header(const RenderSpec& options, const Scene& scene, const std::optional<uint32_t>& frame,
+                          const RunStats& stats) {
+  const View& view = *stats.view;
+  AovHeader aovs = describe_aovs(scene, options.aovs, options.hides_unlit, view.depth_kind);
+  PictureHeader header;
+  header.size = window_of(view).hi - window_of(view).lo;
+  if (view.crop) header.crop = CropPlacement{view.crop->lo, view.size};
+  header.metadata = make_metadata(stats, frame, aovs);
+  header.channels = std::move(aovs.channels);
+  header.display = stats.display;
+  header.exr = options.exr;
+  return header;
+}
+
+/// Returns the samples per pixel and, with an error target, the accuracy of several frames together.
+std::string describe_samples(const RunStats& stats) {
+  if (stats.errors.empty() || !stats.view->error_target) return fmt::format("{} spp", stats.view->samples_per_pixel);
+  PictureError all = stats.errors.front();
+  for (const PictureError& error : std::span(stats.errors).subspan(1)) all += error;
+  const auto [least, most] = std::ranges::minmax(stats.errors, {}, &PictureError::target);
+  const auto pictures = static_cast<double>(stats.errors.size());
+  return fmt::format("{:.4g} spp, {}{}", mean_samples(*stats.view, all) / pictures,
+                     describe_errors(least.target, most.target, *stats.view->error_target), describe_unmet(all));
+}
+
+/// Returns the options that reproduce the last picture of a time limit.
+std::string describe_reached(const RunStats& stats) {
+  const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
+  if (!stats.view->error_target)
+    return fmt::format("the same picture{} again: --spp {}", name, stats.view->samples_per_pixel);
+  ErrorTarget target = *stats.view->error_target;
+  target.error = stats.errors.back().target;
+  return fmt::format("the same picture{} again: {}", name, describe_options(target));
+}
+
+/// Reports the result of a time limit.
+void tell_reached(const RunStats& stats, double limit_s, double taken_s, const Console& console) {
+  if (taken_s > kLateShare * limit_s) {
+    const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
+    console.note(fmt::format("the picture took {:.1f} s, longer than the limit of {:g} s{}", taken_s, limit_s,
+                             is_least ? ": even one sample a pixel takes longer" : ""));
+  }
+  const uint32_t samples = stats.view->samples_per_pixel;
+  if (!stats.view->error_target && samples < kDefaultSamples) {
+    const double sample_s = 1e-3 * stats.median_trace_ms() / samples;
+    console.note(fmt::format("the time sufficed for {} of the usual {} samples a pixel, which take about {:.0f} s",
+                             samples, kDefaultSamples, taken_s + (kDefaultSamples - samples) * sample_s));
+  }
+  const bool can_refine = !stats.errors.empty() && stats.errors.back().unmet_pixels > 0 &&
+                          stats.view->error_target->max_samples < kMaxRefinedSamples;
+  if (taken_s < kEarlyShare * limit_s && can_refine) {
+    const uint32_t most = stats.view->error_target->max_samples;
+    console.note(
+        fmt::format("the picture ended before the limit, because --max-spp allows {} samples a pixel; "
+                    "--max-spp {} uses more of the time",
+                    most, std::min(4 * most, kMaxRefinedSamples)));
+  }
+  console.note(describe_reached(stats));
+}
+
+std::string summarize(const RunStats& stats, const RenderSpec& options) {
+  const std::string frames = stats.frames.empty() ? "" : count_of(stats.frames.size(), "frame") + ", ";
+  const std::string time_of = stats.frames.empty() ? "" : " a frame";
+  return fmt::format("{}x{}, {}, {}{:.1f} s, {:.4g} Mrays in {:.1f} ms{} ({:.3g} Mrays/s) on {}: {}",
+                     stats.view->size.x, stats.view->size.y, describe_samples(stats), frames, 1e-3 * stats.total_ms,
+                     1e-6 * static_cast<double>(stats.rays.total()), stats.median_trace_ms(), time_of,
+                     stats.mrays_per_s(), stats.device.name, fmt::join(names_of(name_pictures(options)), ", "));
+}
+
+/// Sets an exposure that is computed from the picture; the first frame of a path determines it for all.
+void expose_by_first(const RenderSpec& options, const RenderResult& result, RunStats& stats) {
+  const bool is_first = stats.frames.size() <= 1;
+  if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
+  stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object, result.aovs.unlit);
+}
+
+/// Returns whether a picture is traced by one call, because it is needed as a whole or limited by time.
+bool is_traced_whole(const RenderSpec& options) {
+  return options.error.time_limit_s || options.view.look.averages_exposure;
+}
+
+/// Traces a frame and writes its pictures: of large ones a band while the next is traced or, where the files begin with
+/// the error that the whole comes to, once all is traced.
+class FrameRendering {
+ public:
+  /// `limit_s` is the remaining time of a time limit.
+  FrameRendering(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
+                 const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                 std::function<void(double)> on_progress)
+      : planned_(planned),
+        options_(options),
+        limit_s_(limit_s),
+        device_(device),
+        scene_(scene),
+        renderer_(renderer),
+        stats_(stats),
+        on_progress_(std::move(on_progress)),
+        window_(window_of(*stats.view)),
+        channels_(describe_aovs(scene, options.aovs, options.hides_unlit, stats.view->depth_kind).channels),
+        bands_(is_traced_whole(options) ? std::vector{window_} : cut_bands(window_, 3 + channels_.size())),
+        trace_ms_(options.tracing.repeat_count, 0.0) {}
+
+  void run() {
+    if (planned_.number) stats_.frames.push_back(*planned_.number);
+    if (options_.error.is_given() && bands_.size() > 1) {
+      write_when_traced();
+    } else {
+      write_while_tracing();
+    }
+    if (planned_.number) {
+      stats_.trace_ms.push_back(median(trace_ms_));
+    } else {
+      stats_.trace_ms = trace_ms_;
+    }
+  }
+
+ private:
+  /// Of the picture's work where it is written when it is traced; few samples and many channels make it more.
+  static constexpr double kWritingShare = 0.05;
+
+  /// Traces the picture, or a part of it.
+  PictureRows trace_part(const std::optional<PixelWindow>& part, const ProgressCallback& on_progress) {
+    View view = *stats_.view;
+    if (part) view.crop = part;
+    TracedFrame traced = trace(renderer_, view, options_, limit_s_, on_progress);
+    RenderResult& result = traced.result;
+    if (!result.error) {
+      stats_.view->error_target.reset();
+      stats_.view->samples_per_pixel = result.samples_per_pixel;
+    }
+    check_validation(device_, stats_);
+    stats_.rays += result.rays;
+    if (result.error) {
+      if (!error_) error_.emplace(PictureError{.target = result.error->target});
+      *error_ += *result.error;
+    }
+    for (size_t i = 0; i < trace_ms_.size(); ++i) trace_ms_[i] += traced.trace_ms[i];
+    expose_by_first(options_, result, stats_);
+    // Rows of a wide picture with all AOVs take much memory, so at most two copies exist at a time.
+    if (files_) files_->wait();
+    return {std::move(result.image),
+            make_channels(scene_, std::move(result.aovs), options_.aovs, options_.hides_unlit)};
+  }
+
+  void open_files() {
+    if (error_) stats_.errors.push_back(*error_);
+    // From here on signals are deferred until no temporary file remains.
+    while_writing_.emplace();
+    files_.emplace(planned_.pictures, make_header(options_, scene_, planned_.number, stats_));
+  }
+
+  void write_while_tracing() {
+    const auto rows = static_cast<double>(window_.hi.y - window_.lo.y);
+    for (const PixelWindow& band : bands_) {
+      PictureRows traced = trace_part(bands_.size() > 1 ? std::optional(band) : std::nullopt, [&](double fraction) {
+        on_progress_((band.lo.y - window_.lo.y + fraction * (band.hi.y - band.lo.y)) / rows);
+        return !while_writing_ || !while_writing_->is_pending();
+      });
+      const Stopwatch write;
+      if (!files_) open_files();
+      files_->write_rows(std::move(traced.image), std::move(traced.channels));
+      stats_.write_ms += write.ms();
+    }
+    commit();
+  }
+
+  void write_when_traced() {
+    std::optional<PictureSpool> spool;
+    {
+      const DeferredSignals while_making;
+      spool.emplace(planned_.pictures.front(), window_, channels_);
+    }
+    double pixels_done = 0.0;
+    const auto pixels = static_cast<double>(area_of(window_));
+    for (const PixelWindow& part : parts_to_refine(window_)) {
+      const auto part_pixels = static_cast<double>(area_of(part));
+      const PictureRows traced = trace_part(part, [&](double fraction) {
+        on_progress_((1.0 - kWritingShare) * (pixels_done + fraction * part_pixels) / pixels);
+        return true;
+      });
+      spool->write(part, traced.image, traced.channels);
+      pixels_done += part_pixels;
+    }
+    const Stopwatch write;
+    open_files();
+    for (size_t i = 0; i < bands_.size(); ++i) {
+      if (while_writing_->is_pending()) throw Cancelled();
+      on_progress_(1.0 - kWritingShare * (1.0 - static_cast<double>(i) / static_cast<double>(bands_.size())));
+      PictureRows rows = spool->read(bands_[i]);
+      files_->write_rows(std::move(rows.image), std::move(rows.channels));
+    }
+    stats_.write_ms += write.ms();
+    commit();
+  }
+
+  void commit() {
+    const Stopwatch write;
+    files_->commit();
+    stats_.write_ms += write.ms();
+  }
+
+  const PlannedFrame& planned_;
+  const RenderSpec& options_;
+  std::optional<double> limit_s_;
+  const gpu::Device& device_;
+  const Scene& scene_;
+  Renderer& renderer_;
+  RunStats& stats_;
+  std::function<void(double)> on_progress_;
+  PixelWindow window_;
+  /// Beside R, G and B, without values.
+  std::vector<Channel> channels_;
+  std::vector<PixelWindow> bands_;
+  /// Of each repetition.
+  std::vector<double> trace_ms_;
+  std::optional<PictureError> error_;
+  // In this order, so that uncommitted files are removed before a signal ends the program.
+  std::optional<DeferredSignals> while_writing_;
+  std::optional<PictureFiles> files_;
+};
+
+/// About how long it takes to write pictures of a view.
+double writing_s(const View& view, size_t pictures) {
+  constexpr double kSecondsPerPixel = 3e-7;
+  return kSecondsPerPixel * static_cast<double>(area_of(window_of(view))) * static_cast<double>(pictures);
+}
+
+/// Renders all frames after loading once. An error names its frame; the pictures of earlier frames are complete.
+void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& options, const Stopwatch& total,
+                   const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                   const Console& console) {
+  Progress progress(console.is_quiet());
+  const View asked = *stats.view;
+  const std::optional<double> limit_s = options.error.time_limit_s;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const PlannedFrame& frame = frames[i];
+    const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
+    stats.view = asked;
+    if (frame.camera) stats.view->camera = *frame.camera;
+    // The first frame's time includes loading and compiling; each frame's time includes writing its pictures.
+    const Stopwatch of_frame;
+    const auto taken_s = [&] { return 1e-3 * (i == 0 ? total : of_frame).ms(); };
+    std::optional<double> left_s;
+    if (limit_s) left_s = *limit_s - taken_s() - writing_s(*stats.view, frame.pictures.size());
+    try {
+      const auto on_progress = [&](double fraction) {
+        progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
+      };
+      FrameRendering(frame, options, left_s, device, scene, renderer, stats, on_progress).run();
+      if (limit_s) {
+        progress.clear();
+        tell_reached(stats, *limit_s, taken_s(), console);
+      }
+    } catch (const RunError& error) {
+      if (name.empty()) throw;
+      std::vector<Problem> problems = error.problems();
+      std::string& where = problems.front().where;
+      where += (where.empty() ? "" : ": ") + name;
+      throw RunError(problems);
+    }
+  }
+}
+
+std::vector<std::filesystem::path> input_files(const RenderSpec& options) {
+  std::vector<std::filesystem::path> files = input_files(options.tracing);
+  if (options.path) files.push_back(*options.path);
+  if (options.view.environment.panorama) files.push_back(*options.view.environment.panorama);
+  return files;
+}
+
+std::vector<std::filesystem::path> pictures_of(const std::vector<PlannedFrame>& frames) {
+  std::vector<std::filesystem::path> files;
+  for (const PlannedFrame& frame : frames) files.insert(files.end(), frame.pictures.begin(), frame.pictures.end());
+  return files;
+}
+
+bool is_file_there(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::exists(file, error);
+}
+
+/// Returns whether all pictures of a frame exist; folders and empty files do not count.
+bool is_there(const PlannedFrame& frame) {
+  return std::ranges::all_of(frame.pictures, [](const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(file, error) && std::filesystem::file_size(file, error) > 0 && !error;
+  });
+}
+
+/// Throws UsageError if a file with a default name exists, unless it is promin's picture of a scene of this name.
+void check_default_names(const std::vector<std::filesystem::path>& pictures, const std::string& scene) {
+  const auto found = std::ranges::find_if(
+      pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
+  if (found == pictures.end()) return;
+  throw UsageError({"output.foreign", found->string() + " exists already and promin did not make it from " + scene, "",
+                    "name the file to write by -o"});
+}
+
+/// Throws UsageError if several pictures would be written to the standard output.
+void check_standard_output(const RenderSpec& options) {
+  const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
+  if (count == 0) return;
+  const auto refuse = [](const std::string& what) {
+    throw UsageError({"output.standard.taken", what, "", "name a file"});
+  };
+  if (count > 1) refuse("-o - is given twice");
+  if (options.path) refuse("-o - takes one picture, not the frames of --path");
+  if (options.job.folder) refuse("-o - and --job contradict each other");
+}
+
+/// Continues a job, and writes its pictures if all pieces are done. Calls `begin` when all checks have passed.
+void render_job(const RenderSpec& given, PictureRun run, const Console& console, const std::function<void()>& begin) {
+  const RenderSpec options = run.options;
+  RunStats stats;
+  const JobSteps steps = {.begin = begin,
+                          .open_device = [&] { return open_device_for(options.tracing, stats, console); },
+                          .files = options.pictures};
+  run_job(*plan_pictures(given, std::move(run), console), options.job, steps, console);
+}
+
+void render(const RenderSpec& given, bool prints_spec) {
+  const Stopwatch total;
+  const TracingOptions& tracing = given.tracing;
+  const Console console(verbosity_of(given.tracing));
+  check_render_spec(given);
+  if (prints_spec) return print_spec(given);
+  check_standard_output(given);
+  // A file that is not a scene is refused before pictures are named after it.
+  check_scene_name(tracing.scene);
+  RenderSpec options = given;
+  const StandardOutput standard_output(options.pictures);
+  options.pictures = name_pictures(options);
+  check_pictures(options.pictures);
+  std::vector<PlannedFrame> frames = plan_frames(options);
+  const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
+  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
+  const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
+  check_outputs(input_files(options), pictures_of(frames), tracing.stats);
+  if (skipped > 0) {
+    console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
+                             count_of(skipped + frames.size(), "frame")));
+  }
+  if (frames.empty()) {
+    if (tracing.stats)
+      console.note(fmt::format("{} is not written, because nothing was traced", tracing.stats->string()));
+    return;
+  }
+
+  std::optional<StageNote> stage;
+  stage.emplace("loading", console);
+  PictureRun run = prepare_pictures(options, std::move(frames), console);
+  stage.reset();
+  options = run.options;
+  check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
+  const auto tell_names = [&] {
+    if (!given.pictures.empty() || options.pictures.empty()) return;
+    console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));
+  };
+  if (options.job.folder) {
+    render_job(given, std::move(run), console, tell_names);
+    return;
+  }
+  tell_names();
+  const Scene& scene = run.scene;
+  RunStats& stats = run.stats;
+  const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
+  stage.emplace("compiling", console);
+  Renderer renderer = make_renderer(
+      *device, scene, make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
+  stage.reset();
+  take_setup(renderer.setup_stats(), stats, console);
+  if (options.explained_pixel) {
+    const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
+    check_validation(*device, stats);
+    fmt::print("{}", explain_json(explanation, scene));
+    return;
+  }
+  render_frames(run.frames, options, total, *device, scene, renderer, stats, console);
+
+  const DeferredSignals while_writing;
+  stats.total_ms = total.ms();
+  tell_end(stats, console);
+  if (tracing.stats) write_text_file(*tracing.stats, to_json(stats));
+  if (!console.is_quiet()) fmt::print(standard_output.messages(), "{}\n", summarize(stats, given));
+  standard_output.write();
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& program) {
+  CLI::App& command = add_command(program, "render", "Render a picture of a scene");
+  const auto options = std::make_shared<RenderSpec>();
+  const auto prints_spec = std::make_shared<bool>(false);
+  add_spec_option(command, *options);
+  add_render_options(command, *options);
+  add_print_spec_option(command, *prints_spec);
+  arrange_help(program, command);
+  return {&command, [options, prints_spec] { render(*options, *prints_spec); }};
+}
+
+}  // namespace promin::app

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "options/render_help.h"
+
+#include "options/help.h"
+
+namespace promin::app {
+
+void arrange_help(CLI::App& program, CLI::App& render) {
+  add_examples(program, {{"promin model.glb", "writes model.png, and model.exr with linear light"},
+                         {"promin model.glb -o poster.jpg --size 4k", "writes one picture of 3840x2160 pixels"},
+                         {"promin model.glb -o cut.png --alpha", "leaves the background out"},
+                         {"promin model.glb -o layers.exr --aov depth,normal", "adds distances and normals"},
+                         {"promin compare before.png after.png", "prints how much two pictures differ"},
+                         {"promin info model.glb", "lists the contents of a file: cameras, lights, materials"}});
+  group_options(
+      render,
+      {{"Output", {"output", "size", "crop", "alpha", "aov", "depth", "half", "compression", "explain"}},
+       {"Quality",
+        {"quality", "spp", "target-error", "time-limit", "min-spp", "max-spp", "error-in", "filter", "filter-width",
+         "max-depth"}},
+       {"Camera",
+        {"from", "azimuth", "elevation", "roll", "zoom", "fit", "camera", "eye", "look-at", "direction", "up", "fov",
+         "near", "path", "frames", "fps", "skip-existing"}},
+       {"Look",
+        {"background", "light", "environment", "environment-rotation", "environment-intensity", "light-rotation",
+         "exposure", "tone-mapping", "dither", "no-shadows", "lights-off", "variant", "shading"}},
+       {"Jobs", {"job", "pieces", "tiles", "piece", "spec", "print-spec"}},
+       {"Expert", {}}});
+  add_examples(
+      render,
+      {{"promin render model.glb -o picture.png --size hd --spp 16", "takes 16 samples per pixel at 1280x720"},
+       {"promin render model.glb -o best.png --time-limit 20", "makes the best picture that takes about 20 seconds"},
+       {"promin render model.glb -o big.exr --job work",
+        "saves its work; the same command continues it after an interruption"}});
+}
+
+}  // namespace promin::app

@@ -1,0 +1,409 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "options/render_options.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "core/count_of.h"
+#include "core/suggest.h"
+#include "image/color_words.h"
+#include "image/picture_endings.h"
+#include "options/arguments.h"
+#include "options/job_options.h"
+#include "options/load_options.h"
+#include "options/pose_options.h"
+#include "options/tracing_options.h"
+#include "options/typed_words.h"
+#include "promin/aovs.h"
+#include "promin/error.h"
+#include "promin/image.h"
+#include "promin/validate.h"
+#include "promin/view.h"
+#include "trace/film/refinement.h"
+#include "work/pictures/camera_path.h"
+#include "work/spec/spec_json.h"
+
+namespace promin::app {
+namespace {
+
+constexpr std::string_view kEnvironment = "environment";
+constexpr std::string_view kLinear = "linear:";
+constexpr std::string_view kTransparent = "transparent";
+constexpr std::string_view kAuto = "auto";
+constexpr std::string_view kAverage = "average";
+constexpr std::string_view kCryptomatte = "cryptomatte";
+/// --aov and --shading take either.
+constexpr std::string_view kNormal = "normal";
+constexpr std::string_view kNormals = "normals";
+constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
+
+/// Reads names between commas.
+AovSet read_aovs(const OptionValues& words) {
+  AovSet choice;
+  for (std::string name : split_list(words.text())) {
+    if (name == kNormals) name = kNormal;
+    bool is_known = false;
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  if (name == #FIELD) is_known = choice.FIELD = true;
+#include "promin/kinds/aovs.def"
+    if (name == kCryptomatte) is_known = choice.cryptomatte = true;
+    if (is_known) continue;
+    std::vector<std::string_view> known(aov_names().begin(), aov_names().end());
+    known.push_back(kCryptomatte);
+    words.refuse(
+        fmt::format("--aov takes names from {}, separated by commas, not \"{}\"", fmt::join(known, ", "), name),
+        nearest_name(name, known));
+  }
+  return choice;
+}
+
+PixelWindow read_window(const OptionValues& words) {
+  const PixelWindow window = {{words.whole(0, 0, kMaxSide), words.whole(1, 0, kMaxSide)},
+                              {words.whole(2, 0, kMaxSide), words.whole(3, 0, kMaxSide)}};
+  if (window.lo.x >= window.hi.x || window.lo.y >= window.hi.y) {
+    words.refuse("--crop is empty: it takes X0 < X1 and Y0 < Y1");
+  }
+  return window;
+}
+
+/// Reads a name of an enumeration; the first `hidden` names are not for users.
+template <typename Enum>
+Enum read_name(const OptionValues& words, std::span<const std::string_view> names, size_t hidden = 0) {
+  const auto place = std::find(names.begin(), names.end(), words.choice(names.subspan(hidden)));
+  return static_cast<Enum>(place - names.begin());
+}
+
+/// Reads "640x480", "640" (the width), "x480" (the height) or a name. A missing side is 0.
+uvec2 read_size(const OptionValues& words) {
+  constexpr std::string_view kTimes = "\u00d7";
+  std::string text = words.text();
+  if (const std::optional<uvec2> named = find_named_size(text)) return *named;
+  if (const size_t at = text.find(kTimes); at != std::string::npos) {
+    text[at] = 'x';
+    text.erase(at + 1, kTimes.size() - 1);
+  }
+  const size_t by = text.find_first_of("xX,*");
+  const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
+  if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
+    words.refuse(fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"",
+                             fmt::join(size_names(), " or "), words.text()),
+                 nearest_name(text, size_names()));
+  }
+  const std::string height = by == std::string::npos ? "" : text.substr(by + 1);
+  const OptionValues sides = words.with({text.substr(0, by), height});
+  const auto read_side = [&](size_t i) { return sides.all()[i].empty() ? 0 : sides.whole(i, 1, kMaxSide); };
+  return {read_side(0), read_side(1)};
+}
+
+/// Three numbers of at most `most`.
+vec3 read_color(const OptionValues& words, double most) {
+  return vec3(dvec3(words.real(0, 0.0, most), words.real(1, 0.0, most), words.real(2, 0.0, most)));
+}
+
+[[noreturn]] void refuse_background(const OptionValues& words) {
+  std::vector<std::string_view> known = color_names();
+  known.push_back(kEnvironment);
+  const std::string_view near = words.text() == kTransparent ? "--alpha" : nearest_name(words.text(), known);
+  words.refuse(
+      fmt::format("--background takes the name of a colour, #rrggbb, three numbers from 0 to 1, {}R,G,B or {}, "
+                  "not \"{}\"",
+                  kLinear, kEnvironment, words.text()),
+      near);
+}
+
+BackgroundChoice read_background(const OptionValues& words) {
+  const std::string& first = words.text();
+  if (first == kEnvironment) return {.is_environment = true};
+  if (const std::optional<vec3> color = find_color(first)) return {.color = *color};
+  if (first.starts_with(kLinear)) {
+    const std::vector<std::string> parts = split_list(first.substr(kLinear.size()));
+    if (parts.size() != 3) refuse_background(words);
+    return {.is_linear = true, .color = read_color(words.with(parts), kMaxBackground)};
+  }
+  if (first.front() == '#' || std::isalpha(static_cast<unsigned char>(first.front())) != 0) refuse_background(words);
+  return {.color = read_color(words, 1.0)};
+}
+
+/// Reads an error as "0.02" or "1/64".
+float read_error(const OptionValues& words) {
+  // The shortest decimals of the smallest target, which programs print, represent a slightly smaller number.
+  const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
+  const std::optional<double> quotient = words.fraction();
+  const double error = quotient ? *quotient : words.real(0, least, 1.0);
+  if (error < least || error > 1.0) {
+    words.refuse(fmt::format("--target-error takes {} to 1, not \"{}\"", least_error(), words.text()));
+  }
+  return std::max(static_cast<float>(error), kMinTargetError);
+}
+
+/// Reads "3-7", or "3" alone.
+FrameRange read_frames(const OptionValues& words) {
+  const std::string& text = words.text();
+  const size_t dash = text.find('-');
+  const OptionValues ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
+  const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
+  if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
+  return range;
+}
+
+/// Reads numbers between commas, each once and in ascending order.
+std::vector<uint32_t> read_numbers(const OptionValues& words) {
+  std::vector<uint32_t> numbers;
+  for (const std::string& number : split_list(words.text())) {
+    uint32_t value = 0;
+    const char* end = number.data() + number.size();
+    const auto parsed = std::from_chars(number.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end) {
+      words.refuse(fmt::format("--lights-off takes numbers from 0, separated by commas, not \"{}\"", words.text()));
+    }
+    numbers.push_back(value);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+/// Also accepts the AOV's name.
+DebugView read_shading(const OptionValues& words) {
+  const OptionValues canonical = words.text() == kNormal ? words.with({std::string(kNormals)}) : words;
+  return read_name<DebugView>(canonical, debug_view_names());
+}
+
+template <typename Number>
+Number read_number(const OptionValues& words, Number min, Number max) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    return static_cast<Number>(words.real(0, static_cast<double>(min), static_cast<double>(max)));
+  } else {
+    return words.whole(0, min, max);
+  }
+}
+
+void add_look_options(OptionTable& table, LookOptions& look) {
+  const std::span<const std::string_view> lights = light_choice_names();
+  table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
+            "Light to add to a scene that has none or too little [studio; classic scenes: headlight]",
+            [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
+  table.add("--background", fmt::format("R G B|COLOR|{}", kEnvironment),
+            "Background colour as it is displayed: white, '#336699' or three numbers from 0 to 1. linear:R,G,B is "
+            "linear light, which exposure and tone mapping change. environment shows the surroundings that light the "
+            "scene [the scene's own background, else a grey gradient; classic scenes: the scene's own]",
+            [&](const OptionValues& w) { look.background = read_background(w); });
+  table.add("--exposure", fmt::format("EV|{}|{}", kAuto, kAverage),
+            "Exposure of PNG files and the window in stops; +1 doubles the brightness. auto is computed from the "
+            "scene's lights, average from the picture itself, on a path from its first one [auto; classic scenes: 0]",
+            [&](const OptionValues& w) {
+              look.exposure_ev.reset();
+              look.averages_exposure = w.text() == kAverage;
+              if (w.text() == kAuto || w.text() == kAverage) return;
+              constexpr std::array kWords = {kAuto, kAverage};
+              look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv, kWords));
+            });
+  table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
+            "How PNG files and the window compress light that is too bright to display [neutral; classic scenes: none]",
+            [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
+  table.add_flag("--dither", "Add noise of less than one 8-bit step to PNG files and the window, which hides banding",
+                 look.dithers);
+  table.add(
+      "--texture-memory", "MIB",
+      fmt::format(
+          "Device memory for textures in MiB, 1 to {}; the largest textures are halved until all of them fit [{}]",
+          kMaxTextureMib, look.texture_memory_mib),
+      [&](const OptionValues& w) { look.texture_memory_mib = w.whole(0, 1, kMaxTextureMib); });
+}
+
+}  // namespace
+
+void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
+  table.add(
+      "--environment", "FILE",
+      "Equirectangular panorama that surrounds the scene, .hdr or .exr; its middle lies at -Z [the scene's own sky]",
+      [&](const OptionValues& w) { options.panorama = w.text(); });
+  table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, in degrees [0]",
+            [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+  table.add("--environment-intensity", "X", "Multiply the sky's radiance by this factor [1]",
+            [&](const OptionValues& w) { options.intensity = w.real(0, 0.0, kMaxIntensity); });
+  table.add("--light-rotation", "DEG",
+            "Turn the sky and directional lights about +Y, from +Z towards +X, in degrees [0]",
+            [&](const OptionValues& w) { options.light_rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+}
+
+void add_view_options(OptionTable& table, ViewOptions& view) {
+  table.add("--size", fmt::format("WxH|{}", fmt::join(size_names(), "|")),
+            "Picture size in pixels; 640 alone is a width, and the height follows from the camera's aspect ratio [the "
+            "size that the scene file requests, else height 720]",
+            [&](const OptionValues& w) { view.size = read_size(w); });
+  table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
+            "Filter that weights samples by their distance from the pixel's centre [box]",
+            [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
+#define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) \
+  table.add(option_of(#NAME), PLACEHOLDER, HELP,                           \
+            [&](const OptionValues& w) { view.NAME = read_number<TYPE>(w, MIN, MAX); });
+#include "work/spec/view_numbers.def"
+  table.add("--shading", "NAME", fmt::format("What the picture shows: {} [full]", fmt::join(debug_view_names(), ", ")),
+            [&](const OptionValues& w) { view.debug_view = read_shading(w); });
+  table.add_flag("--no-shadows", "Trace no shadow rays: nothing casts a shadow", view.has_no_shadows);
+  table.add("--lights-off", "INDICES", "Lights to switch off: their indices from 0, separated by commas",
+            [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
+  add_look_options(table, view.look);
+  table.add("--camera", "NAME|INDEX", "Camera of the scene: its name or its index from 0 [0]",
+            [&](const OptionValues& w) { view.camera = w.text(); });
+  add_pose_options(table, view.pose);
+  add_environment_options(table, view.environment);
+}
+
+void add_fps_option(OptionTable& table, std::optional<double>& fps) {
+  table.add("--fps", "N|stored",
+            fmt::format("Pictures per second of the path, {} to {}; stored renders exactly the frames that are stored "
+                        "[the path's own fps, else stored]",
+                        PathPictures::kMinFps, PathPictures::kMaxFps),
+            [&](const OptionValues& w) {
+              constexpr std::array<std::string_view, 1> kWords = {"stored"};
+              const bool is_stored = w.text() == kWords[0];
+              fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps, kWords);
+            });
+}
+
+namespace {
+
+/// A time with or without a unit.
+double read_seconds(const OptionValues& words) {
+  struct Unit {
+    std::string_view name;
+    double seconds;
+  };
+  constexpr Unit kUnits[] = {{"ms", 1e-3}, {"min", 60.0}, {"m", 60.0}, {"sec", 1.0}, {"s", 1.0}, {"h", 3600.0}};
+  const std::string& text = words.text();
+  for (const auto& [name, seconds] : kUnits) {
+    if (!text.ends_with(name)) continue;
+    const OptionValues number = words.with({text.substr(0, text.size() - name.size())});
+    return seconds * number.real(0, kMinTimeLimit / seconds, kMaxTimeLimit / seconds);
+  }
+  return words.real(0, kMinTimeLimit, kMaxTimeLimit);
+}
+
+void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
+  table.add("--time-limit", "SECONDS",
+            "In place of --spp: make the best picture that can be finished in this time, given as 20, 20s or 2min, and "
+            "print the options that make it again",
+            [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
+}
+
+}  // namespace
+
+void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help) {
+  const auto read_power = [](const OptionValues& w, std::string_view name) {
+    const uint32_t samples = w.whole(0, kMinRefinedSamples, kMaxRefinedSamples);
+    if (!std::has_single_bit(samples)) w.refuse(fmt::format("{} takes a power of two, not {}", name, samples));
+    return samples;
+  };
+  table.add("--target-error", "E", std::string(target_help),
+            [&](const OptionValues& w) { error.target = read_error(w); });
+  table.add("--min-spp", "N",
+            fmt::format("With --target-error: smallest number of samples per pixel, a power of two from {} [{}; for a "
+                        "--target-error of 1/{:g} or more {}]",
+                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
+            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
+  table.add("--max-spp", "N",
+            fmt::format("With --target-error: largest number of samples per pixel, a power of two up to {} [{}]",
+                        kMaxRefinedSamples, ErrorTarget{}.max_samples),
+            [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
+  table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
+            "With --target-error: measure the error in linear light or as displayed [linear]",
+            [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
+}
+
+void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual) {
+  table.add("-s,--spp", "N", fmt::format("Samples per pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
+            [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
+  table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
+            fmt::format("In place of --spp: {}, {} or {} samples per pixel, or as many as it takes until displayed "
+                        "colours are off by at most one 8-bit step [normal]",
+                        1, kDefaultSamples, kHighSamples),
+            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
+}
+
+void add_render_options(CLI::App& command, RenderSpec& options) {
+  ViewOptions& view = options.view;
+  OptionTable table(command);
+
+  add_scene_argument(table, options.tracing);
+  table.add_repeated(
+      "-o,--output", "FILE",
+      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit), or - for a PNG on "
+      "the standard output; repeatable [the scene's name with .exr and .png, here]",
+      [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
+  table.add("--explain", "X Y", "In place of -o: print all rays of this pixel as JSON; 0 0 is the top left pixel",
+            [&](const OptionValues& w) {
+              options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
+            });
+  add_sample_options(table, options, fmt::format("{}, with --explain 1", kDefaultSamples));
+  add_error_options(
+      table, options.error,
+      fmt::format("In place of --spp: take samples until each pixel is off by at most E, {} to 1; white is 1",
+                  least_error()));
+  add_time_limit_option(table, options.error);
+  add_variant_option(table, options.tracing.load);
+  add_view_options(table, view);
+  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels with X0 <= x < X1 and Y0 <= y < Y1; row 0 is at the top",
+            [&](const OptionValues& w) { view.crop = read_window(w); });
+
+  table.add("--path", "FILE.json",
+            "Render the frames of a camera path; -o names a file with ####, which stands for the frame number",
+            [&](const OptionValues& w) { options.path = w.text(); });
+  table.add("--frames", "A-B", "With --path: render only frames A to B, both included; the first frame is 0 [all]",
+            [&](const OptionValues& w) { options.frames = read_frames(w); });
+  add_fps_option(table, options.fps);
+  table.add_flag("--skip-existing", "With --path: skip frames whose pictures exist already", options.skips_existing);
+
+  add_job_options(
+      table, options.job,
+      fmt::format(
+          "With --job: number of bands of rows that each picture is divided into, 1 to {}; each band is saved when it "
+          "is done, so a kill loses at most one [at least {} pieces in all; on a path at least one per frame]",
+          kMaxSide, kUsualPieces),
+      kMaxSide);
+  table.add(
+      "--tiles", "C R",
+      "With --job, in place of --pieces: number of columns and rows of tiles that each picture is divided into",
+      [&](const OptionValues& w) { options.job.tiles = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
+  table.add("--aov", "NAMES",
+            fmt::format("Further channels of an EXR, separated by commas, from {},{}", fmt::join(aov_names(), ","),
+                        kCryptomatte),
+            [&](const OptionValues& w) {
+              const bool has_alpha = options.aovs.alpha;
+              options.aovs = read_aovs(w);
+              options.aovs.alpha |= has_alpha;
+            });
+  table.add_flag("--alpha",
+                 "Write an alpha channel, the part of each pixel that the scene covers, and leave the background out",
+                 options.aovs.alpha);
+  table.add("--depth", fmt::format("{}", fmt::join(depth_kind_names(), "|")),
+            "What --aov depth measures: ray is the distance from the eye, plane the distance along the direction of "
+            "view [ray]",
+            [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, depth_kind_names()); });
+  table.add_flag(
+      "--half",
+      "Store colours, normals and coverage of an EXR as 16-bit floats, with a relative error of at most 1/2048",
+      options.exr.is_half);
+  table.add("--compression", fmt::format("{}", fmt::join(exr_compression_names(), "|")),
+            "Lossless compression of an EXR [zip]", [&](const OptionValues& w) {
+              options.names_compression = true;
+              options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
+            });
+  table.add("--features", "scene|all",
+            "Features to compile into the kernels: those that the scene uses, or all, for measurements [scene]",
+            [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
+  add_tracing_options(table, options.tracing);
+  add_measuring_options(table, options.tracing);
+}
+
+}  // namespace promin::app

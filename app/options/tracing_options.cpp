@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "options/tracing_options.h"
+
+#include <fmt/ranges.h>
+
+#include "options/arguments.h"
+#include "options/load_options.h"
+#include "promin/renderer.h"
+
+namespace promin::app {
+namespace {
+
+constexpr uint32_t kMaxRepeats = 10000;
+constexpr uint32_t kMaxThreads = 1024;
+
+}  // namespace
+
+void add_scene_argument(OptionTable& table, TracingOptions& options) {
+  table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
+                     [&](const OptionValues& w) { options.scene = w.text(); });
+}
+
+void add_device_option(OptionTable& table, std::optional<std::string>& device) {
+  table.add(
+      "--device", "NAME|INDEX",
+      "Vulkan device: a part of its name, its index, or uuid: with its UUID, as `promin devices --json` prints it",
+      [&](const OptionValues& w) {
+        if (w.text().empty())
+          w.refuse("--device takes a part of a device's name, its index or uuid: and its UUID, not \"\"");
+        device = w.text();
+      });
+}
+
+void add_tracing_options(OptionTable& table, TracingOptions& options) {
+  add_device_option(table, options.device);
+  table.add("--threads", "N",
+            fmt::format("Number of threads on the host and in a CPU device, 1 to {} [one per core]", kMaxThreads),
+            [&](const OptionValues& w) { options.threads = w.whole(0, 1, kMaxThreads); });
+  table.add("--builder", "NAME",
+            fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),
+            [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });
+  table.add("--bvh", "FILE.pbvh", "Read the BVH from a file that `promin-bvh build` wrote",
+            [&](const OptionValues& w) { options.bvh = w.text(); });
+  add_strict_option(table, options.load);
+  add_root_option(table, options.load);
+  table.add_flag("--quiet", "Print only errors", options.is_quiet);
+  table.add_flag("-v,--verbose", "Print each step and how long it takes", options.is_verbose);
+}
+
+void add_measuring_options(OptionTable& table, TracingOptions& options) {
+  table.add("--repeat", "N", "Trace N times and report the median time [1]",
+            [&](const OptionValues& w) { options.repeat_count = w.whole(0, 1, kMaxRepeats); });
+  table.add("--stats", "FILE.json", "Write counts and times as JSON",
+            [&](const OptionValues& w) { options.stats = w.text(); });
+}
+
+}  // namespace promin::app

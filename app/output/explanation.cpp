@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "output/explanation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace promin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity, so null stands for it.
+Json json_of(float value) {
+  return std::isfinite(value) ? Json::parse(fmt::format("{:.9g}", value)) : Json(nullptr);
+}
+
+Json json_of(const vec3& v) {
+  return Json::array({json_of(v.x), json_of(v.y), json_of(v.z)});
+}
+
+/// Returns a scene position in world coordinates: with nine digits of fp32, or all digits far from the origin.
+Json json_of_place(const vec3& place, const Scene& scene) {
+  if (scene.center == dvec3(0.0)) return json_of(place);
+  const dvec3 world = scene.center + dvec3(place);
+  return Json::array({world.x, world.y, world.z});
+}
+
+Json json_of(const Ray& ray, const Scene& scene) {
+  return {{"origin", json_of_place(ray.origin, scene)},
+          {"direction", json_of(ray.direction)},
+          {"tmin", json_of(ray.tmin)},
+          {"tmax", json_of(ray.tmax)}};
+}
+
+/// Writes the members that any hit has, a blocker too; json_of(ExplainedRay) adds those of the hits on the path.
+Json json_of(const Hit& hit, const Scene& scene) {
+  if (hit.object < 0) return nullptr;
+  return {{"object", hit.object},
+          {"primitive", hit.primitive},
+          {"t", json_of(hit.t)},
+          {"u", json_of(hit.u)},
+          {"v", json_of(hit.v)}};
+}
+
+Json json_of(const ExplainedSource& source, const Scene& scene) {
+  Json json = {{"light", source.light},
+               {"name", scene.lights[source.light].name},
+               {"visible", source.is_visible()},
+               {"contribution", json_of(source.contribution)},
+               {"shadow_ray", nullptr}};
+  if (source.shadow_ray) {
+    json["shadow_ray"] = json_of(*source.shadow_ray, scene);
+    json["shadow_ray"]["blocker"] = json_of(source.blocker, scene);
+  }
+  return json;
+}
+
+std::string_view name_of(RayKind kind) {
+  switch (kind) {
+    case RayKind::kCamera:
+      return "camera";
+    case RayKind::kReflection:
+      return "mirror";
+    case RayKind::kRefraction:
+      return "refracted";
+    case RayKind::kThrough:
+      return "through";
+  }
+  return "";
+}
+
+Json json_of(const ExplainedRay& ray, const Scene& scene) {
+  Json json = {{"kind", name_of(ray.kind)}, {"parent", nullptr}};
+  if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
+  json.update(json_of(ray.ray, scene));
+  json["weight"] = json_of(ray.weight);
+  json["hit"] = json_of(ray.hit, scene);
+  if (ray.hit.object >= 0) {
+    json["hit"].update({{"object_name", scene.objects[static_cast<size_t>(ray.hit.object)].name},
+                        {"position", json_of_place(ray.position, scene)},
+                        {"normal", json_of(ray.hit.normal)},
+                        {"shading_normal", json_of(ray.shading_normal)},
+                        {"lift", json_of(ray.lift)},
+                        {"coverage", json_of(ray.coverage)},
+                        {"material", ray.material},
+                        {"material_name", scene.materials[ray.material].name}});
+  }
+  json["own"] = json_of(ray.own);
+  json["sources"] = Json::array();
+  for (const ExplainedSource& source : ray.sources) json["sources"].push_back(json_of(source, scene));
+  json["radiance"] = json_of(ray.radiance);
+  return json;
+}
+
+/// Returns the kind of an item with its `name` in quotes, if there is one.
+std::string with_name(const std::string& text, const std::string& name) {
+  return name.empty() ? text : text + " \"" + name + "\"";
+}
+
+std::string text_of(const vec3& v) {
+  return fmt::format("({:.6g} {:.6g} {:.6g})", v.x, v.y, v.z);
+}
+
+std::string text_of_place(const vec3& place, const Scene& scene) {
+  if (scene.center == dvec3(0.0)) return text_of(place);
+  const dvec3 world = scene.center + dvec3(place);
+  return fmt::format("({:.12g} {:.12g} {:.12g})", world.x, world.y, world.z);
+}
+
+std::string text_of(const Hit& hit, const Scene& scene) {
+  const auto object = static_cast<uint32_t>(hit.object);
+  return fmt::format("{} primitive {} at t {:.6g}",
+                     with_name(fmt::format("object {}", object), scene.objects[object].name), hit.primitive, hit.t);
+}
+
+std::string text_of(const ExplainedSource& source, const Scene& scene) {
+  const std::string name = with_name(fmt::format("light {}", source.light), scene.lights[source.light].name);
+  if (source.is_visible()) return fmt::format("{}: visible, adds {}", name, text_of(source.contribution));
+  if (!source.shadow_ray) return name + ": adds nothing from where it is";
+  return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));
+}
+
+/// `depth` is the number of rays that lead to it.
+std::string text_of(const ExplainedRay& ray, size_t depth, const Scene& scene) {
+  const std::string indent(2 * depth + 2, ' ');
+  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, name_of(ray.kind),
+                                 text_of_place(ray.ray.origin, scene), text_of(ray.ray.direction), text_of(ray.weight));
+  const auto add = [&](const std::string& line) { text += indent + "  " + line + "\n"; };
+  if (ray.hit.object < 0) {
+    add("misses: background " + text_of(ray.own));
+  } else {
+    add(fmt::format("hits {}, u {:.6g}, v {:.6g}", text_of(ray.hit, scene), ray.hit.u, ray.hit.v));
+    add(fmt::format("at {}, normal {}, {}", text_of_place(ray.position, scene), text_of(ray.shading_normal),
+                    with_name(fmt::format("material {}", ray.material), scene.materials[ray.material].name)));
+    if (ray.coverage < 1.0F) add(fmt::format("covers {:.6g} of what is behind", ray.coverage));
+    add("ambient and emitted " + text_of(ray.own));
+  }
+  for (const ExplainedSource& source : ray.sources) add(text_of(source, scene));
+  add("path so far " + text_of(ray.radiance));
+  return text;
+}
+
+}  // namespace
+
+std::string explain_json(const Explanation& explanation, const Scene& scene) {
+  Json samples = Json::array();
+  for (const ExplainedSample& sample : explanation.samples) {
+    Json rays = Json::array();
+    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, scene));
+    samples.push_back({{"rays", rays}, {"radiance", json_of(sample.radiance())}});
+  }
+  const Json json = {{"pixel", {explanation.pixel.x, explanation.pixel.y}},
+                     {"samples", samples},
+                     {"sum", json_of(explanation.sum)},
+                     {"color", json_of(explanation.color)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string explain_text(const Explanation& explanation, const Scene& scene) {
+  std::string text =
+      fmt::format("pixel {} {}: {}\n", explanation.pixel.x, explanation.pixel.y, text_of(explanation.color));
+  for (size_t i = 0; i < explanation.samples.size(); ++i) {
+    text += fmt::format("sample {}\n", i);
+    const ExplainedSample& sample = explanation.samples[i];
+    std::vector<size_t> depths;
+    for (const ExplainedRay& ray : sample.rays) {
+      depths.push_back(ray.kind == RayKind::kCamera ? 0 : depths[ray.parent] + 1);
+      text += text_of(ray, depths.back(), scene);
+    }
+  }
+  return text;
+}
+
+}  // namespace promin::app

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include "options/arguments.h"
+#include "promin/error.h"
+
+namespace promin::app {
+
+/// The main() of a program of commands: reads the command line, runs the command and returns the exit code. A failure
+/// is one line on the standard error stream, "NAME: WHERE: WHAT; CURE", and an indented one for each further problem.
+/// SIGXFSZ is ignored from here on, so that exceeding the file size limit is such a failure too.
+int run_program(const std::string& name, const std::string& help,
+                std::initializer_list<Command (*)(CLI::App& program)> commands, int argc, const char* const* argv);
+
+/// Reads the command line and runs the command. Throws what that throws; UsageError if there is no command.
+void run_command(const std::string& name, const std::string& help,
+                 std::initializer_list<Command (*)(CLI::App& program)> add_commands, int argc, const char* const* argv);
+
+/// Returns the sentence of a problem or error, with this command line's options in place of the library's settings.
+std::string message_of(Problem problem);
+std::string message_of(const Error& error);
+
+}  // namespace promin::app

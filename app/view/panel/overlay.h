@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trace/film/progressive_picture.h"
+#include "view/display/finished_frame.h"
+#include "view/panel/overlay_scale.h"
+#include "view/panel/screen_cover.h"
+#include "view/scene/file_dialog.h"
+#include "view/scene/scene_preparer.h"
+
+namespace promin::app {
+
+/// The recent cost of frames, as means in which about the last tenth of a second has the largest weight.
+class FrameStatistics {
+ public:
+  void add(const FinishedFrame& frame);
+
+  double frame_ms() const { return frame_ms_; }
+  const StageTimes& stages() const { return stages_; }
+  /// Returns the rates of primary, shadow and reflection rays, in 1e6 per second of tracing.
+  const dvec3& mrays_per_s() const { return mrays_per_s_; }
+  /// Returns the part of a frame's work that is not tracing.
+  double overhead_ms() const { return stages_.display; }
+
+ private:
+  bool is_first_ = true;
+  double frame_ms_ = 0.0;
+  StageTimes stages_;
+  dvec3 mrays_per_s_{0.0};
+};
+
+/// The user's choices, in the overlay or otherwise.
+struct Switches {
+  SceneChoice scene;
+  Surroundings surroundings;
+  uint32_t max_depth = View{}.max_depth;
+  bool has_mirrors = true;
+  bool has_shadows = true;
+  DebugView debug_view = DebugView::kNone;
+  /// The exposure; the scene's own if the user has chosen none.
+  std::optional<float> exposure_ev;
+  /// The scale, as ProgressivePicture::fix_scale takes it.
+  std::optional<double> scale;
+  bool is_paused = false;
+
+  uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
+};
+
+/// A path that the user types if the desktop has no dialog.
+struct PathEntry {
+  FileUse use = FileUse::kOpen;
+  std::array<char, 4096> text{};
+  /// Whether it has not been shown yet. Then keys go to it.
+  bool is_new = true;
+};
+
+/// Further content of the overlay.
+struct OverlayContent {
+  const FrameStatistics* statistics = nullptr;
+  /// Null before the first.
+  const ProgressivePicture* picture = nullptr;
+  /// Null before it is read.
+  const Scene* scene = nullptr;
+  std::string device;
+  double speed = 0.0;
+  /// Exposure of the scene.
+  float exposure_ev = 0.0F;
+  /// The colour of its background, sRGB.
+  vec3 background{0.0F};
+  /// The work in progress beside the picture; empty if there is none.
+  std::string awaited;
+  /// The last message; failures are highlighted.
+  std::string message;
+  bool is_failure = false;
+  std::vector<Camera> bookmarks;
+  /// Null if no path is being typed.
+  PathEntry* entry = nullptr;
+};
+
+/// Returns the distance between a new panel and the window's edges, in the interface's units.
+float overlay_margin();
+
+/// Creates ImGui's fonts and sizes again; not within a frame.
+void scale_overlay(const OverlayScale& scale);
+
+/// The user's actions in the overlay other than switches.
+struct OverlayAnswer {
+  /// The camera that was picked from the lists.
+  std::optional<Camera> camera;
+  /// The speed to fly with.
+  std::optional<double> speed;
+  /// The purpose of a requested file.
+  std::optional<FileUse> asked;
+  /// Whether the typed path is complete.
+  bool has_typed = false;
+  /// Whether the user has cancelled the typed path.
+  bool gives_up = false;
+  /// The area of the panel.
+  WindowArea area;
+  /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.
+  float height = 0.0F;
+};
+
+/// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.
+OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches);
+
+/// Shows the actions of keys and pointer, at the right edge.
+void show_help();
+/// Returns whether the help leaves room for the panel at the left edge.
+bool has_room_beside_help();
+}  // namespace promin::app

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "formats/source_file.h"
+#include "output/work_names.h"
+#include "promin/load_scene.h"
+#include "promin/scene.h"
+#include "promin/view.h"
+#include "work/pictures/camera_path.h"
+#include "work/pictures/run_stats.h"
+#include "work/spec/environment_choice.h"
+
+namespace promin::app {
+
+/// A scene opened for a window: read, lit, and with a camera.
+struct OpenedScene {
+  std::filesystem::path file;
+  LoadOptions load;
+  EnvironmentChoice environment;
+  std::shared_ptr<const Scene> scene;
+  Bounds bounds;
+  /// The files that it was read from.
+  std::vector<SourceFile> sources;
+  View view;
+  /// The flight to play.
+  std::optional<PathPictures> replay;
+  RunStats stats;
+};
+
+/// Opens the scene of a file. Throws Error.
+using OpenScene = std::function<OpenedScene(const std::filesystem::path& file)>;
+
+}  // namespace promin::app

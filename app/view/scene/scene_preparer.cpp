@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "view/scene/scene_preparer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "device/device.h"
+#include "formats/source_file.h"
+#include "promin/error.h"
+#include "promin/validate.h"
+#include "scene/features.h"
+#include "work/pictures/view_setup.h"
+
+namespace promin::app {
+namespace {
+
+/// The seconds between two looks at the scene's files.
+constexpr double kLookInterval = 0.1;
+
+/// The longest side of the picture that an average exposure goes by, in pixels.
+constexpr float kMeteredSide = 320.0F;
+
+/// Keeps the lights that a scene has.
+std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
+  std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
+  return lights;
+}
+
+/// Leaves out features that compile slowly, with as little visible effect as possible.
+FeatureMask without_slow_parts(FeatureMask features) {
+  return features.without(layout::FEATURE_SHADOWS)
+      .without(layout::FEATURE_MIRRORS)
+      .without(layout::FEATURE_GLASS)
+      .without(layout::FEATURE_BLENDING);
+}
+
+}  // namespace
+
+std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device) {
+  return std::make_shared<const gpu::Device>(gpu::DeviceOptions{.selection = std::to_string(device.info().index)});
+}
+
+bool sets_apart(const gpu::Device& device) {
+  // Devices that present late have one queue for everything, including compiling.
+  return device.profile().presents_late;
+}
+
+void SceneCopies::add(const SceneOn& copy) {
+  const std::lock_guard lock(mutex_);
+  copies_.push_back({copy.device, copy.scene});
+}
+
+std::vector<SceneOn> SceneCopies::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<SceneOn> there;
+  for (const Copy& copy : copies_) {
+    SceneOn on{copy.device.lock(), copy.scene.lock()};
+    if (on.device && on.scene) there.push_back(std::move(on));
+  }
+  return there;
+}
+
+std::vector<Light> ShownScene::lights() const {
+  std::vector<Light> lights = scene->lights;
+  switch_lights(lights, choice.lights_off);
+  Environment unused;
+  turn_light(surroundings.light_rotation_deg, unused, lights);
+  return lights;
+}
+
+Environment ShownScene::environment() const {
+  Environment environment = scene->environment;
+  turn_light(surroundings.light_rotation_deg, environment, {});
+  if (surroundings.background) show_background({.color = *surroundings.background}, environment);
+  return environment;
+}
+
+bool ShownScene::takes(const Surroundings& other) const {
+  const bool has_same_kind = other.background.has_value() == surroundings.background.has_value();
+  return has_same_kind || scene->environment.shows_backdrop();
+}
+
+void ShownScene::put() const {
+  const std::vector<Light> all_lights = lights();
+  const Environment around = environment();
+  gpu::translate_vulkan_errors([&] {
+    on_device->set_lights(all_lights);
+    on_device->set_environment(around);
+    for (const SceneOn& copy : copies->list()) {
+      copy.scene->set_lights(all_lights);
+      copy.scene->set_environment(around);
+    }
+  });
+}
+
+SceneOn ShownScene::set_apart() const {
+  // A few copies of it need little memory.
+  constexpr uint64_t kMostBytes = 256U << 20;
+  if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
+  SceneOn apart{open_same_device(*first.device), nullptr};
+  const world::Scene& in_world = host->scene;
+  apart.scene = upload_scene(*apart.device, host->packed,
+                             {in_world.materials, in_world.textures, lights(), environment(), host->glass_solids});
+  copies->add(apart);
+  return apart;
+}
+
+void ReadyPicture::take_lights() {
+  scene->put();
+  picture->picture().take_scene_change();
+}
+
+ScenePreparer::ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
+                             LoadOptions load, std::vector<SourceFile> sources, LookOptions look,
+                             EnvironmentChoice environment, View first_view)
+    : device_(std::move(device)),
+      budget_ms_(budget_ms),
+      file_(std::move(file)),
+      load_(std::move(load)),
+      look_(look),
+      environment_(std::move(environment)),
+      first_view_(std::move(first_view)),
+      watch_(std::move(sources)) {}
+
+ScenePreparer::~ScenePreparer() {
+  is_given_up_ = true;
+  work_.wait();
+}
+
+void ScenePreparer::begin(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
+  asked_ = request;
+  pack(std::move(scene));
+}
+
+bool ScenePreparer::update(const std::shared_ptr<ShownScene>& shown, const PictureRequest& request, double time_s) {
+  if (is_busy()) return false;
+  const PictureRequest last = std::exchange(asked_, request);
+  const bool has_another_tree = last.choice.builder != request.choice.builder || last.choice.bvh != request.choice.bvh;
+  if (has_another_tree) {
+    pack(shown->scene);
+  } else if (last.choice != request.choice || last.mode != request.mode || last.is_draft != request.is_draft ||
+             (last.surroundings != request.surroundings && !shown->takes(request.surroundings))) {
+    compile(shown);
+  } else {
+    if (time_s < next_look_at_files_s_) return false;
+    next_look_at_files_s_ = time_s + kLookInterval;
+    if (!watch_.has_changed()) return false;
+    read();
+  }
+  return true;
+}
+
+std::optional<ReadyPicture> ScenePreparer::take() {
+  // Only reading returns files; other work does not change the watched files.
+  if (is_ready() && !sources_.empty()) watch_.follow(std::exchange(sources_, {}));
+  return work_.take();
+}
+
+void ScenePreparer::read() {
+  step_ = Step::kReading;
+  work_.start([this, request = asked_] {
+    const auto scene = std::make_shared<Scene>(load_scene(file_, load_, sources_));
+    light_up(*scene, look_, environment_);
+    return make_first(scene, request);
+  });
+}
+
+void ScenePreparer::pack(std::shared_ptr<const Scene> scene) {
+  step_ = Step::kBuilding;
+  work_.start([this, scene = std::move(scene), request = asked_] { return make_first(scene, request); });
+}
+
+void ScenePreparer::compile(std::shared_ptr<ShownScene> scene) {
+  step_ = Step::kCompiling;
+  work_.start([this, scene = std::move(scene), request = asked_] {
+    ShownScene chosen = *scene;
+    chosen.copies = std::make_shared<SceneCopies>();
+    chosen.surroundings = request.surroundings;
+    chosen.choice.lights_off = keep_known(request.choice.lights_off, *scene->scene);
+    SceneOn apart = chosen.set_apart();
+    return make(std::make_shared<ShownScene>(std::move(chosen)), std::move(apart), request);
+  });
+}
+
+std::string ScenePreparer::describe() const {
+  if (!is_busy()) return "";
+  switch (step_) {
+    case Step::kReading:
+      return "reading the scene";
+    case Step::kBuilding:
+      return fmt::format("building the tree, {:.0f} %", 100.0 * built_);
+    case Step::kUploading:
+      return "uploading the scene";
+    case Step::kCompiling:
+      return "compiling";
+  }
+  return "";
+}
+
+void ScenePreparer::enter(Step step) {
+  // The owner is gone, so nobody would take the picture.
+  if (is_given_up_)
+    throw RunError({"window.scene.closed",
+                    "the scene was not opened, because the window closed while a picture was made", "",
+                    "keep the window open"});
+  step_ = step;
+}
+
+std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const Scene> scene,
+                                                         const PictureRequest& request) {
+  built_ = 0.0;
+  enter(Step::kBuilding);
+  ShownScene shown;
+  shown.scene = scene;
+  shown.choice = request.choice;
+  shown.surroundings = request.surroundings;
+  shown.display = choose_display(*scene, look_, DebugView::kNone);
+  shown.first.device = open_same_device(*device_);
+  shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
+  TunedRendererOptions options;
+  options.builder = request.choice.builder;
+  options.bvh = request.choice.bvh;
+  options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
+  options.progress = [this](double fraction) {
+    built_ = fraction;
+    if (fraction == 1.0) step_ = Step::kUploading;
+    return !is_given_up_;
+  };
+  throw_if_invalid(*scene);
+  auto host = std::make_shared<HostScene>();
+  host->scene = world::flatten(*scene);
+  host->scene.environment = shown.environment();
+  host->glass_solids = std::make_shared<const GlassSolids>(host->scene);
+  options.repack = [&host](PackedScene packed) {
+    host->packed = packed;
+    return packed;
+  };
+  gpu::translate_vulkan_errors([&] {
+    shown.on_device = std::make_shared<SceneOnDevice>(*shown.first.device, host->scene, options, shown.setup_stats);
+  });
+  shown.host = std::move(host);
+  shown.first.scene = shown.on_device->device_scene();
+  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode.has_shadows);
+  return std::make_shared<ShownScene>(std::move(shown));
+}
+
+float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const {
+  options.mode = {.has_shadows = has_shadows};
+  options.aovs.object = true;
+  options.aovs.unlit = mixes_unlit(*shown.scene, shown.environment());
+  options.repack = {};
+  Renderer renderer = make_renderer(*shown.first.device, shown.host->scene, options);
+  renderer.set_lights(shown.lights());
+  View view = first_view_;
+  view.mode = options.mode;
+  view.samples_per_pixel = 1;
+  const float scale = std::min(1.0F, kMeteredSide / static_cast<float>(std::max(view.size.x, view.size.y)));
+  view.size = glm::max(uvec2(vec2(view.size) * scale), uvec2(1));
+  const RenderResult metered = renderer.render(view);
+  return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
+}
+
+ReadyPicture ScenePreparer::make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
+  std::shared_ptr<ShownScene> shown = put_on_device(std::move(scene), request);
+  SceneOn first = shown->first;
+  return make(std::move(shown), std::move(first), request);
+}
+
+ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, const PictureRequest& request) {
+  enter(Step::kCompiling);
+  const std::vector<Light> lights = scene->lights();
+  const Environment environment = scene->environment();
+  std::unique_ptr<TracedPicture> picture;
+  gpu::translate_vulkan_errors([&] {
+    FeatureMask features =
+        scene->on_device->features_with(light_features(lights), environment_features(environment), request.mode);
+    if (shows_unlit(features, request.mode.debug_view) &&
+        shows_unlit_apart(*scene->scene, environment, look_, scene->display)) {
+      features |= layout::FEATURE_UNLIT_SHARE;
+    }
+    if (request.is_draft) features = without_slow_parts(features);
+    FilmOptions film_options;
+    // A draft is replaced too soon for longer compilation to pay.
+    if (request.is_draft) film_options.expected_samples = 0;
+    const bool is_light = request.mode.debug_view == DebugView::kNone;
+    picture = std::make_unique<TracedPicture>(
+        std::move(on), features, budget_ms_, is_light ? scene->display : DisplayTransform(),
+        [scene] { return scene->set_apart(); }, film_options);
+    picture->resize(request.size);
+    picture->warm_up();
+  });
+  return {std::move(scene), request.mode, request.is_draft, std::move(picture)};
+}
+
+}  // namespace promin::app

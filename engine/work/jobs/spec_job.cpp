@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/jobs/spec_job.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "promin/error.h"
+#include "work/jobs/cast_job.h"
+#include "work/jobs/job_manifest.h"
+#include "work/jobs/picture_job.h"
+#include "work/jobs/render_job.h"
+#include "work/pictures/frame_plan.h"
+#include "work/pictures/picture_run.h"
+#include "work/spec/check_spec.h"
+#include "work/spec/spec_json.h"
+
+namespace promin::work {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Makes the specification that of a process which works in this folder.
+template <typename Spec>
+Spec set_in(Spec spec, const fs::path& folder) {
+  spec.job.folder = folder;
+  // The files are named when the pieces are merged.
+  spec.job.share = jobs::Share{};
+  return spec;
+}
+
+}  // namespace
+
+std::unique_ptr<PlannedJob> plan_job(RenderSpec spec, const fs::path& folder, const Messages& messages) {
+  spec = set_in(std::move(spec), folder);
+  spec.pictures.clear();
+  check_render_spec(spec);
+  return plan_pictures(spec, prepare_pictures(spec, plan_frames(spec), messages), messages);
+}
+
+std::unique_ptr<PlannedJob> plan_job(CastSpec spec, const fs::path& folder, const Messages& messages,
+                                     std::shared_ptr<RaySource> rays) {
+  spec = set_in(std::move(spec), folder);
+  spec.output.reset();
+  spec.offsets.reset();
+  check_cast_spec(spec);
+  return plan_rays(spec, messages, std::move(rays));
+}
+
+std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text, const fs::path& file,
+                                             const fs::path& folder, const Messages& messages,
+                                             std::shared_ptr<RaySource> rays) {
+  if (kind == kPictureJob) {
+    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "leave the rays out"});
+    return plan_job(parse_spec<RenderSpec>(text, file), folder, messages);
+  }
+  if (kind == kRayJob) return plan_job(parse_spec<CastSpec>(text, file), folder, messages, std::move(rays));
+  throw UsageError(
+      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+}
+
+jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {
+  const jobs::Job job = jobs::Job::create(folder, planned.manifest());
+  if (read_job_spec(job) != planned.spec()) write_job_spec(job, planned.spec());
+  planned.remember();
+  return job;
+}
+
+std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Messages& messages,
+                                       std::shared_ptr<RaySource> rays) {
+  const std::optional<std::string> text = read_job_spec(job);
+  const std::string& kind = job.manifest().kind;
+  if (!text || (kind != kPictureJob && kind != kRayJob)) {
+    throw InputError({"job.spec.missing", "the folder does not say how the job's pieces are made",
+                      spec_file(job).string(), "run the job's command once more"});
+  }
+  std::unique_ptr<PlannedJob> planned =
+      plan_job_of_text(kind, *text, spec_file(job), job.folder(), messages, std::move(rays));
+  job.check_same(planned->manifest());
+  planned->remember();
+  return planned;
+}
+
+std::string find_driver(const jobs::Job& job) {
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    if (job.state_of(piece) != jobs::PieceState::kDone) continue;
+    const nlohmann::json json = nlohmann::json::parse(job.read(piece).description, nullptr, false);
+    const auto driver = json.is_object() ? json.find("driver") : json.end();
+    return driver != json.end() && driver->is_string() ? driver->get<std::string>() : "";
+  }
+  return "";
+}
+
+}  // namespace promin::work

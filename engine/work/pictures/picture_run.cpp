@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/pictures/picture_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "promin/error.h"
+#include "promin/image.h"
+#include "work/pictures/camera_choice.h"
+#include "work/pictures/view_setup.h"
+
+namespace promin::work {
+namespace {
+
+void check_explained_pixel(const RenderSpec& options, const uvec2& size) {
+  if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
+  throw UsageError({"view.pixel.outside",
+                    fmt::format("the pixel of --explain lies outside the picture of {}x{}", size.x, size.y), "",
+                    "name a pixel inside, or give a larger --size"});
+}
+
+/// The cameras of all frames.
+std::vector<Camera> cameras_of(const PictureRun& run) {
+  std::vector<Camera> cameras;
+  for (const PlannedFrame& frame : run.frames) cameras.push_back(frame.camera.value_or(run.stats.view->camera));
+  return cameras;
+}
+
+}  // namespace
+
+PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console) {
+  PictureRun run{.options = given, .frames = std::move(frames), .scene = {}, .sources = {}, .stats = {}};
+  apply_quality(run.options);
+  const RenderSpec& options = run.options;
+  RunStats& stats = run.stats;
+  run.scene = load_for(options.tracing, stats, console, run.sources);
+  Scene& scene = run.scene;
+  move_frames(run.frames, scene.center);
+  ViewOptions view = options.view;
+  view.given_camera = run.frames.front().camera;
+  stats.view = make_view(scene, view, console);
+  stats.view->error_target = options.error.error_target();
+  check_explained_pixel(options, stats.view->size);
+  warn_of_empty_pictures(scene, cameras_of(run), stats.view->size, console);
+  if (const std::string small = describe_small_model(scene, view, *stats.view); !small.empty()) console.note(small);
+  const EnvironmentChoice surroundings(view.environment);
+  for (const std::string& warning : surroundings.warnings()) console.warn(warning);
+  AssumedLight assumed = light_up(scene, view.look, surroundings);
+  if (options.aovs.alpha) assumed.has_background = false;  // no picture shows it
+  stats.display = choose_display(scene, view.look, view.debug_view);
+  if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
+  // With errors measured as displayed it affects the bits of an EXR, too.
+  const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||
+                            (stats.view->error_target && stats.view->error_target->display);
+  const std::string assumptions =
+      describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
+  if (!assumptions.empty()) console.note(assumptions);
+  // A job's pieces may be displayed later.
+  const bool keeps_unlit =
+      (is_displayed || options.job.folder) && shows_unlit_apart(scene, scene.environment, view.look, stats.display);
+  run.options.hides_unlit = keeps_unlit && !options.aovs.unlit;
+  run.options.aovs.unlit |= keeps_unlit;
+  check_lights(scene, options.view.lights_off);
+  switch_lights(scene.lights, options.view.lights_off);
+  const auto is_on = [](const Light& light) { return light.is_on; };
+  stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));
+  return run;
+}
+
+uint64_t count_samples(const View& view, size_t frames, const RenderSpec& options) {
+  if (options.explained_pixel) return view.samples_per_pixel;
+  const uvec2 size = view.crop ? view.crop->hi - view.crop->lo : view.size;
+  const uint32_t samples = view.error_target ? view.error_target->min_samples : view.samples_per_pixel;
+  return uint64_t{size.x} * size.y * samples * frames * options.tracing.repeat_count;
+}
+
+TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t expected_samples) {
+  TunedRendererOptions result;
+  result.expected_samples = expected_samples;
+  choose_tree(options.tracing, result);
+  result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
+  result.force_all_features = options.has_all_features;
+  // A time limit begins with a picture of one sample a pixel.
+  result.has_error_target = options.error.target && !options.error.time_limit_s;
+  result.mode = {options.view.debug_view, !options.view.has_no_shadows};
+  result.aovs = options.aovs;
+  // The average only uses pixels with a hit.
+  if (options.view.look.averages_exposure) result.aovs.object = true;
+  return result;
+}
+
+TracedFrame trace(Renderer& renderer, const View& view, const RenderSpec& options, const std::optional<double>& limit_s,
+                  const std::function<bool(double)>& on_progress) {
+  TracedFrame frame;
+  const uint32_t repeats = options.tracing.repeat_count;
+  for (uint32_t i = 0; i < repeats; ++i) {
+    const auto tell = [&](double fraction) { return on_progress((i + fraction) / repeats); };
+    frame.result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
+    frame.trace_ms.push_back(frame.result.trace_ms);
+  }
+  return frame;
+}
+
+Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs) {
+  Metadata metadata = describe_picture(stats);
+  if (frame) metadata.emplace_back("promin:frame", std::to_string(*frame));
+  metadata.insert(metadata.end(), aovs.metadata.begin(), aovs.metadata.end());
+  return metadata;
+}
+
+PixelWindow window_of(const View& view) {
+  return view.crop.value_or(PixelWindow{uvec2(0), view.size});
+}
+
+}  // namespace promin::work

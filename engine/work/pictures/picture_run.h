@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "formats/source_file.h"
+#include "promin/aovs.h"
+#include "promin/image.h"
+#include "promin/renderer.h"
+#include "promin/scene.h"
+#include "promin/view.h"
+#include "trace/render/renderer_impl.h"
+#include "work/pictures/frame_plan.h"
+#include "work/pictures/messages.h"
+#include "work/pictures/picture_files.h"
+#include "work/pictures/run_stats.h"
+#include "work/pictures/tracing_run.h"
+#include "work/spec/render_spec.h"
+
+namespace promin::work {
+
+// The steps of rendering that a single run and a job have in common.
+
+/// Pictures ready to be traced: all inputs are read, but no device is open.
+struct PictureRun {
+  /// The options, with Aovs::unlit if displaying the pictures needs it.
+  RenderSpec options;
+  std::vector<PlannedFrame> frames;
+  /// Lit and framed.
+  Scene scene;
+  std::vector<SourceFile> sources;
+  /// Includes the view of all frames, except their cameras, and the display transform.
+  RunStats stats;
+};
+
+/// Loads the scene of checked options and decides open settings, with notes. Throws InputError, and UsageError for
+/// references to things that the scene lacks.
+PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console);
+
+/// Returns the number of samples of all pictures together.
+uint64_t count_samples(const View& view, size_t frames, const RenderSpec& options);
+
+TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t expected_samples);
+
+/// A picture and the device's time for each of its repetitions.
+struct TracedFrame {
+  RenderResult result;
+  std::vector<double> trace_ms;
+};
+
+TracedFrame trace(Renderer& renderer, const View& view, const RenderSpec& options, const std::optional<double>& limit_s,
+                  const std::function<bool(double)>& on_progress);
+
+/// Returns the metadata, without times, so that equal pictures give equal files.
+Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs);
+
+/// Returns the rendered window of the whole picture.
+PixelWindow window_of(const View& view);
+
+}  // namespace promin::work

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/pictures/tracing_run.h"
+
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <numeric>
+#include <string>
+
+#include "core/limit_threads.h"
+#include "core/stopwatch.h"
+#include "promin/error.h"
+#include "promin/load_scene.h"
+#include "work/pictures/memory_use.h"
+
+namespace promin::work {
+
+void choose_threads(const TracingOptions& options) {
+  if (!options.threads) return;
+  limit_threads(*options.threads);
+  // Drivers read it when they start.
+  setenv("LP_NUM_THREADS", std::to_string(*options.threads).c_str(), 1);
+}
+
+Scene load_for(const TracingOptions& options, RunStats& stats, const Messages& console,
+               std::vector<SourceFile>& sources) {
+  choose_threads(options);
+  const Stopwatch load;
+  Scene scene = load_scene(options.scene, options.load, sources);
+  stats.load_ms = load.ms();
+  for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
+  stats.scene_file = options.scene.filename().string();
+  stats.scene = count_scene(scene);
+  stats.object_count = scene.objects.size();
+  stats.material_count = scene.materials.size();
+  stats.light_count = scene.lights.size();
+  console.detail(fmt::format("loaded {}: objects {}, primitives {}, {:.1f} ms, {}", options.scene.string(),
+                             scene.objects.size(), stats.scene.primitives, stats.load_ms, describe_memory()));
+  return scene;
+}
+
+std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sources) {
+  std::vector<std::filesystem::path> files;
+  for (const SourceFile& source : sources) files.push_back(source.file);
+  return files;
+}
+
+gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Messages& console) {
+  gpu::DeviceHandle device = gpu::open_device(options.device);
+  stats.device = gpu::info_of(*device);
+  console.detail(gpu::choice_of(*device));
+  return device;
+}
+
+void take_setup(const SetupStats& setup, RunStats& stats, const Messages& console) {
+  give_back_memory();
+  stats.setup = setup;
+  for (const Problem& warning : setup.warnings) console.warn(warning);
+  console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,
+                             setup.bvh.nodes, setup.bvh.depth, setup.bvh.sah_cost, setup.bvh_ms));
+  console.detail(fmt::format("features: {}", fmt::join(setup.features, ", ")));
+  console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms, {}", setup.upload_ms,
+                             1e-6 * static_cast<double>(setup.device_bytes), setup.pipeline_ms, describe_memory()));
+}
+
+void tell_end(const RunStats& stats, const Messages& console) {
+  console.detail(fmt::format(
+      "traced {:.4g} Mrays in {:.1f} ms, wrote files in {:.1f} ms, {:.1f} ms in all; at most {:.0f} MB of memory",
+      1e-6 * static_cast<double>(stats.rays.total()),
+      std::accumulate(stats.trace_ms.begin(), stats.trace_ms.end(), 0.0), stats.write_ms, stats.total_ms,
+      peak_memory_mb()));
+}
+
+void check_validation(const gpu::Device& device, const RunStats& stats) {
+  const uint64_t count = gpu::validation_message_count(device);
+  if (count == 0) return;
+  throw RunError({"device.validation.reports", fmt::format("the Vulkan validation layers reported {} problems", count),
+                  stats.device.name, "report them as a bug in promin"});
+}
+
+}  // namespace promin::work

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/pictures/view_setup.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "image/color_words.h"
+#include "promin/error.h"
+#include "work/pictures/camera_choice.h"
+
+namespace promin::work {
+namespace {
+
+constexpr uint32_t kDefaultHeight = 720;
+
+/// Returns the requested aspect ratio of the picture, as far as it is known.
+float aspect_ratio_of(const ViewOptions& options) {
+  const uvec2 size = options.size.value_or(uvec2(0));
+  return size.x > 0 && size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : kDefaultAspectRatio;
+}
+
+/// Returns the size with the missing side computed from the aspect ratio of the camera's default size.
+std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2>& usual) {
+  if (sides.x > 0 && sides.y > 0) return sides;
+  if (!usual) return {};
+  const dvec2 ratio = dvec2(*usual) / dvec2(usual->y, usual->x);
+  const dvec2 size(sides.x > 0 ? sides.x : std::round(sides.y * ratio.x),
+                   sides.y > 0 ? sides.y : std::round(sides.x * ratio.y));
+  if (!(std::min(size.x, size.y) >= 1.0 && std::max(size.x, size.y) <= kMaxSide)) return {};
+  return uvec2(size);
+}
+
+uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
+  if (const auto size = size_for(options.size.value_or(uvec2(0)), camera)) return *size;
+  throw UsageError({"camera.aspect",
+                    fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
+                    scene.file.string(), "give --size"});
+}
+
+}  // namespace
+
+std::optional<uvec2> default_size(const Camera& camera) {
+  if (camera.resolution != uvec2(0)) return camera.resolution;
+  const float aspect_ratio = camera.aspect_ratio > 0.0F ? camera.aspect_ratio : kDefaultAspectRatio;
+  const double width = std::round(static_cast<double>(kDefaultHeight) * static_cast<double>(aspect_ratio));
+  if (!(width >= 1.0 && width <= kMaxSide)) return {};
+  return uvec2(static_cast<uint32_t>(width), kDefaultHeight);
+}
+
+std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
+  const std::optional<uvec2> usual = default_size(camera);
+  return sides == uvec2(0) ? usual : complete_size(sides, usual);
+}
+
+View make_view(const Scene& scene, const ViewOptions& options, const Messages& console) {
+  View view;
+  const Camera* own = find_file_camera(scene, options);
+  view.camera = own != nullptr ? *own : make_camera(scene, options, aspect_ratio_of(options));
+  view.size = choose_size(options, view.camera, scene);
+  if (own != nullptr) view.camera = pose_camera(scene, *own, options.pose, view.size, console);
+  view.crop = options.crop;
+  if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
+    throw UsageError({"view.crop.outside",
+                      fmt::format("--crop extends beyond the picture of {}x{}", view.size.x, view.size.y), "",
+                      "choose pixels inside, or give a larger --size"});
+  }
+  view.samples_per_pixel = options.samples_per_pixel.value_or(View{}.samples_per_pixel);
+  view.filter = options.filter;
+#define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) view.NAME = options.NAME.value_or(USUAL);
+#include "work/spec/view_numbers.def"
+  view.mode = {options.debug_view, !options.has_no_shadows};
+  view.depth_kind = options.depth_kind;
+  return view;
+}
+
+AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings) {
+  surroundings.replace_sky(scene);
+  AssumedLight assumed = light_scene(scene, look.light);
+  surroundings.adjust_sky(scene);
+  if (!look.background) return assumed;
+  assumed.has_background = false;
+  show_background(*look.background, scene.environment);
+  return assumed;
+}
+
+void show_background(const BackgroundChoice& background, Environment& environment) {
+  environment.shows_sky = background.is_environment && environment.has_sky();
+  environment.backdrop.reset();
+  if (background.is_environment) {
+    // Without a sky the environment of the scene is its ambient light.
+    environment.background = environment.ambient;
+  } else if (background.is_linear) {
+    environment.background = background.color;
+  } else {
+    const vec3 light = linear_of_srgb(background.color);
+    environment.background = light;
+    environment.backdrop = Backdrop{light, light};
+  }
+}
+
+DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view) {
+  if (debug_view != DebugView::kNone) return {};
+  DisplayTransform display = display_of(scene, look.light);
+  if (look.exposure_ev) display.exposure_ev = *look.exposure_ev;
+  if (look.tone_mapping) display.tone_mapping = *look.tone_mapping;
+  display.dithers = look.dithers;
+  return display;
+}
+
+bool shows_unlit_apart(const Scene& scene, const Environment& environment, const LookOptions& look,
+                       const DisplayTransform& display) {
+  const bool shows_light_as_it_is = display.exposure_ev == 0.0F && display.tone_mapping == ToneMapping::kNone;
+  return mixes_unlit(scene, environment) && (look.averages_exposure || !shows_light_as_it_is);
+}
+
+std::string describe_framing(Framing framing) {
+  return framing == Framing::kInside ? "a camera that stands inside the scene"
+                                     : "a camera that frames the scene from three quarters";
+}
+
+std::string describe_light(const AssumedLight& light) {
+  if (light.has_studio_light) return "the light of a studio";
+  if (light.has_studio) return "weak studio light in addition to the scene's own";
+  if (light.has_ambient) return fmt::format("a headlight along the view and ambient light of {}", kDefaultAmbient);
+  return light.has_headlight ? "a headlight along the view" : "";
+}
+
+std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                          const std::optional<DisplayTransform>& display) {
+  const LookOptions& look = options.look;
+  std::vector<std::string> parts;
+  if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, options.pose)));
+  if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
+  if (light.has_background) parts.emplace_back("a grey background");
+  if (display && !look.exposure_ev && !look.averages_exposure && display->exposure_ev != 0.0F) {
+    parts.push_back(fmt::format("an exposure of {:+g} EV", display->exposure_ev));
+  }
+  if (display && !look.tone_mapping && display->tone_mapping != ToneMapping::kNone) {
+    parts.push_back(fmt::format("tone mapping {}", tone_mapping_names()[static_cast<size_t>(display->tone_mapping)]));
+  }
+  return parts;
+}
+
+std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
+                                 const std::optional<DisplayTransform>& display) {
+  const std::vector<std::string> parts = list_assumptions(scene, options, light, display);
+  return parts.empty() ? "" : fmt::format("assumed: {}", fmt::join(parts, ", "));
+}
+
+void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
+  for (const uint32_t index : indices) {
+    if (index < scene.lights.size()) continue;
+    throw UsageError({"light.unknown", fmt::format("the scene has no light {} to switch off", index),
+                      scene.file.string(), fmt::format("it has {}; the first is number 0", scene.lights.size())});
+  }
+}
+
+void switch_lights(std::vector<Light>& lights, const std::vector<uint32_t>& off) {
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    lights[i].is_on = std::find(off.begin(), off.end(), i) == off.end();
+  }
+}
+
+}  // namespace promin::work

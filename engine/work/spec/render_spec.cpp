@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/spec/render_spec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/count_of.h"
+#include "promin/error.h"
+#include "trace/film/refinement.h"
+
+namespace promin::work {
+
+std::vector<std::filesystem::path> input_files(const TracingOptions& options) {
+  std::vector<std::filesystem::path> files = {options.scene};
+  if (options.bvh) files.push_back(*options.bvh);
+  return files;
+}
+
+std::filesystem::path shared_tree_file(const JobOptions& job, const std::string& builder) {
+  return *job.folder / "trees" / (builder + ".pbvh");
+}
+
+std::span<const std::string_view> quality_names() {
+  using std::string_view_literals::operator""sv;
+  static constexpr std::array kNames = {"draft"sv, "normal"sv, "high"sv, "best"sv};
+  return kNames;
+}
+
+std::string least_error() {
+  return fmt::format("1/{:g}", 1.0F / kMinTargetError);
+}
+
+std::span<const std::string_view> error_space_names() {
+  static constexpr std::array kNames = {std::string_view("linear"), std::string_view("display")};
+  return kNames;
+}
+
+std::optional<ErrorTarget> ErrorOptions::error_target() const {
+  if (!is_given()) return {};
+  return target_or(kMinTargetError);
+}
+
+ErrorTarget ErrorOptions::target_or(float error) const {
+  ErrorTarget result;
+  result.error = target.value_or(error);
+  if (target && !time_limit_s) result.min_samples = usual_min_samples(*target);
+  result.min_samples = min_samples.value_or(std::min(result.min_samples, max_samples.value_or(result.min_samples)));
+  result.max_samples = max_samples.value_or(std::max(result.max_samples, result.min_samples));
+  if (space == ErrorSpace::kDisplay) result.display.emplace();
+  return result;
+}
+
+void fit_to_display(ErrorTarget& target, const DisplayTransform& display) {
+  target.white = std::exp2(-display.exposure_ev);
+  if (target.display) target.display = display;
+}
+
+std::string describe_options(const ErrorTarget& target) {
+  return fmt::format("--target-error {} --min-spp {} --max-spp {}{}", target.error, target.min_samples,
+                     target.max_samples, target.display ? " --error-in display" : "");
+}
+
+std::string describe_errors(float least, float most, const ErrorTarget& target) {
+  const std::string to = least == most ? "" : fmt::format(" to {}", most);
+  return fmt::format("error {}{}{}", least, to, target.display ? " as shown" : "");
+}
+
+std::string describe_unmet(const PictureError& error) {
+  if (error.unmet_pixels == 0) return "";
+  return fmt::format(" but for {} of at most {:.3g}", count_of(error.unmet_pixels, "pixel"), error.largest_claim);
+}
+
+namespace {
+
+/// Samples of `best` for pictures without an error target: with a debug shading or --exposure average.
+constexpr uint32_t kBestSamples = 128;
+/// The error of `best`: one code of 8 bits in the shown colours.
+constexpr float kBestError = 1.0F / 256.0F;
+
+}  // namespace
+
+void apply_quality(RenderSpec& options) {
+  std::optional<uint32_t>& samples = options.view.samples_per_pixel;
+  if (options.error.is_given() || samples) return;
+  const bool has_error = options.view.debug_view == DebugView::kNone && !options.view.look.averages_exposure;
+  switch (options.quality.value_or(options.explained_pixel ? Quality::kDraft : Quality::kNormal)) {
+    case Quality::kDraft:
+      samples = 1;
+      break;
+    case Quality::kNormal:
+      samples = kDefaultSamples;
+      break;
+    case Quality::kHigh:
+      samples = kHighSamples;
+      break;
+    case Quality::kBest:
+      if (!has_error) {
+        samples = kBestSamples;
+        break;
+      }
+      options.error.target = kBestError;
+      options.error.space = ErrorSpace::kDisplay;
+      break;
+  }
+}
+
+std::vector<std::filesystem::path> name_pictures(const RenderSpec& options) {
+  if (!options.pictures.empty() || options.explained_pixel || options.job.share) return options.pictures;
+  const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
+  return {stem + ".exr", stem + ".png"};
+}
+
+}  // namespace promin::work

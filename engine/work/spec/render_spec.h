@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "promin/framing.h"
+#include "promin/lighting.h"
+#include "promin/math.h"
+#include "promin/renderer.h"
+#include "work/spec/common_spec.h"
+#include "work/spec/environment_choice.h"
+
+namespace promin::work {
+
+// Ranges of members, for options and JSON alike.
+
+inline constexpr uint32_t kMaxFrame = 9999999;
+inline constexpr double kMaxBackground = 1e9;
+/// Larger values would exceed the range of floats.
+inline constexpr double kMaxExposureEv = 64.0;
+inline constexpr uint32_t kMaxTextureMib = 8192;
+/// Seconds.
+inline constexpr double kMinTimeLimit = 1e-3;
+inline constexpr double kMaxTimeLimit = 1e6;
+/// Angles of 0 and 180 degrees show nothing.
+inline constexpr double kMinFovDeg = 1e-3;
+inline constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
+inline constexpr double kMaxTurnDeg = 3600.0;
+inline constexpr double kMinZoom = 1e-3;
+inline constexpr double kMaxZoom = 1e3;
+
+/// The background that camera rays see.
+struct BackgroundChoice {
+  /// Whether they see the environment; else the colour.
+  bool is_environment = false;
+  /// Whether the colour is linear light, which is exposed and tone mapped; else it is displayed sRGB, 0 to 1.
+  bool is_linear = false;
+  vec3 color{0.0F};
+
+  bool operator==(const BackgroundChoice&) const = default;
+};
+
+/// The user's choices of light and display. Open choices depend on the scene (promin/lighting.h).
+struct LookOptions {
+  LightChoice light = LightChoice::kAuto;
+  std::optional<BackgroundChoice> background = std::nullopt;
+  /// Exposure in stops.
+  std::optional<float> exposure_ev = std::nullopt;
+  /// Whether the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
+  bool averages_exposure = false;
+  std::optional<ToneMapping> tone_mapping = std::nullopt;
+  bool dithers = false;
+  /// RendererOptions::texture_bytes in MiB.
+  uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
+};
+
+/// The user's choices of a camera's position, directions and lens. Positions are in the world. Directions need not be
+/// unit vectors.
+struct PoseOptions {
+  /// The side from which to frame the scene, even if it has cameras.
+  std::optional<Framing> from = std::nullopt;
+  /// The part of the picture that a framed scene covers.
+  std::optional<float> fit = std::nullopt;
+  std::optional<dvec3> eye = std::nullopt;
+  /// At most one of these two.
+  std::optional<dvec3> look_at = std::nullopt;
+  std::optional<dvec3> direction = std::nullopt;
+  std::optional<dvec3> up = std::nullopt;
+  Orbit orbit = {};
+  /// Magnifies the picture around its middle.
+  double zoom = 1.0;
+  /// The vertical field of view, degrees in (0, 180).
+  std::optional<double> fov_deg = std::nullopt;
+  std::optional<double> near = std::nullopt;
+
+  bool looks() const { return look_at || direction; }
+  bool any() const { return from || fit || eye || looks() || up || orbit != Orbit() || zoom != 1.0 || fov_deg || near; }
+};
+
+/// The user's choices of the view, from which make_view (view_setup.h) makes a View.
+struct ViewOptions {
+  /// Size in pixels; a side of 0 follows from the camera's aspect ratio.
+  std::optional<uvec2> size;
+  std::optional<PixelWindow> crop;
+  /// Samples per pixel; the default of View if empty.
+  std::optional<uint32_t> samples_per_pixel = std::nullopt;
+  PixelFilter filter = PixelFilter::kBox;
+  /// @cond
+#define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) std::optional<TYPE> NAME = std::nullopt;
+#include "work/spec/view_numbers.def"
+  /// @endcond
+  DebugView debug_view = DebugView::kNone;
+  DepthKind depth_kind = DepthKind::kRay;
+  bool has_no_shadows = false;
+  LookOptions look;
+  /// Indices of the scene's lights to switch off.
+  std::vector<uint32_t> lights_off;
+  /// The name or number of a camera.
+  std::optional<std::string> camera;
+  /// Whether to frame the scene, and ignore its cameras unless one is named.
+  bool frames_scene = false;
+  /// A camera that replaces those of the scene.
+  std::optional<Camera> given_camera;
+  PoseOptions pose;
+  EnvironmentOptions environment;
+};
+
+/// A range of frame numbers from 0, both included.
+struct FrameRange {
+  uint32_t first = 0;
+  uint32_t last = 0;
+};
+
+/// The default number of samples per pixel. Eight remove the stairs at edges and the noise of small mirrors, and cost
+/// about a second of two cores more at 640x480.
+inline constexpr uint32_t kDefaultSamples = 8;
+
+/// How good a picture is, for people who do not count samples.
+enum class Quality : uint32_t { kDraft, kNormal, kHigh, kBest };
+
+/// Returns names for people, indexed by Quality.
+std::span<const std::string_view> quality_names();
+/// The samples of Quality::kHigh.
+inline constexpr uint32_t kHighSamples = 32;
+
+/// The space in which errors are measured: linear light, or as displayed.
+enum class ErrorSpace : uint32_t { kLinear, kDisplay };
+
+/// Returns names for people, indexed by ErrorSpace.
+std::span<const std::string_view> error_space_names();
+
+/// Returns the smallest target error as the text of a fraction.
+std::string least_error();
+
+/// The user's choices of accuracy. Open choices follow from the others.
+struct ErrorOptions {
+  std::optional<float> target;
+  /// Time limit in seconds.
+  std::optional<double> time_limit_s;
+  std::optional<uint32_t> min_samples;
+  std::optional<uint32_t> max_samples;
+  /// The space in which errors are measured.
+  std::optional<ErrorSpace> space;
+
+  bool is_given() const { return target || time_limit_s; }
+  /// Returns the error target; empty for a fixed number of samples.
+  std::optional<ErrorTarget> error_target() const;
+  /// Returns the error target, with this error if none is given. The display transform is not set yet (fit_to_display).
+  ErrorTarget target_or(float error) const;
+};
+
+/// Sets the members of a target that depend on the display: the radiance of white and, if errors are measured as
+/// displayed, the transform.
+void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
+
+/// Returns the options that give exactly this target.
+std::string describe_options(const ErrorTarget& target);
+/// Returns "error 0.015625", "error 0.015625 to 0.125" or one of these with " as shown": the errors reached, measured
+/// as for the target.
+std::string describe_errors(float least, float most, const ErrorTarget& target);
+
+/// Returns " but for 750 pixels of at most 0.0161" for pixels that have missed a target; empty if there are none.
+std::string describe_unmet(const PictureError& error);
+
+/// The pictures that are requested of a scene. spec_json.h reads and writes it as JSON.
+struct RenderSpec {
+  TracingOptions tracing;
+  /// If the user names none, those of name_pictures.
+  std::vector<std::filesystem::path> pictures;
+  /// Whether to skip frames whose pictures exist.
+  bool skips_existing = false;
+  ViewOptions view;
+  std::optional<Quality> quality;
+  ErrorOptions error;
+  JobOptions job;
+  /// Further channels of an EXR in addition to R, G and B.
+  AovSet aovs;
+  /// Whether AovSet::unlit is only needed to display the pictures, which is known when the scene is read.
+  bool hides_unlit = false;
+  ExrOptions exr;
+  /// Whether the user has chosen the compression of EXRs, even if it is the default.
+  bool names_compression = false;
+  /// A camera path, and the frames to render; without `frames` all.
+  std::optional<std::filesystem::path> path;
+  std::optional<FrameRange> frames;
+  /// The rate of pictures, as for PathPictures.
+  std::optional<double> fps;
+  /// A pixel to explain in place of writing a picture.
+  std::optional<uvec2> explained_pixel;
+  bool has_all_features = false;
+};
+
+/// Sets samples or an error target from the quality.
+void apply_quality(RenderSpec& options);
+
+/// Returns the pictures that a command writes: those named or, if none is and no pixel is explained, the scene's name
+/// with .exr and .png in the current folder, with #### for frames of a path.
+std::vector<std::filesystem::path> name_pictures(const RenderSpec& options);
+
+}  // namespace promin::work
