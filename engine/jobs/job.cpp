@@ -266,6 +266,14 @@ std::string text_of_line(const Json& line) {
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// Returns the version of the pieces' maker: that of a function, if the job states it, else promin's.
+std::string version_of(const Manifest& manifest) {
+  for (const auto& [name, value] : manifest.options) {
+    if (name == "version") return value;
+  }
+  return PROMIN_VERSION;
+}
+
 /// Returns whether two makers are expected to give the same bits if their builds do. A program computes no fingerprint.
 bool is_same_device(const Maker& a, const Maker& b) {
   const bool may_differ = !a.fingerprint.empty() && !b.fingerprint.empty() && a.fingerprint != b.fingerprint;
@@ -371,7 +379,7 @@ Receipt Job::write(size_t piece, const Content& content, double ms, const Maker&
                   .size_bytes = content.bytes.size(),
                   .ms = ms,
                   .maker = maker,
-                  .version = PROMIN_VERSION,
+                  .version = version_of(manifest_),
                   .host = host_name(),
                   .pid = getpid()};
   const Json header = {{"job", id_},

@@ -326,7 +326,7 @@ class Job:
         if told is not None:
             return told
         name = self._pieces[number].name
-        return Receipt(number, name, sha256, size, 0.0, "", "", "", "", 0)
+        return Receipt(number, name, sha256, size, 0.0, "", "", self._options.get("version", ""), "", 0)
 
     def events(self, maker: str | None = None) -> list[dict[str, Any]]:
         """Returns the events of the ledger sorted by time, or those of one maker in their order. Each is a dict with
