@@ -141,7 +141,7 @@ void build_tree(PackedScene& packed, const world::Scene& scene, const Collected&
                  [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
                 options);
   check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
-                "; use the builder sah", Setting::kBuilder);
+                ", or use the builder sah", Setting::kBuilder);
   packed.bvh_ms = building.ms();
   packed.bvh = measure_bvh(builder, bvh);
   PackedTree tree = pack_tree(bvh);

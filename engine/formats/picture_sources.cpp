@@ -111,8 +111,9 @@ void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
     try {
       warnings[i] = decode(source);
     } catch (const PictureError& error) {
-      source.problem =
-          Fault{.code = "picture.unusable", .what = std::string("a picture cannot be used: ") + error.what()};
+      source.problem = Fault{.code = "picture.unusable",
+                             .what = std::string("a picture cannot be used: ") + error.what(),
+                             .cure = "use another picture"};
       source.is_file_at_fault = error.is_file_at_fault();
     }
     source.own = {};

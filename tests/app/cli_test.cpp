@@ -467,7 +467,7 @@ std::string square_with_broken_texels() {
 TEST_F(CliTest, InfoWarnsOfTexels) {
   write("broken.gltf", square_with_broken_texels());
   const std::string decoded = run({"info", "broken.gltf"}).out;
-  EXPECT_THAT(decoded, ContainsRegex("warnings +a picture cannot be used: .*images\\[0\\]; "));
+  EXPECT_THAT(decoded, ContainsRegex("warnings +image images\\[0\\]: a picture cannot be used: .*; "));
   const std::string skipped = run({"info", "broken.gltf", "--no-texels"}).out;
   EXPECT_THAT(skipped, ContainsRegex("textures +1 of 1 images \\(1 of 1x1\\)"));
   EXPECT_THAT(skipped, ContainsRegex("warnings +none\n"));

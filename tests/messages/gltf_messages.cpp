@@ -432,7 +432,8 @@ std::vector<MessageCase> cases_of_geometry() {
             }),
       spoil("gltf.shape.far",
             [](auto& g) {
-              g.json["nodes"][1]["translation"] = {1e16, 0, 0};
+              g.json["nodes"][1]["translation"] = {1e15, 0, 0};
+              g.add_node({{"children", {1}}, {"scale", {2, 2, 2}}});
             }),
       spoil("gltf.shape.flat",
             [](auto& g) {

@@ -141,11 +141,13 @@ std::vector<MessageCase> cases_of_folders() {
       {"job.kind.unknown", [] { app::check_job_files(make_job(), {}, std::nullopt); }},
       {"job.pieces.many",
        [] {
-         static_cast<void>(app::cut_picture({{0, 0}, {4, 4}}, {.pieces = 9}, 1));
+         static_cast<void>(
+             app::cut_picture({{0, 0}, {4, 4}}, {.folder = {}, .pieces = 9, .tiles = {}, .share = {}}, 1));
        }},
       {"job.pieces.many",
        [] {
-         static_cast<void>(app::cut_picture({{0, 0}, {1 << 15, 1 << 15}}, {.tiles = uvec2(1 << 15)}, 1));
+         static_cast<void>(app::cut_picture({{0, 0}, {1 << 15, 1 << 15}},
+                                            {.folder = {}, .pieces = {}, .tiles = uvec2(1 << 15), .share = {}}, 1));
        }},
   };
 }

@@ -110,7 +110,7 @@ const WrongUsage kWrongUsages[] = {
     {"usage.option.useless", {"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--fit", "1.5"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--zoom", "0"}},
-    {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--up", "north"}},
+    {"usage.option.few", {"render", "square.gltf", "-o", "a.exr", "--up", "north"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--builder", "none"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--device", ""}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--features", "few"}},
@@ -209,13 +209,16 @@ std::string frame(const std::string& time, const std::string& look, const std::s
   return R"({"time_s": )" + time + R"(, "eye": [0, 0, 4], "up": [0, 1, 0], "look": )" + look + more + "}";
 }
 
-void write_files() {
+void write_scenes() {
   write_case("triangle.obj", kTriangleObj);
   write_case("square.gltf", kSquareGltf);
   write_case("square.png", "a file of somebody");
   std::string narrow = kSquareGltf;
   const std::string yfov = "\"yfov\"";
   write_case("narrow.gltf", narrow.replace(narrow.find(yfov), yfov.size(), "\"aspectRatio\": 1e-6, " + yfov));
+}
+
+void write_pictures() {
   const Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.5F))};
   write_image("a.exr", picture);
   write_image("a.png", picture);
@@ -223,6 +226,9 @@ void write_files() {
   write_image("small.exr", {{2, 2}, std::vector<vec3>(4, vec3(0.5F))});
   const std::vector<Channel> depth = {{"Z", false, std::vector<uint32_t>(8)}};
   write_image("deep.exr", picture, {}, std::nullopt, depth);
+}
+
+void write_paths() {
   const std::string ahead = "[0, 0, -1]";
   const std::string lens = R"(, "fov_deg": 40)";
   write_path("path.json", 1, frame("0", ahead, lens) + ", " + frame("100000", ahead, lens));
@@ -239,7 +245,9 @@ std::vector<MessageCase> cases_of_usage() {
   std::vector<MessageCase> cases;
   for (const auto& [code, words] : kWrongUsages) {
     cases.push_back({code, [&words = words] {
-                       write_files();
+                       write_scenes();
+                       if (words[0] == "compare") write_pictures();
+                       if (std::ranges::find(words, "--path") != words.end()) write_paths();
                        run("promin",
                            {app::add_render_command, app::add_merge_command, app::add_cast_command,
                             app::add_compare_command, app::add_info_command, app::add_thumbnail_command,
@@ -249,7 +257,7 @@ std::vector<MessageCase> cases_of_usage() {
   }
   for (const auto& [code, words] : kWrongUsagesOfTrees) {
     cases.push_back({code, [&words = words] {
-                       write_files();
+                       write_scenes();
                        run("promin-bvh", {app::add_build_command, app::add_verify_command}, words);
                      }});
   }

@@ -70,20 +70,21 @@ std::vector<MessageCase> cases_of_scenes() {
             [](Scene& s) {
               add_image(s, {});
               s.textures.resize(1);
-              s.materials[0].normal_texture.texture = 0;
-              s.materials[0].normal_texture.uv_set = 2;
+              s.materials[0].phong().normal_texture.texture = 0;
+              s.materials[0].phong().normal_texture.uv_set = 2;
             }),
       spoil("scene.texture.transform",
             [](Scene& s) {
               add_image(s, {});
               s.textures.resize(1);
-              s.materials[0].normal_texture.texture = 0;
-              s.materials[0].normal_texture.to_u.x = kNan;
+              s.materials[0].phong().normal_texture.texture = 0;
+              s.materials[0].phong().normal_texture.to_u.x = kNan;
             }),
       spoil("scene.choice.unknown", [](Scene& s) { s.lights[0].kind = static_cast<LightKind>(99); }),
       spoil("scene.image.missing", [](Scene& s) { s.images.resize(1); }),
-      spoil("scene.image.size", [](Scene& s) { add_image(s, {.size = uvec2(kMaxTextureSide + 1, 1), .texels = {0}}); }),
-      spoil("scene.image.texels", [](Scene& s) { add_image(s, {.size = uvec2(2, 2), .texels = {0}}); }),
+      spoil("scene.image.size",
+            [](Scene& s) { add_image(s, {.name = {}, .size = uvec2(kMaxTextureSide + 1, 1), .texels = {0}}); }),
+      spoil("scene.image.texels", [](Scene& s) { add_image(s, {.name = {}, .size = uvec2(2, 2), .texels = {0}}); }),
       spoil("scene.reference.range", [](Scene& s) { s.objects[1].geometry = 77; }),
       spoil("scene.reference.range", [](Scene& s) { mesh_of(s).triangles[0].z = 3; }),
       spoil("scene.position.range", [](Scene& s) { mesh_of(s).positions[1].y = kNan; }),
@@ -122,7 +123,7 @@ std::vector<MessageCase> cases_of_scenes() {
       {"textures.memory.short",
        [] {
          std::vector<std::shared_ptr<const TextureImage>> images(
-             3, std::make_shared<const TextureImage>(TextureImage{.size = uvec2(1, 1), .texels = {0}}));
+             3, std::make_shared<const TextureImage>(TextureImage{.name = {}, .size = uvec2(1, 1), .texels = {0}}));
          for (auto& image : images) image = std::make_shared<const TextureImage>(*image);
          static_cast<void>(pack_images(images, {}, 1));
        }},
@@ -197,7 +198,9 @@ std::vector<MessageCase> cases_of_pictures() {
        }},
       {"picture.damaged",
        [] {
-         write_image("a.exr", {{64, 64}, std::vector<vec3>(4096, vec3(0.5F))});
+         Image picture = {{64, 64}, std::vector<vec3>(4096)};
+         for (size_t i = 0; i < 4096; ++i) picture.pixels[i] = vec3(std::sin(static_cast<float>(i)));
+         write_image("a.exr", picture);
          std::filesystem::resize_file("a.exr", std::filesystem::file_size("a.exr") / 2);
          static_cast<void>(read_image("a.exr"));
        },

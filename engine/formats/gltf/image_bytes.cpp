@@ -18,7 +18,8 @@ void read_gltf_image(const GltfDocument& document, size_t index, PictureSource& 
     return;
   }
   if (!image.contains("uri")) {
-    source.problem = Fault{.code = "gltf.image.missing", .what = "an image has neither a uri nor a bufferView"};
+    source.problem = Fault{
+        .code = "gltf.image.missing", .what = "an image has neither a uri nor a bufferView", .cure = "add one of them"};
     return;
   }
   const auto& uri = image["uri"].get_ref<const std::string&>();
