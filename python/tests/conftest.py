@@ -9,15 +9,25 @@ import os
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Iterator, Optional
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import promin
+from promin._device import find_device
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def default_device() -> Iterator[Optional[promin.Device]]:
+    """The default device, open for all tests, so that the kernels of one test serve the next; None if there is none."""
+    try:
+        yield find_device(None)
+    except promin.DeviceError:
+        yield None
 
 
 @pytest.fixture(scope="session")

@@ -18,7 +18,7 @@ from conftest import REPOSITORY
 import promin
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
+@pytest.mark.parametrize("document", ["README.md", pytest.param("docs/python.md", marks=pytest.mark.long)])
 def test_code_in_documents_works(document: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     blocks = re.findall(r"```python\n(.*?)```", (REPOSITORY / document).read_text(), re.DOTALL)
     assert blocks

@@ -34,6 +34,7 @@ def test_mypy_strict(tmp_path: Path) -> None:
     run(tmp_path, "-m", "mypy", "--strict", use)
 
 
+@pytest.mark.long  # It reads NumPy's types without a cache.
 def test_stubtest(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
     allowed = Path(__file__).with_name("stubtest_allowlist.txt")

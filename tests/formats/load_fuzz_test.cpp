@@ -11,6 +11,7 @@
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
 #include "support/stl_builder.h"
+#include "support/thorough.h"
 
 namespace promin {
 namespace {
@@ -162,9 +163,10 @@ class LoadFuzzTest : public SceneFolder {
     write("a.png", {reinterpret_cast<const char*>(png.data()), png.size()});
   }
 
-  /// Loads `scene` with `count` mutants of the file `name`.
-  void run(const std::string& name, const std::string& bytes, const std::string& scene, int count,
+  /// Loads `scene` with mutants of the file `name`: 3000 in thorough tests, else the first 600 of these.
+  void run(const std::string& name, const std::string& bytes, const std::string& scene,
            const LoadOptions& options = {}) {
+    const int count = test::is_thorough() ? 3000 : 600;
     std::mt19937 random(20240607);
     int refused = 0;
     int noticed = 0;
@@ -189,41 +191,41 @@ class LoadFuzzTest : public SceneFolder {
 };
 
 TEST_F(LoadFuzzTest, GltfLoadsOrIsRefused) {
-  run("a.gltf", small_gltf().text(), "a.gltf", 3000);
+  run("a.gltf", small_gltf().text(), "a.gltf");
 }
 
 TEST_F(LoadFuzzTest, GlbLoadsOrIsRefused) {
-  run("a.glb", small_gltf().glb(), "a.glb", 3000);
+  run("a.glb", small_gltf().glb(), "a.glb");
 }
 
 TEST_F(LoadFuzzTest, ObjLoadsOrIsRefused) {
   write("a.mtl", kSmallMtl);
-  run("a.obj", kSmallObj, "a.obj", 3000);
+  run("a.obj", kSmallObj, "a.obj");
 }
 
 // Only a strict loader refuses an OBJ for its MTL.
 TEST_F(LoadFuzzTest, MtlLoadsOrIsRefused) {
   write("a.obj", kSmallObj);
-  run("a.mtl", kSmallMtl, "a.obj", 3000, {.is_strict = true});
+  run("a.mtl", kSmallMtl, "a.obj", {.is_strict = true});
 }
 
 TEST_F(LoadFuzzTest, PlyLoadsOrIsRefused) {
-  run("a.ply", small_text_ply(), "a.ply", 3000);
-  run("a.ply", small_textured_ply(), "a.ply", 3000);
-  run("a.ply", small_binary_ply(std::endian::little), "a.ply", 3000);
-  run("a.ply", small_binary_ply(std::endian::big), "a.ply", 3000);
+  run("a.ply", small_text_ply(), "a.ply");
+  run("a.ply", small_textured_ply(), "a.ply");
+  run("a.ply", small_binary_ply(std::endian::little), "a.ply");
+  run("a.ply", small_binary_ply(std::endian::big), "a.ply");
 }
 
 TEST_F(LoadFuzzTest, StlLoadsOrIsRefused) {
-  run("a.stl", kSmallStl, "a.stl", 3000);
+  run("a.stl", kSmallStl, "a.stl");
   StlBuilder stl;
   stl.add({vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)});
   stl.add({vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)}, 0x8007);
-  run("a.stl", stl.bytes(), "a.stl", 3000);
+  run("a.stl", stl.bytes(), "a.stl");
 }
 
 TEST_F(LoadFuzzTest, NffLoadsOrIsRefused) {
-  run("a.nff", kSmallNff, "a.nff", 3000);
+  run("a.nff", kSmallNff, "a.nff");
 }
 
 /// A file that ends anywhere, and one that lacks any of its words or has it twice.

@@ -96,7 +96,7 @@ void run_box_edges(Lab& lab) {
     for (const double distance : {0.02, 1.0, 1e3}) {
       const BlockScene blocks = make_blocks(offset, random);
       std::vector<Ray> rays;
-      for (size_t i = 0; i < 40000; ++i) {
+      for (size_t i = 0; i < some_of(40000); ++i) {
         rays.push_back(ray_at_block(blocks.blocks[i % blocks.blocks.size()], distance, random, i));
       }
       const PackedScene packed = pack_scene(blocks.scene, builder_names().front());
@@ -119,8 +119,8 @@ void run_axis_parallel(Lab& lab) {
   for (const double offset : {0.0, 1e3}) {
     const BlockScene blocks = make_blocks(offset, random);
     std::vector<Ray> rays;
-    for (int i = 0; i < 3000; ++i) {
-      const Block& block = blocks.blocks[static_cast<size_t>(i) % blocks.blocks.size()];
+    for (size_t i = 0; i < some_of(3000); ++i) {
+      const Block& block = blocks.blocks[i % blocks.blocks.size()];
       Ray ray{vec3(0.0F), 0.0F, vec3(0.0F), std::numeric_limits<float>::infinity()};
       for (int axis = 0; axis < 3; ++axis) {
         // On a side's plane, in the middle between two, or off them.
@@ -130,7 +130,7 @@ void run_axis_parallel(Lab& lab) {
         const float step = kSteps[static_cast<size_t>(4.0 * random.uniform())];
         ray.direction[axis] = random.uniform() < 0.5 ? -step : step;
       }
-      const int main_axis = i % 3;
+      const int main_axis = static_cast<int>(i % 3);
       ray.direction[main_axis] = random.uniform() < 0.5 ? -1.0F : 1.0F;
       if (i % 4 < 2) ray.origin[main_axis] -= 5.0F * ray.direction[main_axis];
       rays.push_back(ray);

@@ -28,6 +28,9 @@ using measure::scene_of;
 
 class Lab;
 
+/// Returns how many of a row's rays are cast: an eighth of them, or all with tools/test --long and in tools/accuracy.
+size_t some_of(size_t rays);
+
 /// One row of the table of hard cases.
 struct HardCase {
   int row = 0;

@@ -14,9 +14,9 @@ namespace promin::hard {
 namespace {
 
 /// For each of the orientations.
-constexpr size_t kRayCount = 25000;
+const size_t kRayCount = some_of(25000);
 /// Where many answers differ from the oracle's: the search for the margin of one takes a millisecond.
-constexpr size_t kGrazingRayCount = 1000;
+const size_t kGrazingRayCount = some_of(1000);
 
 /// BK, B2 and well-formed hits. B1 has no meaning where rays come near an edge: the normal jumps there.
 void expect_bounds(Lab& lab, const std::string& where, const Tally& tally) {

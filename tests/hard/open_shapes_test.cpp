@@ -20,7 +20,7 @@ namespace {
 constexpr int kShapeCount = 20;
 /// What goes wrong at a rim does so for one ray in some ten thousand.
 const int kRimShapeCount = test::is_thorough() ? 40 : 16;
-constexpr int kRayCount = 5000;
+const size_t kRayCount = some_of(5000);
 constexpr vec3 kCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
 
 /// Both kinds by the same names.
@@ -80,7 +80,7 @@ TYPED_TEST(OpenShapeTest, TheOracleAgrees) {
     const Side side(shape);
     const double distance = side.size() * std::pow(10.0, this->random.uniform(0.2, 4.0));
     std::vector<Ray> rays;
-    for (int k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kRayCount; ++k) {
       const double z = side.half_height * this->random.uniform(-1.1, 1.1);
       const dvec3 target = side.at(z, side.widest() * this->random.uniform() * this->random.perpendicular(side.axis));
       rays.push_back(ray_towards(side.center + distance * this->random.direction(), target));
@@ -101,7 +101,7 @@ TYPED_TEST(OpenShapeTest, RaysEnterWhereADiskIsMissing) {
     const Side side(shape);
     const double end = side.radius_bottom >= side.radius_top ? -1.0 : 1.0;
     std::vector<Ray> rays;
-    for (int k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kRayCount; ++k) {
       const dvec3 gate = side.at(end * side.half_height, 0.9 * side.widest() * std::sqrt(this->random.uniform()) *
                                                              this->random.perpendicular(side.axis));
       const double z = side.half_height * this->random.uniform(-0.9, 0.9);
@@ -138,7 +138,7 @@ TYPED_TEST(OpenShapeTest, RaysAlongTheAxisPassThroughTheTube) {
                        (glm::length(dvec3(kCenters[i % 3])) + 2.0 * distance + side.size());
     std::vector<Ray> through;
     std::vector<Ray> at_wall;
-    for (int k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kRayCount; ++k) {
       const auto ray_at = [&](double impact) {
         const dvec3 foot = side.at(0.0, impact * this->random.perpendicular(side.axis));
         Ray ray = ray_towards(foot - static_cast<double>(sign) * distance * side.axis, foot);
@@ -167,7 +167,7 @@ TYPED_TEST(OpenShapeTest, RimsAreWhereTheSideEnds) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     std::vector<Ray> rays;
-    for (int k = 0; k < kRayCount / 4; ++k) {
+    for (size_t k = 0; k < kRayCount / 4; ++k) {
       const double end = k % 2 == 0 ? -1.0 : 1.0;
       const dvec3 radial = this->random.perpendicular(side.axis);
       const dvec3 rim = side.at(end * side.half_height, side.radius_at(end * side.half_height) * radial);
@@ -188,7 +188,7 @@ TYPED_TEST(OpenShapeTest, FromInsideTheWallIsMetAndTheEndsAreNot) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     std::vector<Ray> rays;
-    for (int k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kRayCount; ++k) {
       const double z = side.half_height * this->random.uniform(-1.0, 1.0);
       const double radius = side.radius_at(z) * std::sqrt(this->random.uniform());
       const dvec3 origin = side.at(z, radius * this->random.perpendicular(side.axis));
@@ -214,7 +214,7 @@ TYPED_TEST(OpenShapeTest, ClosedShapesKeepTheirBits) {
     TypeParam far_open = far_away;
     far_open.is_open = true;
     std::vector<Ray> rays;
-    for (int k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kRayCount; ++k) {
       const dvec3 origin = side.center + 5.0 * side.size() * this->random.direction();
       rays.push_back(
           ray_towards(origin, side.center + side.size() * this->random.uniform() * this->random.direction()));

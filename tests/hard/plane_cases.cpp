@@ -11,7 +11,7 @@
 namespace promin::hard {
 namespace {
 
-constexpr size_t kRayCount = 100000;
+const size_t kRayCount = some_of(100000);
 
 /// Of |dt n.d| / (u (|q - o| + |t d|)); infinite where a hit is missing.
 Tally judge_plane(const world::Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {

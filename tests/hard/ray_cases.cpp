@@ -131,14 +131,14 @@ void expect_directions(Lab& lab, double scale, double length, bool has_denormals
   const world::Scene scene =
       scene_of({world::Sphere{vec3(0.0F), size}, world::Plane{vec3(0.0F, -2.0F * size, 0.0F), vec3(0, 1, 0)}});
   std::vector<Ray> rays;
-  for (int i = 0; i < 20000; ++i) {
+  for (size_t i = 0; i < some_of(20000); ++i) {
     const double reach = 0.9 * scale * random.uniform();
     const dvec3 target = reach * random.direction();
     Ray ray = ray_towards(1.5 * scale * random.direction(), target);
     ray.direction = vec3(length * dvec3(ray.direction));
     if (has_denormals) {
       // Along an axis, but for the two others.
-      const int axis = i % 3;
+      const int axis = static_cast<int>(i % 3);
       ray.origin = vec3(target);
       ray.origin[axis] = 1.5F * size;
       ray.direction = vec3(1e-39F, -1e-41F, 1e-45F);

@@ -41,7 +41,7 @@ struct ShapeName {
 };
 
 constexpr int kShapeCount = 20;
-constexpr int kRayCount = 5000;
+const size_t kRayCount = some_of(5000);
 /// Near the origin, and so far from it that a unit in the last place is a thousandth of a shape.
 constexpr vec3 kCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
 
@@ -90,7 +90,7 @@ TYPED_TEST(ShapeTest, TheOracleAgrees) {
     const oracle::BoundingSphere around = oracle::bounding_sphere(shape, 0);
     const double radius = around.radius > 0 ? static_cast<double>(around.radius) : 1.0;
     std::vector<Ray> rays;
-    for (int k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kRayCount; ++k) {
       const dvec3 origin = dvec3(center) + 5.0 * radius * this->random().direction();
       rays.push_back(
           ray_towards(origin, dvec3(center) + radius * this->random().uniform() * this->random().direction()));

@@ -14,12 +14,12 @@ namespace promin::hard {
 namespace {
 
 /// For each of the four axes.
-constexpr size_t kRayCount = 25000;
+const size_t kRayCount = some_of(25000);
 /// Rays that touch an edge: many answers differ from the oracle's, and the search for the margin of one takes a
 /// millisecond. So one in so many is judged by B2; that hits lie on the surface is asked of all.
 constexpr size_t kEdgeRaysPerMargin = 64;
-/// For each of the four axes: a quarter of a million a form.
-constexpr size_t kRimRayCount = 62500;
+/// For each of the four axes: of all, a quarter of a million a form.
+const size_t kRimRayCount = some_of(62500);
 constexpr double kRadian = 57.29577951308232;
 
 /// A cylinder, cone or frustum, by the very numbers that the device sees.
@@ -330,11 +330,11 @@ void run_rims(Lab& lab) {
     for (const dvec3& axis : axes()) {
       const Solid solid = form.make(kOrigin, axis);
       // Rays from all around often end at the silhouette: see kEdgeRaysPerMargin.
-      constexpr size_t kAround = kRimRayCount / kEdgeRaysPerMargin;
-      const std::vector<Ray> rays = rays_at_rims(solid, kAround, random);
+      const size_t around = kRimRayCount / kEdgeRaysPerMargin;
+      const std::vector<Ray> rays = rays_at_rims(solid, around, random);
       const world::Scene scene = scene_of({solid.shape});
       const std::vector<Hit> hits = lab.cast(scene, rays);
-      const size_t facing = rays.size() - kAround;
+      const size_t facing = rays.size() - around;
       Tally judged = Lab::judge(scene, std::span(rays).first(facing), std::span(hits).first(facing));
       const uint64_t missed = judged.misses;
       judged.add(Lab::judge(scene, std::span(rays).subspan(facing), std::span(hits).subspan(facing)));

@@ -8,7 +8,7 @@
 namespace promin::hard {
 namespace {
 
-constexpr size_t kRayCount = 100000;
+const size_t kRayCount = some_of(100000);
 
 /// From random places at a distance from the centre, at targets spread over a disk of `spread` radii across the view.
 std::vector<Ray> rays_at(const world::Sphere& sphere, double distance, double spread, Random& random) {

@@ -13,10 +13,10 @@
 namespace promin::hard {
 namespace {
 
-constexpr size_t kRaysPerScene = 250000;
-constexpr size_t kJudged = 4000;
+const size_t kRaysPerScene = some_of(250000);
+const size_t kJudged = some_of(4000);
 constexpr int kFarShapes = 10;
-constexpr size_t kRaysPerFarShape = 1000;
+const size_t kRaysPerFarShape = some_of(1000);
 
 struct TreeScene {
   const char* name;

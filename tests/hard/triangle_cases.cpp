@@ -16,6 +16,7 @@ using oracle::Real;
 using oracle::Vector;
 
 constexpr double kPi = std::numbers::pi;
+const size_t kRayCount = some_of(100000);
 
 /// A closed UV sphere as Embree's watertightness tests make it: `steps` + 1 rows of 2 * `steps` vertices, all of a
 /// pole's alike.
@@ -116,12 +117,12 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
     const dvec3 from = origin();
     return ray_towards(from, pick_target(mesh, random));
   };
-  expect_no_leaks(lab, scene, make_rays(100000, [&] { return at(pick_vertex); }), "at vertices from inside" + where);
-  expect_no_leaks(lab, scene, make_rays(100000, [&] { return at(pick_on_edge); }), "at edges from inside" + where);
+  expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return at(pick_vertex); }), "at vertices from inside" + where);
+  expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return at(pick_on_edge); }), "at edges from inside" + where);
 
   // From outside through the inside: past the middle, the near side has let the ray through.
   std::vector<Ray> rays;
-  while (rays.size() < 100000) {
+  while (rays.size() < kRayCount) {
     const dvec3 from = center + 10.0 * random.direction();
     const dvec3 target = rays.size() % 2 == 0 ? pick_vertex(mesh, random) : pick_on_edge(mesh, random);
     Ray ray = ray_towards(from, target);
@@ -156,7 +157,7 @@ void cast_at_collinear_corners(Lab& lab) {
     seams.push_back({center - half, center + half});
   }
   std::vector<Ray> rays;
-  while (rays.size() < 100000) {
+  while (rays.size() < kRayCount) {
     const auto& seam = seams[pick(random, seams.size())];
     const dvec3 target = glm::mix(seam[0], seam[1], random.uniform(0.01, 0.99));
     Ray ray = ray_towards(target + random.direction(), target);
@@ -178,11 +179,11 @@ void cast_at_collinear_corners(Lab& lab) {
 void run_closed_mesh(Lab& lab) {
   cast_at_collinear_corners(lab);
   const dvec3 center(148376.0, 1234.0, -223423.0);
-  cast_at_closed_mesh(lab, center, 50, 1000000, ", 50 steps");
-  cast_at_closed_mesh(lab, center, 200, 1000000, ", 200 steps");
+  cast_at_closed_mesh(lab, center, 50, some_of(1000000), ", 50 steps");
+  cast_at_closed_mesh(lab, center, 200, some_of(1000000), ", 200 steps");
   // Coarse in all three axes, many triangles have three corners in a line: they are not packed, and the corner in the
   // middle lies on the edge of a neighbour.
-  cast_at_closed_mesh(lab, dvec3(148376.0, 171234.0, -223423.0), 200, 100000, ", collinear corners");
+  cast_at_closed_mesh(lab, dvec3(148376.0, 171234.0, -223423.0), 200, kRayCount, ", collinear corners");
 }
 
 void run_spikes(Lab& lab) {
@@ -191,11 +192,12 @@ void run_spikes(Lab& lab) {
                                    [](uint32_t row, uint32_t column) { return (row + column) % 2 == 0 ? 10.0 : 0.5; });
   const world::Scene scene = scene_of({mesh});
   const dvec3 center(0.0);
-  expect_no_leaks(lab, scene, make_rays(100000, [&] { return ray_towards(center, random.direction()); }),
+  expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return ray_towards(center, random.direction()); }),
                   "random rays from the centre");
-  expect_no_leaks(lab, scene, make_rays(50000, [&] { return ray_towards(center, pick_vertex(mesh, random)); }),
+  expect_no_leaks(lab, scene, make_rays(some_of(50000), [&] { return ray_towards(center, pick_vertex(mesh, random)); }),
                   "at vertices from the centre");
-  expect_no_leaks(lab, scene, make_rays(50000, [&] { return ray_towards(center, pick_on_edge(mesh, random)); }),
+  expect_no_leaks(lab, scene,
+                  make_rays(some_of(50000), [&] { return ray_towards(center, pick_on_edge(mesh, random)); }),
                   "at edges from the centre");
 }
 
@@ -306,7 +308,7 @@ void cast_edge_on(Lab& lab) {
     const dvec3 up = random.perpendicular(right);
     const Mesh mesh = make_triangle(vec3(0.1 * up), vec3(right), vec3(0.3 * right + 0.8 * up));
     std::vector<Ray> rays;
-    while (rays.size() < 10000) {
+    while (rays.size() < some_of(10000)) {
       const double angle = random.uniform(0.0, 2.0 * kPi);
       const dvec3 along = std::cos(angle) * right + std::sin(angle) * up;
       const dvec3 across = std::cos(angle) * up - std::sin(angle) * right;
@@ -370,7 +372,8 @@ void cast_across(Lab& lab) {
     Stray stray;
     for (int i = 0; i < 32; ++i) {
       const Mesh mesh = make_triangle(dvec3(offset) + random.direction(), random);
-      const std::vector<Ray> rays = make_rays(10000, [&] { return ray_grazing(mesh, mesh.triangles.front(), random); });
+      const std::vector<Ray> rays =
+          make_rays(some_of(10000), [&] { return ray_grazing(mesh, mesh.triangles.front(), random); });
       stray.add(mesh, rays, lab.cast(scene_of({mesh}), rays));
       tally.rays += rays.size();
     }
@@ -382,7 +385,7 @@ void cast_across(Lab& lab) {
     const dvec3 right = random.direction();
     const dvec3 up = random.perpendicular(right);
     const Mesh mesh = make_square({"wall", dvec3(0.0), right, up}, 1, 1);
-    const std::vector<Ray> rays = make_rays(10000, [&] {
+    const std::vector<Ray> rays = make_rays(some_of(10000), [&] {
       const double angle = random.uniform(-0.35, 0.35);
       const dvec3 along = std::cos(angle) * right + std::sin(angle) * up;
       return ray_towards(-3.0 * right, -3.0 * right + along);
@@ -526,7 +529,7 @@ void run_slivers(Lab& lab) {
           }
         };
         std::vector<Ray> rays;
-        for (size_t i = 0; i < 4000; ++i) {
+        for (size_t i = 0; i < some_of(4000); ++i) {
           const dvec3 p = target(i);
           const dvec3 away = random.direction();
           if (std::abs(glm::dot(away, place.normal())) > 0.1) rays.push_back(ray_towards(p + 2.0 * away, p));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "promin/image.h"
+#include "support/thorough.h"
 
 namespace promin {
 namespace {
@@ -147,8 +148,8 @@ TEST(RefinementTest, ClaimsHoldOf95In100Pixels) {
       {"discs and floor", discs_and_floor}, {"wires", wires}, {"waves", waves}};
   for (const auto& [name, scene] : scenes) {
     const std::vector<dvec3> truth = find_truth(make_view(1.0F), scene);
-    for (const auto& [error, least_samples] :
-         {std::pair(1.0F / 16.0F, 4U), {1.0F / 16.0F, 8U}, {1.0F / 64.0F, 8U}, {1.0F / 128.0F, 8U}}) {
+    for (const auto& [error, least_samples] : test::cases_of<std::pair<float, uint32_t>>(
+             {{1.0F / 16.0F, 4U}, {1.0F / 64.0F, 8U}, {1.0F / 16.0F, 8U}, {1.0F / 128.0F, 8U}}, 2)) {
       const View view = make_view(error, least_samples);
       const Share share = judge(refine(view, scene), view, truth);
       std::printf("%-16s 1/%-3g from %u: %5zu pixels refined, %.2f %% honest\n", name, 1.0 / static_cast<double>(error),
