@@ -19,8 +19,8 @@
 #include "hard/figures.h"
 #include "promin/caster.h"
 #include "support/read_spirv.h"
-#include "trace/render/caster_access.h"
 #include "support/thorough.h"
+#include "trace/render/caster_access.h"
 
 namespace promin::hard {
 namespace {
