@@ -147,11 +147,11 @@ def create(
 
     kind: "render" or "cast". arguments: the arguments of this command of promin, without --output, --offsets, --job,
     --piece and --device; --pieces (or --tiles) divides the work. Or a specification, a dict of the members that the
-    command's --print-spec prints, such as {"scene": "a.gltf", "spp": 64}. The scene and all other inputs of pieces are
-    read and hashed. The folder records the specification with absolute paths, so `open` needs only the folder. rays:
-    for "cast", replaces the file of rays, which the arguments must still name; after opening the job elsewhere, pass it
-    again to `Job.runner`. Raises UsageError for arguments that the command refuses, and if the folder belongs to another job,
-    with the difference; InputError, RunError."""
+    command's --print-spec prints, such as {"scene": "a.gltf", "spp": 64}. The scene and all other inputs of pieces
+    are read and hashed. The folder records the specification with absolute paths, so `open` needs only the folder.
+    rays: for "cast", replaces the file of rays, which the arguments must still name; after opening the job elsewhere,
+    pass it again to `Job.runner`. Raises UsageError for arguments that the command refuses, and if the folder belongs
+    to another job, with the difference; InputError, RunError."""
     if isinstance(arguments, str):
         raise UsageError(f"arguments are {arguments!r}; give a list of words")
     name = os.fsdecode(folder)
