@@ -785,7 +785,7 @@ TEST_F(CliTest, DitheringHangsOnThePlaceInTheWholePicture) {
 
 TEST_F(CliTest, OfAMissingSceneNothingIsSaidToBeWritten) {
   const ProcessResult result = run({"render", "nope.gltf"});
-  expect_failure(result, 3, "the file does not exist, nope.gltf");
+  expect_failure(result, 3, "file.missing nope.gltf:");
   EXPECT_THAT(result.err, testing::StartsWith("promin: "));
 }
 
