@@ -92,8 +92,10 @@ TEST_F(PicturesPluginCliTest, OneOfAnotherInterfaceIsRefused) {
   fs::copy_file(PROMIN_OTHER_PICTURES_PLUGIN, plugin());
   const std::string ours = std::to_string(PROMIN_PICTURES_INTERFACE);
   const std::string others = std::to_string(PROMIN_PICTURES_INTERFACE + 1);
-  expect_refusal("belongs to another version of promin (its interface is " + others + ", not " + ours +
-                 "), plugins/libpromin_pictures.so;");
+  expect_refusal(
+      "plugins/libpromin_pictures.so: the plugin that reads pictures belongs to another version of promin (its "
+      "interface is " +
+      others + ", not " + ours + "); ");
 }
 
 TEST_F(PicturesPluginCliTest, OneThatLacksAFunctionIsRefused) {

@@ -172,19 +172,15 @@ TEST_F(BvhFileTest, EveryOtherLengthIsRefused) {
 
 TEST_F(BvhFileTest, ForeignFilesAreRefusedInASentenceThatHelps) {
   const Bytes good = read_file(file_);
-  const std::string cure = ", " + file_.string() + "; build it again with promin-bvh build";
-  EXPECT_EQ(refusal(with(good, 0, 'P')),
-            "the file is not a BVH file, " + file_.string() + "; name a file that promin-bvh build has written");
-  EXPECT_EQ(refusal(sealed(with(good, kByteOrderPlace, 0x04030201))), "the BVH file has another byte order" + cure);
-  EXPECT_EQ(refusal(sealed(with(good, kVersionPlace, 7))),
-            "the BVH file has version 7 and this promin reads version 1" + cure);
-  EXPECT_EQ(refusal(sealed(with(good, kLayoutHashPlace, uint64_t{5}))),
-            "the BVH file has nodes of another layout than this promin's" + cure);
-  EXPECT_EQ(refusal(with(good, kHeaderSize + 3, '!')), "the BVH file is damaged: its checksum does not match" + cure);
-  EXPECT_EQ(refusal(Bytes(good.begin(), good.begin() + 100)), "the BVH file ends within its header" + cure);
-  EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, '\x1B'))), "the BVH file does not name its builder" + cure);
-  EXPECT_EQ(refusal(sealed(with(good, kBuilderPlace, std::array<uint64_t, 5>{~0U, ~0U, ~0U, ~0U, ~0U}))),
-            "the BVH file does not name its builder" + cure);
+  EXPECT_THAT(refusal(with(good, 0, 'P')), HasProblem("bvh.file.kind " + file_.string() + ":"));
+  EXPECT_THAT(refusal(sealed(with(good, kByteOrderPlace, 0x04030201))), HasProblem("bvh.file.version"));
+  EXPECT_THAT(refusal(sealed(with(good, kVersionPlace, 7))), HasProblem("bvh.file.version 7"));
+  EXPECT_THAT(refusal(sealed(with(good, kLayoutHashPlace, uint64_t{5}))), HasProblem("bvh.file.version layout"));
+  EXPECT_THAT(refusal(with(good, kHeaderSize + 3, '!')), HasProblem("bvh.file.damaged"));
+  EXPECT_THAT(refusal(Bytes(good.begin(), good.begin() + 100)), HasProblem("bvh.file.short"));
+  EXPECT_THAT(refusal(sealed(with(good, kBuilderPlace, '\x1B'))), HasProblem("bvh.file.header"));
+  EXPECT_THAT(refusal(sealed(with(good, kBuilderPlace, std::array<uint64_t, 5>{~0U, ~0U, ~0U, ~0U, ~0U}))),
+              HasProblem("bvh.file.header"));
   EXPECT_THAT(refusal(Bytes()), HasProblem("file.empty"));
   EXPECT_THAT(message_of([&] { const BvhFile file(folder_); }), HasProblem("file.kind"));
   EXPECT_THAT(message_of([&] { const BvhFile file(folder_ / "none"); }), HasProblem("file.missing"));

@@ -71,7 +71,7 @@ TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
     return failure(folder_ / "a.exr", 3 << 20);
   }();
   EXPECT_THAT(message,
-              testing::StartsWith("there is no room for 4 MB beside the output file until it can be written ("));
+              testing::HasSubstr("a.exr: there is no room for 4 MB beside the output file until it can be written ("));
   EXPECT_THAT(message, testing::HasSubstr("a.exr: "));
   EXPECT_EQ(file_count(), 0);
 }
@@ -85,7 +85,7 @@ TEST_F(ScratchFileTest, ADiskThatFillsIsToldByWhoeverWrites) {
     return failure_of([&] { file.write(0, bytes); });
   }();
   EXPECT_THAT(message,
-              testing::StartsWith("there is no room for 1 MB beside the output file until it can be written ("));
+              testing::HasSubstr("a.exr: there is no room for 1 MB beside the output file until it can be written ("));
   // And what was written before is there.
   std::vector<std::byte> read(1 << 20);
   file.read(0, read);

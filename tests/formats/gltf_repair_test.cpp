@@ -200,14 +200,14 @@ const Repair kRepairs[] = {
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; },
      PROMIN_CLAMPED("-1", PROMIN_LIGHT ".intensity", "0 to 1e+15")},
     {"LightType", [](auto& g) { light(g)["type"] = "area"; },
-     "a value is not one of point|directional|spot (\"area\"), " PROMIN_LIGHT ".type; the light is left out"},
+     PROMIN_LIGHT ".type: a value is not one of point|directional|spot (\"area\"); the light is left out"},
     {"LightRange", [](auto& g) { light(g)["range"] = 0; },
-     "a number is out of range (0), " PROMIN_LIGHT ".range; it is ignored"},
+     PROMIN_LIGHT ".range: a number is out of range (0); it is ignored"},
     {"ConeAngles",
      [](auto& g) {
        light(g)["spot"] = {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}};
      },
-     "a spot's inner cone angle is not less than its outer, " PROMIN_LIGHT ".spot; its edge is sharp"},
+     PROMIN_LIGHT ".spot: a spot's inner cone angle is not less than its outer; its edge is sharp"},
     {"CameraIndex", [](auto& g) { g.json["nodes"][3]["camera"] = 1; },
      "nodes[3].camera: an index is out of range (index 1); it is ignored"},
     {"FieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"]["yfov"] = 3.2; },

@@ -871,7 +871,7 @@ TEST_F(GltfTest, GradientSkiesAreRead) {
   skies[0]["gradient"]["sunCurve"] = 4;
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("ambientSkyContribution"), HasSubstr("suns")));
   skies[0]["gradient"]["bottomCurve"] = 0;
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("bottomCurve; it is ignored")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("bottomCurve: ")));
   skies[0]["gradient"].erase("bottomCurve");
   skies[0]["gradient"].erase("topColor");
   EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("\"topColor\" is missing")));
@@ -928,7 +928,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
   skies[0]["panorama"] = {{"equirectangular", 2}};
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular; it is ignored")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular: ")));
 }
 
 // Cameras

@@ -195,7 +195,7 @@ TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
 TEST_F(PlyTest, NumbersBeyondDoubleAreThoseOfTheirSide) {
   const std::string file = text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList);
   EXPECT_EQ(mesh_of(load(file + "1e-999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")).positions[0], vec3(0.0F));
-  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasProblem("ply.position.range"));
+  EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasProblem("scene.geometry.none 1e15"));
 }
 
 // Normals and colours
@@ -534,11 +534,11 @@ const BadFile kBadPly[] = {
     {"CountOfALong", square("99999999 0 1 2\n", 1), "ply.row.wrong list", ": line 16"},
     {"Nan",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) + "0 0 0\n0 nan 0\n1 0 0\n3 0 1 2\n",
-     "ply.position.range", ""},
+     "scene.geometry.none vertex", ""},
     {"TooLarge",
      text_header("element vertex 3\n" + kPlace + "element face 1\n" + kCornerList) +
          "0 0 0\n0 1 0\n1e16 0 0\n3 0 1 2\n",
-     "ply.position.range 2", ""},
+     "scene.geometry.none vertex 2", ""},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, BadPlyTest, testing::ValuesIn(kBadPly), name_of_bad_file);

@@ -346,6 +346,7 @@ std::vector<MessageCase> cases_of_geometry() {
       warn("gltf.morph.count",
            [](auto& g) {
              primitive(g)["targets"] = {{{"POSITION", g.template add<float>({0, 0, 1}, "VEC3")}}};
+             g.json["meshes"][0]["weights"] = {1};
            }),
       warn("gltf.camera.far",
            [](auto& g) {

@@ -160,7 +160,7 @@ TEST_F(MessagesTest, AreThoseOfTheGoldenFile) {
 
 bool is_code(std::string_view text) {
   const auto is_part = [](char c) { return c == '.' || (c >= 'a' && c <= 'z'); };
-  return text.find('.') != std::string_view::npos && std::ranges::all_of(text, is_part);
+  return text.find('.', 1) != std::string_view::npos && text.front() != '.' && std::ranges::all_of(text, is_part);
 }
 
 /// Adds the codes of a source: literals that begin a list of arguments or members.

@@ -170,7 +170,7 @@ TEST_F(CameraPathTest, AFrameOfVersion2MayLookAtAPoint) {
   EXPECT_THAT(refusal(text(2, "")), HasProblem("path.frame.choice"));
   EXPECT_THAT(refusal(text(2, look + look_at)), HasProblem("path.frame.choice"));
   EXPECT_THAT(refusal(text(2, R"(, "look_at": [1000000.1, 0, 5])")), HasProblem("camera.direction"));
-  EXPECT_THAT(refusal(text(3, look)), HasProblem("json.choice version"));
+  EXPECT_THAT(refusal(text(3, look)), HasProblem("json.range version:"));
 }
 
 TEST_F(CameraPathTest, BadFilesAreRefusedWithAllTheirProblems) {
