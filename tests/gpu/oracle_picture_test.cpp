@@ -32,8 +32,8 @@ uint64_t count_primitives(const world::Scene& scene) {
   return count;
 }
 
-/// A quarter of the pixels of thorough tests: brute force takes long, and pictures that are so much smaller have the
-/// same shapes, materials and lights in them.
+/// Returns the size of pictures that do not depend on the size of pixels: a quarter of the pixels of thorough tests,
+/// because brute force takes long. The smaller pictures show the same shapes, materials and lights.
 uvec2 make_size() {
   return test::is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
 }

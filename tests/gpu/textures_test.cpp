@@ -50,7 +50,7 @@ class TexturesTest : public DeviceTest {
   Image render(const Scene& scene, const View& view, TunedRendererOptions options = {}) {
     EXPECT_THAT(validate(scene), testing::IsEmpty());
     using namespace layout;
-    // Of all scenes here, so that they share their kernels.
+    // The features of all scenes here, so that they share their kernels.
     options.more_features = FEATURE_TRIANGLES | FEATURE_PHONG | FEATURE_METALLIC_ROUGHNESS | FEATURE_UNLIT |
                             FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPECULAR | FEATURE_MIRRORS | FEATURE_SMOOTH_NORMALS |
                             FEATURE_TEXTURES | FEATURE_COATS | FEATURE_SHEENS | FEATURE_SPECULAR_TEXTURES;
