@@ -10,12 +10,10 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <string>
 
 #include "measure/compare_images.h"
 #include "promin/image.h"
 #include "support/process.h"
-#include "support/thorough.h"
 
 namespace promin {
 namespace {
@@ -23,9 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using OptionValues = std::vector<std::string>;
 
-/// Pixels to a side, and levels of the sphereflake. A level less halves the length of all edges, as half the size does.
-const std::string kSize = test::is_thorough() ? "1024" : "512";
-const std::string kSphereflakeLevel = test::is_thorough() ? "4" : "3";
+constexpr const char* kSize = "1024";
 /// Bounces, as promin counts them.
 constexpr const char* kMaxDepth = "6";
 
@@ -46,11 +42,12 @@ struct Peer {
 };
 
 Peer povray() {
+  const std::string size(kSize);
   return {"POV-Ray",
           PROMIN_POVRAY,
           "scene_to_pov.py",
           "scene.pov",
-          {"+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA", "+W" + kSize, "+H" + kSize},
+          {"+Iscene.pov", "+Opovray.exr", "+FE", "-A", "-D", "-GA", "+W" + size, "+H" + size},
           "povray.exr"};
 }
 
@@ -100,7 +97,7 @@ class PeerPictureTest : public testing::Test {
   }
 
   fs::path make_sphereflake() const {
-    run_tool("make_scenes.py", {"--sphereflake", kSphereflakeLevel, "--endless-ground", "-o", "sphereflake.gltf"});
+    run_tool("make_scenes.py", {"--sphereflake", "4", "--endless-ground", "-o", "sphereflake.gltf"});
     return folder_ / "sphereflake.gltf";
   }
 
