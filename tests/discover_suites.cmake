@@ -1,17 +1,19 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 
-# promin_discover_suites(TARGET [NAME VALUE...]): a test of ctest for each suite of a GoogleTest program, with these
-# properties. Where gtest_discover_tests has a process for each test, here a suite has one: so its tests share what
-# SetUpTestSuite makes, a device above all and with it every kernel that was compiled for an earlier test. A single test
-# is run by the program itself, with --gtest_filter.
+# promin_discover_suites(TARGET [GROUPS SUITE+SUITE...] [PROPERTIES NAME VALUE...]): adds a test of ctest for each group of
+# suites of a GoogleTest program, and for each suite that is in no group. A group names the suites that use the same
+# kernels. Where gtest_discover_tests has a process for each test, here a group or a suite has one: so its tests share a
+# device, and with it every kernel that was compiled for an earlier test. The program itself runs a single test, with
+# --gtest_filter.
 function(promin_discover_suites TARGET)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "GROUPS;PROPERTIES")
   set(FOLDER ${CMAKE_CURRENT_BINARY_DIR}/suites)
   set(LIST ${FOLDER}/${TARGET}_list.cmake)
   # The program is asked after it has been linked, and what it says is read when ctest starts.
   add_custom_command(TARGET ${TARGET} POST_BUILD BYPRODUCTS ${LIST}
-    COMMAND ${CMAKE_COMMAND} -D "PROGRAM=$<TARGET_FILE:${TARGET}>" -D "LIST=${LIST}" -D "PROPERTIES=${ARGN}"
-            -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE}
+    COMMAND ${CMAKE_COMMAND} -D "PROGRAM=$<TARGET_FILE:${TARGET}>" -D "LIST=${LIST}" -D "GROUPS=${ARG_GROUPS}"
+            -D "PROPERTIES=${ARG_PROPERTIES}" -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE}
     VERBATIM)
   file(WRITE ${FOLDER}/${TARGET}.cmake
 "if(EXISTS \"${LIST}\")
@@ -33,11 +35,22 @@ string(REGEX MATCHALL "(^|\n)[A-Za-z_][A-Za-z0-9_/]*\\." SUITES "${SAID}")
 if(NOT SUITES)
   message(FATAL_ERROR "${PROGRAM} --gtest_list_tests tells of no suites:\n${SAID}")
 endif()
+list(TRANSFORM SUITES REPLACE "[\n.]" "")
+foreach(GROUP IN LISTS GROUPS)
+  string(REPLACE "+" ";" MEMBERS ${GROUP})
+  foreach(MEMBER IN LISTS MEMBERS)
+    list(FIND SUITES ${MEMBER} PLACE)
+    if(PLACE EQUAL -1)
+      message(FATAL_ERROR "${PROGRAM} has no suite ${MEMBER} of the group ${GROUP}")
+    endif()
+  endforeach()
+  list(REMOVE_ITEM SUITES ${MEMBERS})
+endforeach()
 list(JOIN PROPERTIES "\" \"" PROPERTIES)
 set(TESTS)
-foreach(SUITE IN LISTS SUITES)
-  string(REGEX REPLACE "[\n.]" "" SUITE ${SUITE})
-  string(APPEND TESTS "add_test(\"${SUITE}\" \"${PROGRAM}\" \"--gtest_filter=${SUITE}.*\")\n"
-                      "set_tests_properties(\"${SUITE}\" PROPERTIES \"${PROPERTIES}\")\n")
+foreach(NAME IN LISTS GROUPS SUITES)
+  string(REPLACE "+" ".*:" FILTER ${NAME})
+  string(APPEND TESTS "add_test(\"${NAME}\" \"${PROGRAM}\" \"--gtest_filter=${FILTER}.*\")\n"
+                      "set_tests_properties(\"${NAME}\" PROPERTIES \"${PROPERTIES}\")\n")
 endforeach()
 file(WRITE ${LIST} "${TESTS}")

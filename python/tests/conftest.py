@@ -23,7 +23,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session", autouse=True)
 def default_device() -> Iterator[Optional[promin.Device]]:
-    """The default device, open for all tests, so that the kernels of one test serve the next; None if there is none."""
+    """The default device, open for all tests, so that the kernels of one test serve the next; or None."""
     try:
         yield find_device(None)
     except promin.DeviceError:

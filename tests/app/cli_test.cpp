@@ -859,6 +859,9 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
                                                   {"#336699", uvec3(0x33, 0x66, 0x99)}};
   for (const auto& [word, codes] : colors) {
     for (const std::string_view mapping : tone_mapping_names()) {
+      // The other two are the same colours, or as far from a mapping's middle.
+      const bool is_each_mapped = word == std::string_view("white") || word == std::string_view("#369");
+      if (!is_each_mapped && mapping != tone_mapping_names().front()) continue;
       render({"triangle.obj", "--size", "32", "18", "--spp", "2", "--exposure", "1.5", "--background", word, "-o",
               "a.png", "--tone-mapping", std::string(mapping), "--dither"},
              "a.exr");
@@ -1054,8 +1057,12 @@ TEST_F(CliTest, ACropHasTheBitsOfTheWholePicture) {
 TEST_F(CliTest, RunsAndFeaturesDoNotChangeTheBits) {
   const Image once = render({"square.gltf", "--size", "64", "36"}, "a.exr");
   EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36"}, "b.exr").pixels);
-  EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36", "--features", "all"}, "c.exr").pixels);
-  EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36", "--builder", "median"}, "d.exr").pixels);
+  // A debug view, whose kernels with all features compile soonest; RendererTest has pictures.
+  const OptionValues uv = {"square.gltf", "--size", "64", "36", "--shading", "uv"};
+  OptionValues of_all = uv;
+  of_all.insert(of_all.end(), {"--features", "all"});
+  EXPECT_EQ(render(uv, "c.exr").pixels, render(of_all, "d.exr").pixels);
+  EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36", "--builder", "median"}, "e.exr").pixels);
 }
 
 TEST_F(CliTest, CamerasGoByNameAndByIndex) {

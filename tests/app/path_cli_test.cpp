@@ -116,7 +116,7 @@ TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
   write("path.json", R"({"format": "promin camera path", "version": 1, "frames": [
     {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
     {"time_s": 0.1, "eye": [0, 0, 4], "look": [0, 0, 1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01}]})");
-  const ProcessResult limited = render_path({"--frames", "0-1", "-o", "limited#.exr", "--time-limit", "5s", "--size",
+  const ProcessResult limited = render_path({"--frames", "0-1", "-o", "limited#.exr", "--time-limit", "3s", "--size",
                                              "320", "180", "--max-spp", "32768", "--background", "0", "0", "0"});
   ASSERT_EQ(limited.exit_code, 0) << limited.err;
   EXPECT_THAT(limited.err, HasSubstr("of frame 1 again: --target-error 1.5258789e-05 "));

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Alpha and sides (docs/model.md, "Alpha"): holes, what blends, and backs that are not shown. Boards are unlit and fill
-// the picture, so that its pixels are closed forms.
+// Alpha and sides (docs/model.md, "Alpha"): holes, what blends, and backs that are not shown. boards_test.cpp has more
+// of cutoffs, sides and shadows. Boards are unlit and fill the picture, so that its pixels are closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -47,8 +46,9 @@ void add_alpha_texture(Scene& scene, const uvec2& size, const std::vector<uint32
 
 class AlphaTest : public DeviceTest {
  protected:
-  RenderResult trace(const Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
+  RenderResult trace(const Scene& scene, const View& view, TunedRendererOptions options = {}) {
     EXPECT_THAT(validate(scene), testing::IsEmpty());
+    options.more_features = features_of_boards();
     return make_renderer(device(), scene, options).render(view);
   }
   /// Of a row of a square picture, of which all rows are alike.
@@ -62,19 +62,6 @@ class AlphaTest : public DeviceTest {
     return result;
   }
 };
-
-TEST_F(AlphaTest, AMaskIsThereFromItsCutoffOn) {
-  for (const uint32_t cutoff : {64U, 128U, 191U}) {
-    Scene scene;
-    add_alpha_texture(scene, {4, 1}, {0, cutoff - 1, cutoff, 255});
-    Material mask = make_unlit(vec3(0.25F), AlphaMode::kMask);
-    mask.alpha_cutoff = static_cast<float>(cutoff) / 255.0F;
-    std::get<Unlit>(mask.model).color_texture.texture = 0;
-    add_board(scene, 0.0F, mask);
-    add_board(scene, -1.0F, make_blending(vec3(0.5F)));
-    EXPECT_THAT(reds(scene, 4), testing::ElementsAre(0.5F, 0.5F, 0.25F, 0.25F)) << cutoff;
-  }
-}
 
 // Means of alpha alone would be under the cutoff nearly everywhere.
 TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
@@ -107,15 +94,6 @@ TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
   const Aovs aovs = trace(scene, make_board_view(uvec2(4)), options).aovs;
   EXPECT_EQ(aovs.object[0], 2U);
   EXPECT_EQ(aovs.object[5], 1U);
-}
-
-TEST_F(AlphaTest, AnOpaqueMaterialHasNoAlpha) {
-  Scene scene;
-  add_alpha_texture(scene, {2, 1}, {0, 128});
-  Material opaque = make_unlit(vec3(0.25F), AlphaMode::kOpaque, 0.0F);
-  std::get<Unlit>(opaque.model).color_texture.texture = 0;
-  add_board(scene, 0.0F, opaque);
-  EXPECT_THAT(reds(scene, 2), testing::Each(0.25F));
 }
 
 TEST_F(AlphaTest, WhatBlendsIsOverWhatIsBehind) {
@@ -194,41 +172,6 @@ TEST_F(AlphaTest, VerticesHaveAlpha) {
     scene.add("board", mesh, 0);
     const float expected = mode == AlphaMode::kOpaque ? 0.0F : (mode == AlphaMode::kMask ? 1.0F : 0.75F);
     EXPECT_THAT(reds(scene, 3), testing::Each(testing::FloatEq(expected)));
-  }
-}
-
-TEST_F(AlphaTest, ShadowsHaveHolesAndLetThrough) {
-  for (const AlphaMode mode : {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend}) {
-    Scene scene;
-    add_alpha_texture(scene, {4, 1}, {0, 51, 204, 255});
-    add_board(scene, 0.0F, make_matt());
-    // Behind the camera, before the light.
-    Material curtain = make_unlit(vec3(1.0F), mode);
-    std::get<Unlit>(curtain.model).color_texture.texture = 0;
-    curtain.is_double_sided = false;
-    add_board(scene, 3.0F, curtain);
-    scene.lights = {make_sun(vec3(0, 0, -1))};
-    const std::vector<float> pixels = reds(scene, 4);
-    const std::array<double, 4> expected = mode == AlphaMode::kOpaque ? std::array{0.0, 0.0, 0.0, 0.0}
-                                           : mode == AlphaMode::kMask ? std::array{1.0, 1.0, 0.0, 0.0}
-                                                                      : std::array{1.0, 0.8, 0.2, 0.0};
-    for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(pixels[i], expected[i], 1e-6) << i;
-  }
-}
-
-TEST_F(AlphaTest, BacksAreSeenWhereTheMaterialShowsThem) {
-  for (const bool is_double_sided : {true, false}) {
-    Scene scene;
-    scene.environment.background = vec3(1.0F);
-    Material board = make_unlit(vec3(0.25F), AlphaMode::kOpaque);
-    board.is_double_sided = is_double_sided;
-    add_board(scene, 0.0F, board);
-    View view = make_board_view({4, 4});
-    EXPECT_THAT(reds(scene, 4), testing::Each(0.25F));
-    view.camera.eye.z = -2.0F;
-    view.camera.look = vec3(0, 0, 1);
-    const Image back = trace(scene, view).image;
-    for (const vec3& pixel : back.pixels) EXPECT_EQ(pixel.r, is_double_sided ? 0.25F : 1.0F);
   }
 }
 

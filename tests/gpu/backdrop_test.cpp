@@ -93,7 +93,7 @@ TEST_F(BackdropTest, NoFormOfThePictureChangesABit) {
   EXPECT_GT(edge.w, 0.0F);
   TunedRendererOptions forced;
   forced.packet_size = 1;
-  forced.force_all_features = true;
+  forced.more_features = all_features();
   const RenderResult same = trace(scene_, view, forced);
   EXPECT_EQ(same.aovs.unlit, result.aovs.unlit);
   EXPECT_TRUE(has_same_bits(same.image, result.image));

@@ -29,6 +29,7 @@
 #include "promin/error.h"
 #include "promin/setup_stats.h"
 #include "support/temp_folder.h"
+#include "support/thorough.h"
 #include "trace/kernels/ray_kernel.h"
 #include "trace/render/caster_access.h"
 
@@ -103,7 +104,7 @@ world::Scene make_scene_with_open_shapes() {
 // Rays that are aimed at nothing: none of them passes an edge by some u S, so the lists are the same, one by one.
 TEST_F(CrossingsTest, ListsAreTheOracles) {
   const world::Scene scene = make_scene_with_open_shapes();
-  const std::vector<Ray> rays = test::make_rays(10000);
+  const std::vector<Ray> rays = test::make_rays(test::is_thorough() ? 10000 : 3000);
   Caster caster = make_caster(device(), scene);
   const Lists lists = list_with(caster, rays);
   const std::vector<int32_t> counts = count_with(caster, rays);
@@ -712,9 +713,7 @@ TEST_F(CrossingsTest, TooManyHitsAreRefusedOrTraced) {
 
 class SameCrossingsTest : public TempFolder {
  protected:
-  static void SetUpTestSuite() { device_ = gpu::open_device(); }
-  static void TearDownTestSuite() { device_.reset(); }
-  static const gpu::Device& device() { return *device_; }
+  static const gpu::Device& device() { return test::SharedDevice::open({.pixel_packet_size = 1}); }
 
   /// Aimed at a closed mesh, and at all else.
   static std::vector<Ray> make_rays() {
@@ -730,8 +729,6 @@ class SameCrossingsTest : public TempFolder {
     scene.objects.push_back({"", measure::make_needles(2000).objects[0].shape, 0});
     return scene;
   }
-
-  static inline gpu::DeviceHandle device_;
 };
 
 TEST_F(SameCrossingsTest, WhateverTheTreeAndItsFile) {

@@ -47,7 +47,10 @@ class ExplainTest : public test::DeviceTest {
  protected:
   /// Holds explanations of pixels all over the picture against it, against cast rays and against themselves.
   static void check(const world::Scene& scene, const View& view) {
-    Renderer renderer = make_renderer(device(), scene);
+    TunedRendererOptions options;
+    // With these a scene has the same kernels without lights as with a headlight.
+    options.more_features = layout::FEATURE_HEADLIGHT | layout::FEATURE_SHADOWS | layout::FEATURE_SPECULAR;
+    Renderer renderer = make_renderer(device(), scene, options);
     Caster caster = make_caster(device(), scene);
     const Image picture = renderer.render(view).image;
     for (uint32_t i = 0; i < 40; ++i) {

@@ -40,7 +40,7 @@ world::Scene make_gallery_of_phong();
 /// Boards that blend with what is behind them, and boards cut by a mask.
 world::Scene make_gallery_of_alpha();
 
-View make_gallery_view(uvec2 size = uvec2(96, 72));
+View make_gallery_view(uvec2 size);
 
 /// Skies: a gradient, the studio, and a panorama of a few broad lights, the latter two turned.
 Environment make_gradient();

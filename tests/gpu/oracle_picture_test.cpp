@@ -32,10 +32,16 @@ uint64_t count_primitives(const world::Scene& scene) {
   return count;
 }
 
+/// Returns the size of pictures that do not depend on the size of pixels: a quarter of the pixels of thorough tests,
+/// because brute force takes long. The smaller pictures show the same shapes, materials and lights.
+uvec2 make_size() {
+  return test::is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
+}
+
 /// Brute force takes primitives times rays: smaller pictures of larger scenes.
 uvec2 size_for(const world::Scene& scene) {
   const uint64_t count = count_primitives(scene);
-  if (count <= 2000) return {96, 72};
+  if (count <= 2000) return make_size();
   return count <= 10000 ? uvec2(48, 36) : uvec2(20, 15);
 }
 
@@ -69,13 +75,22 @@ class OraclePictureTest : public test::DeviceTest, public testing::WithParamInte
                                        const oracle::PictureBounds& bounds = {}) {
     return compare_with(oracle::render(scene, view), scene, view, bounds);
   }
+  /// By kernels that have the features of several scenes that are made from that of everything.
+  static bool agrees_with_oracle(const world::Scene& scene, const View& view) {
+    using namespace layout;
+    const FeatureMask more = features_of(test::make_scene_of_everything()) | FEATURE_OPEN_SHAPES | FEATURE_FRESNEL |
+                             FEATURE_COATS | FEATURE_SHEENS;
+    return compare_with(oracle::render(scene, view), scene, view, {}, picture_shaders(), more).passes();
+  }
 
   static oracle::PictureReport compare_with(const oracle::Picture& truth, const world::Scene& scene, const View& view,
                                             const oracle::PictureBounds& bounds,
-                                            const PictureShaders& shaders = picture_shaders()) {
+                                            const PictureShaders& shaders = picture_shaders(),
+                                            FeatureMask more_features = {}) {
     TunedRendererOptions options;
     options.with_aovs = true;
     options.shaders = shaders;
+    options.more_features = more_features;
     const RenderResult result = make_renderer(device(), scene, options).render(view);
     const oracle::DeviceAovs aovs{result.aovs.depth, result.aovs.normal, result.aovs.object, result.aovs.primitive};
     oracle::PictureReport report = compare_picture(scene, truth, result.image, aovs, bounds);
@@ -119,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OraclePictureTest, testing::ValuesIn(scene_name
 });
 
 TEST_F(OraclePictureTest, EverythingAgreesWithTheOracle) {
-  EXPECT_TRUE(compare(test::make_scene_of_everything(), test::make_view(uvec2(96, 72))).passes());
+  EXPECT_TRUE(agrees_with_oracle(test::make_scene_of_everything(), test::make_view(make_size())));
 }
 
 TEST_F(OraclePictureTest, OpenShapesAgreeWithTheOracle) {
@@ -132,20 +147,20 @@ TEST_F(OraclePictureTest, OpenShapesAgreeWithTheOracle) {
         object.shape);
   }
   // Into the frustum, which is wide open.
-  View view = test::make_view(uvec2(96, 72));
+  View view = test::make_view(make_size());
   view.camera.eye = vec3(-1.6F, 3.2F, 2.6F);
   view.camera.look = glm::normalize(vec3(0.25F, -1.0F, -0.2F));
   view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 0, -1)), view.camera.look));
-  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
-  EXPECT_TRUE(compare(scene, view).passes());
+  EXPECT_TRUE(agrees_with_oracle(scene, test::make_view(make_size())));
+  EXPECT_TRUE(agrees_with_oracle(scene, view));
 }
 
 TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
-  EXPECT_TRUE(compare(test::make_scene_of_alpha(), test::make_view(uvec2(96, 72))).passes());
+  EXPECT_TRUE(compare(test::make_scene_of_alpha(), test::make_view(make_size())).passes());
 }
 
 TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
-  View view = test::make_view(uvec2(96, 72));
+  View view = test::make_view(make_size());
   view.max_depth = kMaxDepthOfGlass;
   // Where total reflection is near, little is sure.
   EXPECT_TRUE(
@@ -178,7 +193,7 @@ TEST_F(OraclePictureTest, MirrorsThatHangOnTheAngleAgreeWithTheOracle) {
     scene.materials[i].phong().fresnel = true;
     scene.materials[i].phong().ior = 1.4F;
   }
-  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+  EXPECT_TRUE(agrees_with_oracle(scene, test::make_view(make_size())));
 }
 
 TEST_F(OraclePictureTest, ACameraInGlassAgreesWithTheOracle) {
@@ -205,7 +220,7 @@ TEST_F(OraclePictureTest, ClearCoatsAgreeWithTheOracle) {
   coat(4, 1.0F, 0.0F);
   coat(5, 0.5F, 0.3F);
   for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material = i % 2 == 0 ? 4 : 5;
-  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+  EXPECT_TRUE(agrees_with_oracle(scene, test::make_view(make_size())));
 }
 
 TEST_F(OraclePictureTest, SheensAgreeWithTheOracle) {
@@ -220,23 +235,27 @@ TEST_F(OraclePictureTest, SheensAgreeWithTheOracle) {
   cover(4, vec3(1.0F, 0.7F, 0.2F), 0.2F);
   cover(5, vec3(0.6F), 0.8F).get().clearcoat = 0.5F;
   for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material = i % 2 == 0 ? 4 : 5;
-  EXPECT_TRUE(compare(scene, test::make_view(uvec2(96, 72))).passes());
+  EXPECT_TRUE(agrees_with_oracle(scene, test::make_view(make_size())));
 }
+
+/// Textures are held to bounds that belong to pixels of this size.
+constexpr uvec2 kSizeOfTextures(96, 72);
 
 /// Texels differ from pixel to pixel, so a place or a level that is a little wrong shows nearly everywhere.
 constexpr oracle::PictureBounds kOfTextures{
     .color_error = 0.005L, .color_mean = 1e-5L, .plain_mean = 5e-5L, .unsure_share = 0.002};
 
 TEST_F(OraclePictureTest, TexturesOfMetallicRoughnessAgreeWithTheOracle) {
-  EXPECT_TRUE(compare(test::make_gallery_of_metallic_roughness(), test::make_gallery_view(), kOfTextures).passes());
+  EXPECT_TRUE(compare(test::make_gallery_of_metallic_roughness(), test::make_gallery_view(kSizeOfTextures), kOfTextures)
+                  .passes());
 }
 
 TEST_F(OraclePictureTest, TexturesOfPhongAgreeWithTheOracle) {
-  EXPECT_TRUE(compare(test::make_gallery_of_phong(), test::make_gallery_view(), kOfTextures).passes());
+  EXPECT_TRUE(compare(test::make_gallery_of_phong(), test::make_gallery_view(kSizeOfTextures), kOfTextures).passes());
 }
 
 TEST_F(OraclePictureTest, TexturesOfAlphaAgreeWithTheOracle) {
-  EXPECT_TRUE(compare(test::make_gallery_of_alpha(), test::make_gallery_view(), kOfTextures).passes());
+  EXPECT_TRUE(compare(test::make_gallery_of_alpha(), test::make_gallery_view(kSizeOfTextures), kOfTextures).passes());
 }
 
 /// Boards that light shines through, with films and grains, and the textures of all of these. They are lit from behind
@@ -276,7 +295,7 @@ world::Scene make_gallery_of_rare_layers() {
 
 TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   const world::Scene scene = make_gallery_of_rare_layers();
-  const View view = test::make_gallery_view();
+  const View view = test::make_gallery_view(kSizeOfTextures);
   const oracle::Picture truth = oracle::render(scene, view);
   oracle::PictureBounds bounds = kOfTextures;
   // Across a grain highlights are narrow, so little is sure at their edges.
@@ -295,7 +314,7 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
 // What the device has of a sky are maps, of texels and of a few roughnesses. White metals show P and nothing else.
 TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   constexpr float kRoughnesses[] = {0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.27F, 0.35F, 0.47F, 0.6F, 0.8F, 1.0F};
-  constexpr uint32_t kSide = 24;
+  const uint32_t side = test::is_thorough() ? 24 : 12;
   // With the largest root of the mean square of a roughness, of the range.
   const struct {
     const char* name;
@@ -307,7 +326,7 @@ TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   for (const auto& sky : kSkies) {
     const oracle::Real range = oracle::Surroundings(sky.environment).range();
     const world::Scene scene = test::make_row_of_metals(sky.environment, kRoughnesses);
-    const View view = test::make_view_of_row(std::size(kRoughnesses), kSide);
+    const View view = test::make_view_of_row(std::size(kRoughnesses), side);
     const Image image = make_renderer(device(), scene).render(view).image;
     const oracle::Picture expected = oracle::render(scene, view);
     for (uint32_t ball = 0; ball < std::size(kRoughnesses); ++ball) {
@@ -315,8 +334,8 @@ TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
       oracle::Real squares = 0;
       oracle::Real allowed = 0;
       uint32_t count = 0;
-      for (uint32_t y = 0; y < kSide; ++y) {
-        for (uint32_t x = ball * kSide; x < (ball + 1) * kSide; ++x) {
+      for (uint32_t y = 0; y < side; ++y) {
+        for (uint32_t x = ball * side; x < (ball + 1) * side; ++x) {
           const oracle::Pixel& pixel = expected.at(x, y);
           if (!pixel.hit.exists()) continue;
           const auto off = glm::abs(oracle::Vector(image.pixels[y * view.size.x + x]) - pixel.color);
@@ -339,24 +358,27 @@ TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
 // The largest errors that maps may have explain most of what these pictures are off, the rest is little in the mean.
 TEST_F(OraclePictureTest, AGradientAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_under_sky(test::make_gradient());
-  EXPECT_TRUE(compare(scene, test::make_gallery_view(), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
+  EXPECT_TRUE(
+      compare(scene, test::make_gallery_view(make_size()), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
 }
 
 TEST_F(OraclePictureTest, TheStudioAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_under_sky(test::make_studio());
-  EXPECT_TRUE(compare(scene, test::make_gallery_view(), {.color_mean = 1e-5L, .plain_mean = 2e-3L}).passes());
+  EXPECT_TRUE(
+      compare(scene, test::make_gallery_view(make_size()), {.color_mean = 1e-5L, .plain_mean = 2e-3L}).passes());
 }
 
 TEST_F(OraclePictureTest, APanoramaAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_under_sky(test::make_panorama());
-  EXPECT_TRUE(compare(scene, test::make_gallery_view(), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
+  EXPECT_TRUE(
+      compare(scene, test::make_gallery_view(make_size()), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
 }
 
 // Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is
 // rounded, for device and oracle alike; colour is not asked, as secondary rays start farther off the surface there.
 TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {
   world::Scene scene = test::make_scene_of_everything();
-  View view = test::make_view(uvec2(96, 72));
+  View view = test::make_view(make_size());
   const vec3 offset(1e5F, -1e5F, 1e5F);
   for (world::Object& object : scene.objects) {
     std::visit([&](auto& shape) { move(shape, offset); }, object.shape);

@@ -127,6 +127,7 @@ TEST_F(ShadingTest, ColorsTellObjectsAndPrimitivesApart) {
 
 TEST_F(ShadingTest, ColorsDoNotDependOnTheTree) {
   TunedRendererOptions options;
+  options.with_aovs = true;
   options.builder = "spatial";
   Renderer other = make_renderer(device(), scene_, options);
   const Image objects = show(DebugView::kObject);

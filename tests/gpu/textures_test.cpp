@@ -47,8 +47,13 @@ uint32_t grey(uint32_t value) {
 
 class TexturesTest : public DeviceTest {
  protected:
-  Image render(const Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
+  Image render(const Scene& scene, const View& view, TunedRendererOptions options = {}) {
     EXPECT_THAT(validate(scene), testing::IsEmpty());
+    using namespace layout;
+    // The features of all scenes here, so that they share their kernels.
+    options.more_features = FEATURE_TRIANGLES | FEATURE_PHONG | FEATURE_METALLIC_ROUGHNESS | FEATURE_UNLIT |
+                            FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPECULAR | FEATURE_MIRRORS | FEATURE_SMOOTH_NORMALS |
+                            FEATURE_TEXTURES | FEATURE_COATS | FEATURE_SHEENS | FEATURE_SPECULAR_TEXTURES;
     return make_renderer(device(), scene, options).render(view).image;
   }
 };
@@ -115,25 +120,6 @@ TEST_F(TexturesTest, BilinearBetweenTexels) {
     const double u = (x + 0.5) / width;
     EXPECT_NEAR(static_cast<double>(image.pixels[x].r), std::clamp(2.0 * u - 0.5, 0.0, 1.0), 0x1p-20) << x;
   }
-}
-
-TEST_F(TexturesTest, SetsAndTransformsAreFollowed) {
-  Scene scene = make_textured_board(make_image({4, 4}, [](uint32_t x, uint32_t y) { return grey(10 * (x + 4 * y)); }));
-  scene.textures[0].is_magnified_linearly = false;
-  const Image plain = render(scene, make_board_view({4, 4}));
-  auto& slot = std::get<Unlit>(scene.materials[0].model).color_texture;
-  // The second set has both signs turned.
-  slot.uv_set = 1;
-  const Image turned = render(scene, make_board_view({4, 4}));
-  // Scaled by -1 it is the first again.
-  slot.to_u = vec3(-1, 0, 0);
-  slot.to_v = vec3(0, -1, 0);
-  EXPECT_TRUE(has_same_bits(render(scene, make_board_view({4, 4})), plain));
-  for (size_t i = 0; i < 16; ++i) EXPECT_EQ(turned.pixels[i], plain.pixels[15 - i]) << i;
-  // A quarter to the left, as KHR_texture_transform's offset.
-  slot = {.texture = 0, .to_u = vec3(1, 0, 0.25F)};
-  const Image moved = render(scene, make_board_view({4, 4}));
-  for (size_t i = 0; i < 16; ++i) EXPECT_EQ(moved.pixels[i], plain.pixels[i / 4 * 4 + (i + 1) % 4]) << i;
 }
 
 TEST_F(TexturesTest, SmallTexelsAreAveraged) {

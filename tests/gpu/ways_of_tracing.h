@@ -4,16 +4,18 @@
 
 #include <vector>
 
+#include "support/thorough.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin::test {
 
 /// Options that change how a picture is traced, but none of its bits: without texel buffers, with packets and pieces of
-/// other sizes, with the trees of all builders.
+/// other sizes, with the trees of all builders. Packets of 2 are for thorough tests and RendererTest, because their
+/// kernels take as long to compile as those of 4.
 inline std::vector<TunedRendererOptions> ways_of_tracing() {
   std::vector<TunedRendererOptions> ways(1);
   ways.back().avoids_texels = true;
-  for (const uint32_t packet : {1U, 2U, 4U}) {
+  for (const uint32_t packet : cases_of<uint32_t>({1, 4, 2}, 2)) {
     ways.emplace_back().packet_size = packet;
     ways.back().blocks_per_dispatch = 5 * packet;
   }

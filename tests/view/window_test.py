@@ -37,6 +37,8 @@ class Session:
     """A window on a scene, the first of its files, in a folder that holds a copy of them."""
 
     SHOWCASE = ("showcase.gltf", "showcase.bin")
+    # Its kernels compile in a third of the showcase's time.
+    SMALL = ("light_point.gltf",)
 
     def __init__(self, bin_folder, scenes, folder, *arguments, files=SHOWCASE, takes_keys=True, **environment):
         self.bin = bin_folder
@@ -137,7 +139,7 @@ def look_of(command):
 
 
 def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
-    session = Session(bin_folder, scenes, folder, PROMIN_VALIDATION="core")
+    session = Session(bin_folder, scenes, folder, files=Session.SMALL, PROMIN_VALIDATION="core")
     with session as viewer:
         viewer.press("Tab")  # the overlay covers so small a window, and would take the pointer
         session.take_screenshot(1)
@@ -272,7 +274,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
 
 
 def plays_what_it_recorded(bin_folder, scenes, folder):
-    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json", files=Session.SMALL)
     with session as viewer:
         # Paused, a screenshot is of one sample a pixel, as what `promin render` gives below.
         viewer.press("p")
@@ -289,7 +291,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
     expect(sum(rest > 0.8 for rest in rests[1:]) > 0, f"a rest of a second became {rests}")
 
     words = ["--replay", "flight.json", "--fps", "stored"]
-    session = Session(bin_folder, scenes, folder, *words, PROMIN_VALIDATION="core")
+    session = Session(bin_folder, scenes, folder, *words, files=Session.SMALL, PROMIN_VALIDATION="core")
     with session as viewer:
         code = viewer.wait_for_end()
         expect(code == 0, f"the replay ended with {code}: {viewer.err}")
@@ -300,7 +302,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
 
     # By time, it takes its time.
     begin = time.monotonic()
-    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10")
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10", files=Session.SMALL)
     with session as viewer:
         code = viewer.wait_for_end()
     seconds = path[-1]["time_s"]
@@ -311,13 +313,13 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
     # Between frames window and renderer have the same cameras.
     half_way = {**flight, "fps": 7, "frames": [{**path[0], "time_s": 0}, {**path[-1], "time_s": 0.2}]}
     (folder / "half_way.json").write_text(json.dumps(half_way))
-    session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open")
+    session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open", files=Session.SMALL)
     with session as viewer:
         viewer.wait_for_line("^2 frames: ", 0, "end of the replay")
         viewer.focus()
         viewer.press("p")
         session.take_screenshot(3)
-        command = f"promin render showcase.gltf --path half_way.json --frames 1 --size {SIZE[0]} {SIZE[1]} --spp 1 -o x"
+        command = f"promin render {session.scene.name} --path half_way.json --frames 1 --size {SIZE[0]} {SIZE[1]} --spp 1 -o x"
         session.expect_same_picture(3, command)
         session.quit()
 
@@ -333,7 +335,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
 
 
 def stops_at_a_signal(bin_folder, scenes, folder):
-    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json", files=Session.SMALL)
     with session as viewer:
         session.take_screenshot(1)
         viewer.hold("w", 0.2)
@@ -343,7 +345,7 @@ def stops_at_a_signal(bin_folder, scenes, folder):
         expect(code == -signal.SIGTERM, f"it ended with {code}: {viewer.err}")
     frames = json.loads((folder / "flight.json").read_text())["frames"]
     expect(frames[0]["eye"] != frames[-1]["eye"], f"the flight was lost: {frames}")
-    names = sorted(file.name for file in folder.iterdir() if "showcase" not in file.name)
+    names = sorted(file.name for file in folder.iterdir() if file.name != session.scene.name)
     pairs = [f"promin-{number:04}.{ending}" for number in (1, 2) for ending in ("exr", "png")]
     expect(names in (["flight.json", *pairs[:2]], ["flight.json", *pairs]), f"files are left half written: {names}")
 
@@ -351,7 +353,7 @@ def stops_at_a_signal(bin_folder, scenes, folder):
     flight = {"format": "promin camera path", "version": 1, "frames": [{**frames[0], "ymag": 2.5}]}
     del flight["frames"][0]["fov_deg"]
     (folder / "flight.json").write_text(json.dumps(flight))
-    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--keep-open")
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--keep-open", files=Session.SMALL)
     with session as viewer:
         viewer.wait_for_line("^1 frames: ", 0, "end of the replay")
         viewer.focus()
@@ -362,7 +364,7 @@ def stops_at_a_signal(bin_folder, scenes, folder):
 
 
 def survives_its_window(bin_folder, scenes, folder):
-    session = Session(bin_folder, scenes, folder, PROMIN_VALIDATION="sync")
+    session = Session(bin_folder, scenes, folder, files=Session.SMALL, PROMIN_VALIDATION="sync")
     with session as viewer:
         session.take_screenshot(1)
         for i in range(20):

@@ -19,8 +19,9 @@ namespace promin {
 
 /// Options that pictures do not need: for tests and measurements.
 struct TunedRendererOptions : RendererOptions {
-  /// Compile all features, even unused ones, to measure the gain of specialisation.
-  bool force_all_features = false;
+  /// Features to compile even if the scene does not use them: all of them measure the gain of specialisation, and those
+  /// of several small scenes let these share their kernels. The image keeps its bits.
+  FeatureMask more_features = {};
   /// Target for the longest time of a single dispatch. If empty, the device profile decides.
   std::optional<double> target_dispatch_ms = std::nullopt;
   /// The number of pixels that a lane traces together: 1, 2 or 4. If empty, the device profile decides. The image keeps
@@ -65,7 +66,7 @@ class SceneOnDevice {
   void set_environment(const Environment& environment);
 
  private:
-  bool force_all_features_;
+  FeatureMask more_features_;
   bool is_tree_built_ = true;
   FeatureMask geometry_features_;
   FeatureMask material_features_;

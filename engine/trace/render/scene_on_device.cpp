@@ -16,7 +16,7 @@ PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options)
 
 SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
                              SetupStats& stats)
-    : force_all_features_(options.force_all_features) {
+    : more_features_(options.more_features) {
   for (const world::Object& object : scene.objects) object_materials_.push_back(object.material);
   PackedScene packed = pack(scene, options);
   is_tree_built_ = packed.file == nullptr;
@@ -42,9 +42,8 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
 }
 
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const {
-  FeatureMask features = force_all_features_ ? all_features()
-                                             : picture_features(geometry_features_, material_features_, lights,
-                                                                environment, primitive_count_);
+  FeatureMask features =
+      more_features_ | picture_features(geometry_features_, material_features_, lights, environment, primitive_count_);
   if (!mode.has_shadows) features = features.without(layout::FEATURE_SHADOWS);
   return features | features_of(mode.debug_view);
 }

@@ -81,7 +81,7 @@ TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t e
   result.expected_samples = expected_samples;
   choose_tree(options.tracing, result);
   result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
-  result.force_all_features = options.has_all_features;
+  if (options.has_all_features) result.more_features = all_features();
   // A time limit begins with a picture of one sample a pixel.
   result.has_error_target = options.error.target && !options.error.time_limit_s;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
