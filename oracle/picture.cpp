@@ -194,9 +194,11 @@ struct Way {
   uint32_t layers = 0;
   /// The part of what it brings that a pixel sees.
   Vector weight{1};
-  /// Whether it comes from a mirror, one of a metallic-roughness material among them, and the largest roughness of all.
+  /// Whether a mirror has reflected the ray.
   bool is_mirrored = false;
+  /// Whether one of these mirrors has a metallic-roughness material.
   bool is_of_metal = false;
+  /// The largest roughness of these mirrors.
   Real roughness = 0;
   Cone cone;
   RayError error;
@@ -230,8 +232,8 @@ class Tracer {
     }
   }
 
-  /// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends brings
-  /// alpha of what it sends, with the environment instead of a mirror ray, and 1 - alpha of what is behind.
+  /// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends contributes
+  /// alpha * (what it sends, with the environment in place of a mirror ray) + (1 - alpha) * (what is behind it).
   Radiance trace(const Ray& ray, const Seen& seen, const Way& way) const {
     Radiance sum = trace_hit(ray, seen.hit, way);
     if (seen.is_at_cutoff) sum.error += kUnknown;
@@ -296,7 +298,7 @@ class Tracer {
     return {material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff ? Real(0) : Real(1)};
   }
 
-  /// Of a shadow ray: what a mask leaves, too, by the finest level.
+  /// The coverage that a shadow ray meets. Unlike coverage_of it also evaluates masks, at the finest level.
   Coverage coverage_in_shadow(const Ray& ray, const Hit& hit, const RayError& of_ray) const {
     const Material& material = material_of(scene_, hit);
     const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
@@ -390,7 +392,7 @@ class Tracer {
 
   std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error,
                                              const Media& media) const {
-    // Textures of normals show the front what lies behind a little.
+    // With a texture of normals a light slightly behind the geometric surface can light the front.
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
     for (const Light& light : scene_.lights) {

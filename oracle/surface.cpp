@@ -236,7 +236,7 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
 /// As the dielectric reflects beside another medium than air: by the quotient of the indices.
 MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_total) {
   if (is_total) {
-    // KHR_materials_ior: what reflects all.
+    // Total reflection: an index of 0 reflects all light at every angle (KHR_materials_ior).
     material.ior = 0.0F;
     material.specular = 1.0F;
     material.specular_color = vec3(1.0F);
@@ -248,7 +248,7 @@ MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_t
   return material;
 }
 
-/// A grain at a point: an orthonormal frame with the normal, and what of the environment it shows.
+/// The grain of an anisotropic surface at a point: directions along and across it, and the normal that mirrors the sky.
 struct Grain {
   Vector along{0};
   Vector across{0};

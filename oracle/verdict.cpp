@@ -24,7 +24,7 @@ struct Interval {
 /// What there is where a line crosses the hull of a shape.
 enum class Wall { kSurface, kNothing, kEither };
 
-/// Where a ray's line may cross a primitive whose surface is off by no more than an allowance.
+/// The intervals of t in which a ray's line may cross a primitive whose surface is displaced by up to an allowance.
 struct Reach {
   /// Into a solid, or through a flat primitive.
   Interval entry;

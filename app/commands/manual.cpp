@@ -187,7 +187,7 @@ complete -F {1} {0}
                      name, function, commands, cases, options);
 }
 
-/// Text within single quotes of zsh's _arguments, where brackets and colons separate.
+/// Escapes a text for a single-quoted argument of zsh's _arguments, in which brackets and colons are separators.
 std::string zsh_text(const std::string& text) {
   std::string escaped = text;
   for (const char* sign : {"\\", "[", "]", ":"}) escaped = replace_all(escaped, sign, std::string("\\") + sign);

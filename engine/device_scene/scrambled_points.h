@@ -24,8 +24,8 @@ class ScrambledPoints {
   std::array<uint32_t, 2> seeds_;
 };
 
-/// Maps uniform points to samples that are distributed by a filter's weight: place_of_share as a table with linear
-/// interpolation. The interpolation moves at most 2^-12 of the weight, by less than the distance of two entries.
+/// Maps uniform points to samples that are distributed by a filter's weight, by linear interpolation in a table of
+/// place_of_share. This misplaces at most 2^-12 of the weight, by less than the distance between two entries.
 class FilterPlaces {
  public:
   explicit FilterPlaces(const View& view);

@@ -22,7 +22,7 @@ constexpr double kCeiling = 0.16;
 /// -y and y from which on floor and ceiling are all that there is.
 constexpr double kFloorDepth = 0.2;
 constexpr double kCeilingHeight = 0.6;
-/// The part of a lamp's half size, on both sides of its edge, over which its radiance falls from full to 0.
+/// A lamp's radiance falls from full at 1 minus this of its half size to 0 at 1 plus this.
 constexpr double kEdge = 0.15;
 
 /// A soft rectangle in the sky, in degrees. The azimuth is counted from the viewer to the right; the size as seen from

@@ -93,7 +93,7 @@ struct Aovs {
   static constexpr uint32_t kNoId = Coverage::kNoId;
 
   /// @cond
-  // The members, of the table.
+  // One member for each row of the table.
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) std::vector<TYPE> FIELD;
 #include "promin/kinds/aovs.def"
   /// @endcond

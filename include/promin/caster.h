@@ -104,9 +104,9 @@ class PROMIN_EXPORT Caster {
   static constexpr uint64_t kListBytes = uint64_t{1} << 26;
 
   /// Lists all crossings of each ray as hits, for any number of rays and in their order. Each call of `sink` receives
-  /// as many rays as have hits of `budget_bytes` together, but at least one. Memory use is about three times the budget
-  /// plus 200 MB, whatever the number of rays. Returns and throws what count() does, and RunError also if the hits of a
-  /// single ray do not fit into a buffer of the device.
+  /// as many rays as fit with all their hits into `budget_bytes`, but at least one. Memory use is about three times the
+  /// budget plus 200 MB, whatever the number of rays. Returns the same as count() and throws the same errors, and
+  /// RunError also if the hits of a single ray do not fit into a buffer of the device.
   double list(std::span<const Ray> rays, const HitListSink& sink, uint64_t budget_bytes = kListBytes,
               const ProgressCallback& progress = {});
 

@@ -21,7 +21,7 @@ enum class DebugView : uint32_t {
   /// @endcond
 };
 
-/// Returns names for people, indexed by DebugView; the first is "full".
+/// Returns display names, indexed by DebugView; the first is "full".
 PROMIN_EXPORT std::span<const std::string_view> debug_view_names();
 
 }  // namespace promin

@@ -22,7 +22,7 @@ enum class ToneMapping : uint32_t {
   /// @endcond
 };
 
-/// Returns names for people, indexed by ToneMapping; the first is "none".
+/// Returns display names, indexed by ToneMapping; the first is "none".
 PROMIN_EXPORT std::span<const std::string_view> tone_mapping_names();
 
 /// How PNG files and windows show linear radiance. By default it is not changed. EXR files always store it unchanged.

@@ -25,7 +25,7 @@ struct ExplainedSource {
   bool is_visible() const { return contribution != vec3(0.0F); }
 };
 
-/// The origin of a ray of a path.
+/// How a ray of a path came about.
 enum class RayKind : uint32_t {
   kCamera = 0,
   kReflection = 1,

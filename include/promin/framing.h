@@ -39,7 +39,7 @@ enum class Framing : uint32_t {
   kInside,
 };
 
-/// Returns names for people, indexed by Framing; the first is "three-quarter".
+/// Returns display names, indexed by Framing; the first is "three-quarter".
 PROMIN_EXPORT std::span<const std::string_view> framing_names();
 
 /// The default for the part of the picture that a framed scene covers.

@@ -63,7 +63,7 @@ PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 /// single rows. kZip acts as kZips if 16 rows have more than 8 MiB.
 enum class ExrCompression : uint32_t { kNone, kRle, kZips, kZip, kPiz };
 
-/// Returns names for people, indexed by ExrCompression.
+/// Returns display names, indexed by ExrCompression.
 PROMIN_EXPORT std::span<const std::string_view> exr_compression_names();
 
 /// Options for writing an EXR.

@@ -28,7 +28,7 @@ enum class LightChoice : uint32_t {
   kNone,
 };
 
-/// Returns names for people, indexed by LightChoice; the first is "auto".
+/// Returns display names, indexed by LightChoice; the first is "auto".
 PROMIN_EXPORT std::span<const std::string_view> light_choice_names();
 
 /// The parts that light_scene has added to a scene.

@@ -45,7 +45,7 @@ enum class PixelFilter : uint32_t {
   /// @endcond
 };
 
-/// Returns names for people, indexed by PixelFilter; the first is "box".
+/// Returns display names, indexed by PixelFilter; the first is "box".
 PROMIN_EXPORT std::span<const std::string_view> pixel_filter_names();
 /// Returns the default width of a filter in pixels.
 PROMIN_EXPORT float default_width(PixelFilter filter);
@@ -55,7 +55,7 @@ PROMIN_EXPORT float default_width(PixelFilter filter);
 /// compositors use it for blur.
 enum class DepthKind : uint32_t { kRay, kPlane };
 
-/// Returns names for people, indexed by DepthKind; the first is "ray".
+/// Returns display names, indexed by DepthKind; the first is "ray".
 PROMIN_EXPORT std::span<const std::string_view> depth_kind_names();
 
 /// The smallest and the largest width of a filter in pixels.

@@ -161,8 +161,8 @@ struct ExtensionRecord {
   vec4 reflectance;  // xyz = the dielectric's at normal incidence, before what follows; w = factor of all it reflects
   uvec4 slots;       // x = of the sheen's colour, y = of its roughness; of reflectance: z = of w, w = of xyz
   vec4 scattering;   // to the other side: xyz = colour; w = share
-  vec4 thin_film;    // x = share; y = index of refraction; z = thickness in nanometres; w = how much less it is where
-                     // its texture is 0
+  vec4 thin_film;    // x = share; y = index of refraction; z = thickness in nanometres; w = thickness minus that
+                     // where its texture is 0
   vec4 anisotropy;   // of anisotropic highlights: x = strength; y, z = cosine and sine of their rotation
   uvec4 rare_slots;  // x = of the share of scattering, y = of its colour, z = of the film's share, w = of its thickness
   uvec4 anisotropy_slot;  // x

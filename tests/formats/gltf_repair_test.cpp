@@ -249,7 +249,7 @@ const Repair kRepairs[] = {
      [](auto& g) {
        primitive(g)["attributes"]["NORMAL"] = g.template add<float>({0, 0, 1}, "VEC3");
      },
-     "meshes[0].primitives[0].attributes.NORMAL: an attribute has another number of elements than there are vertices "
+     "meshes[0].primitives[0].attributes.NORMAL: an attribute does not have one element for each vertex "
      "(1 for 3); the attribute is left out"},
     {"AttributeFormat",
      [](auto& g) {

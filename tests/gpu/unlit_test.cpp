@@ -115,7 +115,7 @@ TEST_F(UnlitTest, EdgesCountByTheirShare) {
   EXPECT_NEAR(result.aovs.unlit[0].w, 0.6F, 0.1F);
   const vec4 expected = result.aovs.unlit[0].w * vec4(kColor, 1.0F);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(result.aovs.unlit[0][c], expected[c], 1e-6F);
-  // Pieces and packets change no bit, and without the share the light is the same.
+  // Packets change no bit, and the picture is the same if the share is not requested.
   TunedRendererOptions single;
   single.packet_size = 1;
   const RenderResult same = trace(view, single);

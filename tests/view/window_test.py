@@ -469,7 +469,7 @@ def looks_from_where_keys_say(bin_folder, scenes, folder):
 
 
 def opens_and_saves_by_dialog(bin_folder, scenes, folder):
-    """By a program that answers as the desktop's dialog does."""
+    """Opens and saves files through a stand-in for the desktop's dialog, which returns fixed names."""
     programs = folder / "programs"
     programs.mkdir()
     shutil.copy(scenes / "box.gltf", folder / "another.gltf")

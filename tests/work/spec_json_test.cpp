@@ -120,7 +120,6 @@ const std::pair<std::vector<std::string>, std::pair<const char*, json>> kOptions
     {{"--depth", "plane"}, {"depth", "plane"}},
     {{"--half"}, {"half", true}},
     {{"--compression", "piz"}, {"compression", "piz"}},
-    {{"--multipart"}, {"multipart", true}},
     {{"--features", "all"}, {"features", "all"}},
     {{"--builder", "median"}, {"builder", "median"}},
     {{"--bvh", "a.pbvh"}, {"bvh", kHere + "a.pbvh"}},

@@ -38,7 +38,7 @@ struct PixelDifference {
 
 struct ImageDifference {
   bool is_equal = false;
-  /// Over all channels of all finite pixels; those on edges count as equal.
+  /// The mean over all channels of all finite pixels; pixels on edges count as equal.
   double mean_absolute = 0.0;
   uint64_t pixel_count = 0;
   /// Pixels over CompareOptions::fail; those that are not finite are among them.

@@ -186,7 +186,7 @@ void check_attributes(const json& attributes, const json& accessors, const std::
       report.refuse(
           "gltf.accessor.count",
           "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(first_count),
-          place + "." + name, "give all attributes one count");
+          place + "." + name, "give all attributes the same number of elements");
     }
   }
 }
@@ -200,7 +200,7 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
     report.repair({"gltf.accessor.format", "the format of an attribute is not allowed", say_format(accessor), place,
                    "export it as the glTF specification requires", "the attribute is left out"});
   } else if (count != vertex_count) {
-    report.repair({"gltf.accessor.count", "an attribute has another number of elements than there are vertices",
+    report.repair({"gltf.accessor.count", "an attribute does not have one element for each vertex",
                    std::to_string(count) + " for " + std::to_string(vertex_count), place,
                    "give all attributes one count", "the attribute is left out"});
   }
@@ -251,7 +251,7 @@ void check_primitive(json& primitive, const json& accessors, const std::string& 
   }
 }
 
-/// Marks the buffer views that more than images need.
+/// Marks the buffer views that accessors or compressed meshes use; those that only images use stay unmarked.
 std::vector<bool> find_structural_views(const json& document) {
   std::vector<bool> is_structural(elements_of(document, "bufferViews").size(), false);
   const auto mark = [&](const json& holder) {

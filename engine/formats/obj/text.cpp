@@ -333,7 +333,7 @@ class ObjParser {
     return found != bad_vertices_.end() && found->index == position ? &*found : nullptr;
   }
 
-  /// Whether there was any.
+  /// Removes indices that are `count` or more. Returns whether there were any.
   static bool forget_past_the_end(std::span<ObjCorner> corners, uint32_t ObjCorner::*index, size_t count) {
     bool has_any = false;
     for (ObjCorner& corner : corners) {

@@ -13,9 +13,9 @@
 namespace promin {
 namespace {
 
-/// An edge through the pixel: of 95 in 100 the area's error is less than this times N^(-3/4).
+/// If one edge crosses the pixel, the error of the covered area is less than this times N^(-3/4) in 95 of 100 cases.
 constexpr double kEdgeError = 0.62;
-/// What no sample of its own has hit, but one of its neighbors'.
+/// Factor for a range of colours that only a neighbour's samples have seen.
 constexpr double kNeighborShare = 0.5;
 /// Many edges: the batches' union is better than their mean by the fourth root of their number, 1.68 of 8, and
 /// Student's factor of 7 degrees of freedom is 2.37; that is 1.4. Pixels stop where their claim happens to be small,

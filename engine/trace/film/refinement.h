@@ -105,7 +105,7 @@ class Refinement {
   /// The window and the pixels around it that are in the picture.
   PixelWindow apron_;
   FilterPlaces filter_;
-  /// Indexed by apron; outside of the window with only the first samples.
+  /// One for each pixel of the apron. Pixels outside of the window have only their first samples.
   std::vector<PixelEstimate> estimates_;
   /// Indexed by apron, with unlit surfaces: sums of the samples' unlit colours and, with ErrorTarget::display, the
   /// displayed color of each sample alone, as linear light.

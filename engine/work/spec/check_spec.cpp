@@ -178,7 +178,7 @@ void check_job(const RenderSpec& options) {
                           {options.tracing.repeat_count > 1, "--repeat"}});
   if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
   refuse_if("usage.options.contradict", job.share && !options.pictures.empty(),
-            "--piece and --output contradict each other: a share writes no picture",
+            "--piece and --output contradict each other: with --piece no picture is written",
             "leave one out; promin merge writes the picture when all pieces are made");
 }
 
@@ -292,7 +292,7 @@ void check_job_options(const CastSpec& options) {
         {"usage.options.contradict", fmt::format("--job and {} contradict each other", name), "", "leave one out"});
   }
   if (options.job.share && !options.outputs().empty()) {
-    throw UsageError({"usage.options.contradict", "--piece and --output contradict each other: a share writes no file",
+    throw UsageError({"usage.options.contradict", "--piece and --output contradict each other: with --piece no file is written",
                       "", "leave one out; promin merge writes the file when all pieces are made"});
   }
 }

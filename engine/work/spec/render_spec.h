@@ -125,7 +125,7 @@ inline constexpr uint32_t kDefaultSamples = 8;
 /// How good a picture is, for people who do not count samples.
 enum class Quality : uint32_t { kDraft, kNormal, kHigh, kBest };
 
-/// Returns names for people, indexed by Quality.
+/// Returns display names, indexed by Quality.
 std::span<const std::string_view> quality_names();
 /// The samples of Quality::kHigh.
 inline constexpr uint32_t kHighSamples = 32;
@@ -133,7 +133,7 @@ inline constexpr uint32_t kHighSamples = 32;
 /// The space in which errors are measured: linear light, or as displayed.
 enum class ErrorSpace : uint32_t { kLinear, kDisplay };
 
-/// Returns names for people, indexed by ErrorSpace.
+/// Returns display names, indexed by ErrorSpace.
 std::span<const std::string_view> error_space_names();
 
 /// Returns the smallest target error as the text of a fraction.
