@@ -9,11 +9,7 @@
 
 namespace promin {
 
-<<<<<<< HEAD
-/// Thrown by a case whose problem costs only a warning, also in strict loading. Such warnings have no code that a
-=======
 /// A case throws this if its problem costs only a warning, also in strict loading. Such warnings have no code that a
->>>>>>> 23502c97f4629ff3c8ae8c449ae79d9052a8574f
 /// test can see, so the case states it.
 struct Warned {
   std::vector<std::string> warnings;
