@@ -46,9 +46,8 @@ void add_alpha_texture(Scene& scene, const uvec2& size, const std::vector<uint32
 
 class AlphaTest : public DeviceTest {
  protected:
-  RenderResult trace(const Scene& scene, const View& view, TunedRendererOptions options = {}) {
+  RenderResult trace(const Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
     EXPECT_THAT(validate(scene), testing::IsEmpty());
-    options.more_features = features_of_boards();
     return make_renderer(device(), scene, options).render(view);
   }
   /// Of a row of a square picture, of which all rows are alike.

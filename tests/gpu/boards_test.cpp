@@ -326,9 +326,7 @@ class BoardsTest : public DeviceTest, public testing::WithParamInterface<BoardCa
 };
 
 TEST_P(BoardsTest, HasNoRed) {
-  TunedRendererOptions options;
-  options.more_features = features_of_boards();
-  EXPECT_EQ(count_red(GetParam().make(), options), 0U);
+  EXPECT_EQ(count_red(GetParam().make()), 0U);
 }
 
 TEST_P(BoardsTest, TurnsRedWithAFault) {

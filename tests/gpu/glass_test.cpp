@@ -58,12 +58,9 @@ View look_down(const vec3& look = vec3(0, -1, 0)) {
 
 class GlassTest : public DeviceTest {
  protected:
-  /// A renderer with the features of all scenes here, so that they share their kernels.
-  static Renderer make(const world::Scene& scene, TunedRendererOptions options = {}) {
-    options.more_features = features_of(make_scene_of_glass()) | layout::FEATURE_BOXES;
-    return make_renderer(device(), scene, options);
+  static RenderResult trace(const world::Scene& scene, const View& view) {
+    return make_renderer(device(), scene).render(view);
   }
-  static RenderResult trace(const world::Scene& scene, const View& view) { return make(scene).render(view); }
   static vec3 see(const world::Scene& scene, const View& view) { return trace(scene, view).image.pixels.front(); }
 };
 
@@ -163,7 +160,7 @@ TEST_F(GlassTest, EachColorIsBentByItsOwnIndex) {
   model.ior = 1.5F;
   model.dispersion = 8.0F;
   const View view = look_down(glm::normalize(vec3(0.6F, -0.8F, 0.0F)));
-  Renderer renderer = make(make_scene(kSlab, make_clear(model)));
+  Renderer renderer = make_renderer(device(), make_scene(kSlab, make_clear(model)));
   const ExplainedSample sample = renderer.explain(view, uvec2(0)).samples.front();
   ASSERT_EQ(sample.rays.size(), 7U) << "the camera's, and of each color one within and one beyond";
   for (int color = 0; color < 3; ++color) {
@@ -194,7 +191,7 @@ TEST_F(GlassTest, EachColorIsReflectedTotallyAtItsOwnAngle) {
   view.camera.yfov = 1e-5F;
   view.camera.eye = vec3(0.0F);
   view.max_depth = 1;
-  Renderer renderer = make(make_scene(kSlab, make_clear(model)));
+  Renderer renderer = make_renderer(device(), make_scene(kSlab, make_clear(model)));
   const ExplainedSample sample = renderer.explain(view, uvec2(0)).samples.front();
   ASSERT_EQ(sample.rays.size(), 5U) << "the camera's, its mirror ray, and one of each color";
   EXPECT_LT(sample.rays[2].ray.direction.y, 0.0F);
@@ -228,10 +225,10 @@ TEST_F(GlassTest, EveryWayOfTracingGivesTheSameBits) {
   View view = make_view({96, 72});
   view.samples_per_pixel = 3;
   view.max_depth = kMaxDepthOfGlass;
-  const RenderResult expected = make(scene).render(view);
+  const RenderResult expected = make_renderer(device(), scene).render(view);
   EXPECT_GT(expected.rays.refraction, 5000U);
   for (const TunedRendererOptions& options : ways_of_tracing()) {
-    const RenderResult result = make(scene, options).render(view);
+    const RenderResult result = make_renderer(device(), scene, options).render(view);
     EXPECT_TRUE(has_same_bits(result.image, expected.image));
     EXPECT_EQ(result.rays.refraction, expected.rays.refraction);
     EXPECT_EQ(result.rays.reflection, expected.rays.reflection);

@@ -73,18 +73,9 @@ float largest_difference(const Image& image, float wanted) {
 
 class MaterialsTest : public test::DeviceTest {
  protected:
-  /// A renderer with the features of all scenes here, so that they share their kernels.
-  static Renderer make(const world::Scene& scene) {
-    using namespace layout;
-    TunedRendererOptions options;
-    options.more_features = FEATURE_TRIANGLES | FEATURE_SPHERES | FEATURE_PLANES | FEATURE_BOXES |
-                            FEATURE_DIRECTIONAL_LIGHTS | FEATURE_HEADLIGHT | FEATURE_METALLIC_ROUGHNESS |
-                            FEATURE_UNLIT | FEATURE_SHADOWS | FEATURE_SPECULAR | FEATURE_MIRRORS |
-                            FEATURE_VERTEX_COLORS | FEATURE_TEXTURES | FEATURE_COATS | FEATURE_SHEENS |
-                            FEATURE_DIFFUSE_TRANSMISSION | FEATURE_IRIDESCENCE | FEATURE_ANISOTROPY;
-    return make_renderer(device(), scene, options);
+  static Image render(const world::Scene& scene, const View& view) {
+    return make_renderer(device(), scene).render(view).image;
   }
-  static Image render(const world::Scene& scene, const View& view) { return make(scene).render(view).image; }
 
   /// A floor of one material, seen at an angle of this cosine.
   static vec3 color_of_floor(const Material& material, float cosine, world::Scene scene) {
@@ -121,7 +112,7 @@ View look_at_spheres() {
 
 // A white furnace: what the table holds cancels, so it is not the table that makes it 1.
 TEST_F(MaterialsTest, WhiteSpheresVanishInAWhiteFurnace) {
-  Renderer renderer = make(make_spheres(vec3(1.0F)));
+  Renderer renderer = make_renderer(device(), make_spheres(vec3(1.0F)));
   View view = look_at_spheres();
   for (const uint32_t depth : {0U, 1U, 5U}) {
     view.max_depth = depth;
@@ -161,7 +152,7 @@ TEST_F(MaterialsTest, WhiteSpheresThatScatterThroughVanishInAWhiteFurnace) {
     for (Material& material : scene.materials) {
       std::get<MetallicRoughness>(material.model).diffuse_transmission = share;
     }
-    if (!renderer) renderer.emplace(make(scene));
+    if (!renderer) renderer.emplace(make_renderer(device(), scene));
     renderer->set_materials(scene.materials);
     EXPECT_LE(largest_difference(renderer->render(look_at_spheres()).image, 1.0F), 8.0F * kU) << share;
   }
@@ -183,7 +174,7 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   scene.objects.push_back({"", world::Box{.center = vec3(-9, 0, 0), .half_size = vec3(1, 8, 8)}, 0});
   scene.materials = {make_metallic_roughness(model)};
   scene.lights = {make_sun(vec3(0, 1, 0))};
-  Renderer renderer = make(scene);
+  Renderer renderer = make_renderer(device(), scene);
   const View view = look_along(-glm::normalize(vec3(0.2F, 1, 0)));
   const auto seen_under = [&](const vec3& to_light) {
     renderer.set_lights(std::vector{make_sun(glm::normalize(to_light), std::numbers::pi_v<float>)});
@@ -262,7 +253,7 @@ TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   const double along = across + (1 - across) * static_cast<double>(strength) * static_cast<double>(strength);
   world::Scene scene = make_grain(strength, 0.0F, roughness);
   scene.lights = {make_sun(vec3(0, -1, 0))};
-  Renderer renderer = make(scene);
+  Renderer renderer = make_renderer(device(), scene);
   const View view = look_along(vec3(0, -1, 0));
   const auto seen_under = [&](const vec3& to_light) {
     renderer.set_lights(std::vector{make_sun(glm::normalize(to_light), std::numbers::pi_v<float>)});
@@ -305,7 +296,7 @@ TEST_F(MaterialsTest, AWhiteGrainVanishesInAWhiteFurnace) {
   for (const float roughness : {0.0F, 0.2F, 1.0F}) {
     world::Scene scene = make_grain(1.0F, 0.3F, roughness);
     scene.environment.ambient = vec3(1.0F);
-    if (!renderer) renderer.emplace(make(scene));
+    if (!renderer) renderer.emplace(make_renderer(device(), scene));
     renderer->set_materials(scene.materials);
     const vec3 seen = renderer->render(look_along(-glm::normalize(vec3(0.2F, 1, 0)))).image.pixels[0];
     EXPECT_LE(max_abs_component(seen - vec3(1.0F)), 8.0F * kU) << roughness;
@@ -345,7 +336,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
     const vec3 to_light = glm::normalize(vec3(radius * std::cos(azimuth), height, radius * std::sin(azimuth)));
     scene.lights.push_back(make_sun(to_light, 4.0F * std::numbers::pi_v<float> / kCount));
   }
-  Renderer renderer = make(scene);
+  Renderer renderer = make_renderer(device(), scene);
   for (const float metallic : {0.0F, 0.5F, 1.0F}) {
     for (const float roughness : {0.5F, 0.7F, 1.0F}) {
       MetallicRoughness model;
@@ -385,7 +376,7 @@ class HighlightTest : public MaterialsTest {
     scene_.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
     scene_.materials = {make_metallic_roughness({})};
     scene_.lights = {make_sun(vec3(0, 1, 0))};
-    renderer_.emplace(make(scene_));
+    renderer_.emplace(make_renderer(device(), scene_));
   }
 
   void set_model(float metallic, float roughness) {

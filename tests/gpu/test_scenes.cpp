@@ -238,12 +238,6 @@ View make_board_view(const uvec2& size, uint32_t samples) {
   return view;
 }
 
-FeatureMask features_of_boards() {
-  using namespace layout;
-  return FEATURE_TRIANGLES | FEATURE_SPHERES | FEATURE_PHONG | FEATURE_UNLIT | FEATURE_DIRECTIONAL_LIGHTS |
-         FEATURE_SHADOWS | FEATURE_MIRRORS | FEATURE_TEXTURES | FEATURE_HOLES | FEATURE_ONE_SIDED | FEATURE_BLENDING;
-}
-
 Material make_unlit(const vec3& color, AlphaMode mode, float alpha) {
   Material material;
   material.model = Unlit{color, {}};

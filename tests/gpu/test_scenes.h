@@ -7,7 +7,6 @@
 #include "promin/ray.h"
 #include "promin/renderer.h"
 #include "promin/scene.h"
-#include "scene/features.h"
 #include "scene/world_scene.h"
 
 namespace promin::test {
@@ -36,11 +35,6 @@ Mesh make_board(float z = 0.0F, const vec2& lo = vec2(0.0F), const vec2& hi = ve
 
 /// A view of boards, which fill it, orthographic from z = 2 towards -z; what lies at z > 2 is behind it.
 View make_board_view(const uvec2& size, uint32_t samples = 1);
-
-/// The features that the tests with boards need between them. A kernel takes longer to compile than a small picture to
-/// trace, so these tests compile all of these features once; RendererTest.SpecialisationChangesNoBit holds that
-/// features which a scene does not use change no bit.
-FeatureMask features_of_boards();
 
 /// A material that shows its colour alone.
 Material make_unlit(const vec3& color, AlphaMode mode = AlphaMode::kOpaque, float alpha = 1.0F);

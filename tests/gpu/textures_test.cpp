@@ -47,13 +47,8 @@ uint32_t grey(uint32_t value) {
 
 class TexturesTest : public DeviceTest {
  protected:
-  Image render(const Scene& scene, const View& view, TunedRendererOptions options = {}) {
+  Image render(const Scene& scene, const View& view, const TunedRendererOptions& options = {}) {
     EXPECT_THAT(validate(scene), testing::IsEmpty());
-    using namespace layout;
-    // The features of all scenes here, so that they share their kernels.
-    options.more_features = FEATURE_TRIANGLES | FEATURE_PHONG | FEATURE_METALLIC_ROUGHNESS | FEATURE_UNLIT |
-                            FEATURE_DIRECTIONAL_LIGHTS | FEATURE_SPECULAR | FEATURE_MIRRORS | FEATURE_SMOOTH_NORMALS |
-                            FEATURE_TEXTURES | FEATURE_COATS | FEATURE_SHEENS | FEATURE_SPECULAR_TEXTURES;
     return make_renderer(device(), scene, options).render(view).image;
   }
 };

@@ -60,10 +60,7 @@ View make_stripes_view(const uvec2& size, uint32_t samples = 1) {
 
 class UnlitTest : public DeviceTest {
  protected:
-  Renderer renderer(TunedRendererOptions options) const {
-    options.more_features = features_of_boards();
-    return make_renderer(device(), scene_, options);
-  }
+  Renderer renderer(const TunedRendererOptions& options) const { return make_renderer(device(), scene_, options); }
   RenderResult trace(View view, TunedRendererOptions options = {}) const {
     view.max_depth = 2;
     options.aovs.unlit = true;
