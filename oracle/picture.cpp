@@ -298,7 +298,7 @@ class Tracer {
     return {material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff ? Real(0) : Real(1)};
   }
 
-  /// The coverage that a shadow ray meets. Unlike coverage_of it also evaluates masks, at the finest level.
+  /// The coverage at a hit of a shadow ray. Unlike coverage_of it also evaluates masks, at the finest level.
   Coverage coverage_in_shadow(const Ray& ray, const Hit& hit, const RayError& of_ray) const {
     const Material& material = material_of(scene_, hit);
     const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
