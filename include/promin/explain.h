@@ -25,7 +25,7 @@ struct ExplainedSource {
   bool is_visible() const { return contribution != vec3(0.0F); }
 };
 
-/// What has made a ray of a path.
+/// The kind of event that produced a ray of a path.
 enum class RayKind : uint32_t {
   kCamera = 0,
   kReflection = 1,
