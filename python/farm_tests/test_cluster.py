@@ -268,7 +268,7 @@ def test_workers_tell_what_they_are_at(farm: Farm) -> None:
     said = farm.render("--workers", 1)
     lines = [line.split(" ", 2)[2] for line in said.splitlines() if line.startswith("promin-farm: ")]
     assert lines[0].startswith("of 4 pieces to make, by 1 worker on this machine")
-    assert lines[1:5] == ["loads the scene", "compiles", "proves its device", "makes pieces"], said
+    assert lines[1:5] == ["loads the scene", "compiles", "checks its device", "makes pieces"], said
     Path(farm.create().pieces[0].file).unlink()
     assert "this process compiles" in farm.run("work", farm.job)
     Path(farm.create().pieces[0].file).unlink()

@@ -285,7 +285,7 @@ class Runner {
     record["is_equal"] = is_equal;
     record["is_within"] = is_equal || difference.is_within_bounds();
     record["largest"] = difference.largest;
-    record["others"] = difference.others;
+    record["mismatches"] = difference.mismatches;
     record["count"] = difference.count;
     return record;
   }

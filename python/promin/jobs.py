@@ -109,7 +109,7 @@ class Comparison:
     largest: float
     """The largest difference among all pixels or rays that are no mismatches: for a pixel's numbers at most 0.004
     (relative for numbers beyond 1), for rays at most 16 in units of K of t (docs/glossary.md)."""
-    others: int
+    mismatches: int
     """Mismatches: pixels or rays that differ by more, or that show another surface, for example because of rounding at
     an edge."""
     count: int
@@ -354,12 +354,12 @@ class Job:
         make: Make | None = None,
         *,
         rays: RaySource | None = None,
-        tell: Callable[[str], object] = lambda words: None,
+        on_step: Callable[[str], object] = lambda words: None,
     ) -> Runner:
         """Returns a maker of pieces on this machine. It reads the scene and opens the device once.
 
         device: a Device, a part of a name, an index, or None for the default one. make, rays: as given to `create_with`
-        and `create`. tell: receives the name of each long step, such as "loads the scene" or "compiles". The tree of a
+        and `create`. on_step: receives the name of each long step, such as "loads the scene" or "compiles". The tree of a
         large scene is shared in DIR/trees; the first process that needs it writes it. Raises UsageError if a file or
         the version of results has changed, so that the job would be another one now, and names the change; InputError
         if the folder does not say how pieces are made, or a file is missing; DeviceError, RunError."""
@@ -367,9 +367,9 @@ class Job:
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
             if self._kind not in ("render", "cast"):
                 raise UsageError(f"pieces of the kind {self._kind!r} are made by a function; give it as make")
-            tell("loads the scene")
+            on_step("loads the scene")
             self._plan = _promin.PlannedJob.plan_again(self._native, rays or self._rays)
-        tell("compiles")
+        on_step("compiles")
         return Runner(self, device, make)
 
     def check_outputs(self, outputs: Sequence[PathLike]) -> None:

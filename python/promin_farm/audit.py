@@ -55,8 +55,8 @@ class Audit:
 
 
 def _describe(found: jobs.Comparison) -> str:
-    share = f"{100.0 * found.others / max(found.count, 1):.3g} % see another surface"
-    return f"{share}, the rest differs by at most {found.largest:.3g}" if found.others < found.count else share
+    share = f"{100.0 * found.mismatches / max(found.count, 1):.3g} % see another surface"
+    return f"{share}, the rest differs by at most {found.largest:.3g}" if found.mismatches < found.count else share
 
 
 def parse_share(words: str) -> float:

@@ -42,8 +42,8 @@ class Bench:
         self.job = jobs.open(folder)
         self.settings = Settings.read(self.folder)
         start = Start(self.folder, say)
-        self.runner = self.job.runner(device, tell=start.tell)
-        start.tell("proves its device")
+        self.runner = self.job.runner(device, on_step=start.tell)
+        start.tell("checks its device")
         fingerprint = self.runner.fingerprint
         start.tell("makes pieces")
         self.heart = Heart(self.folder, fingerprint, str(getattr(self.runner, "made_on", "")))

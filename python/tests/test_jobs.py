@@ -325,13 +325,13 @@ def test_comparisons_of_answers(scene: Path, rays: Path, tmp_path: Path, query: 
         hits[met, 0] += 1  # The next number.
         job.write(0, description, hits.tobytes() + tail)
         found = runner.compare(0)
-        assert (found.is_equal, found.is_within, found.others, found.count) == (False, True, 0, 1000)
+        assert (found.is_equal, found.is_within, found.mismatches, found.count) == (False, True, 0, 1000)
         assert 0.1 < found.largest < 3.0
     for count, is_within in ((1, True), (40, False)):
         hits[met[:count], 0] = np.float32(1e6).view(np.int32)
         job.write(0, description, hits.tobytes() + tail)
         found = runner.compare(0)
-        assert found.is_within == is_within and (found.others == count if query != "--all" else found.others >= 1)
+        assert found.is_within == is_within and (found.mismatches == count if query != "--all" else found.mismatches >= 1)
 
 
 def test_a_tree_is_built_once(tmp_path: Path, run_promin: RunPromin) -> None:

@@ -32,7 +32,7 @@ TEST(ComparePartsTest, NumbersMayDifferByLittle) {
   anew.channels[0].values[9] = std::bit_cast<uint32_t>(20.07F);
   const PieceDifference difference = compare_parts(make_part(), anew, "a.piece");
   EXPECT_EQ(difference.count, 1000U);
-  EXPECT_EQ(difference.others, 0U);
+  EXPECT_EQ(difference.mismatches, 0U);
   EXPECT_NEAR(difference.largest, 0.0039, 1e-6);
   EXPECT_TRUE(difference.is_within_bounds());
 }
@@ -45,12 +45,12 @@ TEST(ComparePartsTest, AnEdgeMayDecideForFewPixels) {
   anew.channels[1].values[4] = 2;
   anew.image.pixels[5].z = std::numeric_limits<float>::quiet_NaN();
   PieceDifference difference = compare_parts(make_part(), anew, "a.piece");
-  EXPECT_EQ(difference.others, 5U);
+  EXPECT_EQ(difference.mismatches, 5U);
   EXPECT_EQ(difference.largest, 0.0);
   EXPECT_TRUE(difference.is_within_bounds());
   anew.image.pixels[6].x = 0.0F;
   difference = compare_parts(make_part(), anew, "a.piece");
-  EXPECT_EQ(difference.others, 6U);
+  EXPECT_EQ(difference.mismatches, 6U);
   EXPECT_FALSE(difference.is_within_bounds());
 }
 
@@ -60,7 +60,7 @@ TEST(ComparePartsTest, WhatIsNoNumberInBothIsTheSame) {
   there.channels[0].values.assign(1000, std::bit_cast<uint32_t>(std::numeric_limits<float>::infinity()));
   PicturePart anew = there;
   anew.image.pixels[0] = vec3(-std::numeric_limits<float>::quiet_NaN());
-  EXPECT_EQ(compare_parts(there, anew, "a.piece").others, 0U);
+  EXPECT_EQ(compare_parts(there, anew, "a.piece").mismatches, 0U);
 }
 
 TEST(ComparePartsTest, PartsOfOtherPicturesAreRefused) {
@@ -111,13 +111,13 @@ TEST(HitComparisonTest, TMayDifferByTwiceItsBound) {
     const PieceDifference difference =
         compare_one(make_hit(0, 4.5F), make_hit(0, 4.5F + static_cast<float>(steps * ulp)));
     const double k = steps * ulp / unit;
-    EXPECT_EQ(difference.others, k > 16.0 ? 1U : 0U) << k;
+    EXPECT_EQ(difference.mismatches, k > 16.0 ? 1U : 0U) << k;
     EXPECT_NEAR(difference.largest, k > 16.0 ? 0.0 : k, 1e-3) << steps;
   }
   // Grazing, the point moves along the surface.
   Hit grazing = make_hit(0, 4.5F);
   grazing.normal = vec3(1, 0, 0);
-  EXPECT_EQ(compare_one(grazing, make_hit(0, 4.6F)).others, 0U);
+  EXPECT_EQ(compare_one(grazing, make_hit(0, 4.6F)).mismatches, 0U);
 }
 
 TEST(HitComparisonTest, OfAPlaneSHasTheWayToo) {
@@ -126,15 +126,15 @@ TEST(HitComparisonTest, OfAPlaneSHasTheWayToo) {
 }
 
 TEST(HitComparisonTest, OtherSurfacesAreOthers) {
-  EXPECT_EQ(compare_one(make_hit(0, 4.5F), make_hit(1, 4.5F)).others, 1U);
-  EXPECT_EQ(compare_one(make_hit(0, 4.5F), Hit()).others, 1U);
-  EXPECT_EQ(compare_one(Hit(), Hit()).others, 0U);
+  EXPECT_EQ(compare_one(make_hit(0, 4.5F), make_hit(1, 4.5F)).mismatches, 1U);
+  EXPECT_EQ(compare_one(make_hit(0, 4.5F), Hit()).mismatches, 1U);
+  EXPECT_EQ(compare_one(Hit(), Hit()).mismatches, 0U);
   Hit neighbour = make_hit(0, 4.5F);
   neighbour.primitive = 1;
-  EXPECT_EQ(compare_one(make_hit(0, 4.5F), neighbour).others, 1U);
-  EXPECT_EQ(compare_one(make_hit(0, std::numeric_limits<float>::quiet_NaN()), make_hit(0, 4.5F)).others, 1U);
+  EXPECT_EQ(compare_one(make_hit(0, 4.5F), neighbour).mismatches, 1U);
+  EXPECT_EQ(compare_one(make_hit(0, std::numeric_limits<float>::quiet_NaN()), make_hit(0, 4.5F)).mismatches, 1U);
   // An object that there is not.
-  EXPECT_EQ(compare_one(make_hit(5, 4.5F), make_hit(5, 4.500001F)).others, 1U);
+  EXPECT_EQ(compare_one(make_hit(5, 4.5F), make_hit(5, 4.500001F)).mismatches, 1U);
 }
 
 TEST(HitComparisonTest, ListsAndCountsAreOfRays) {
@@ -144,17 +144,17 @@ TEST(HitComparisonTest, ListsAndCountsAreOfRays) {
   comparison.compare_lists(make_ray(), there, anew);
   anew[1].t += 0x1p-21F;
   comparison.compare_lists(make_ray(), there, anew);
-  EXPECT_EQ(comparison.difference().others, 0U);
+  EXPECT_EQ(comparison.difference().mismatches, 0U);
   EXPECT_GT(comparison.difference().largest, 0.1);
   anew.pop_back();
   comparison.compare_lists(make_ray(), there, anew);
   EXPECT_EQ(comparison.difference().count, 3U);
-  EXPECT_EQ(comparison.difference().others, 1U);
+  EXPECT_EQ(comparison.difference().mismatches, 1U);
   const std::vector<int32_t> counts = {1, 2, 3};
   const std::vector<int32_t> others = {1, 2, 4};
   comparison.compare(counts, others);
   EXPECT_EQ(comparison.difference().count, 6U);
-  EXPECT_EQ(comparison.difference().others, 2U);
+  EXPECT_EQ(comparison.difference().mismatches, 2U);
 }
 
 }  // namespace

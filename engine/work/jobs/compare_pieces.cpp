@@ -38,7 +38,7 @@ void count(PieceDifference& difference, double value, double most) {
   if (value <= most) {
     difference.largest = std::max(difference.largest, value);
   } else {
-    ++difference.others;
+    ++difference.mismatches;
   }
 }
 

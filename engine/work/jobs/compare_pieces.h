@@ -24,7 +24,7 @@ inline constexpr double kMostPixelDifference = 0.004;
 /// The largest allowed difference of t in units of K (docs/glossary.md): each device may have B1 = 8.
 inline constexpr double kMostK = 16.0;
 /// The largest allowed part of pixels or rays that differ because of an edge, as for golden pictures.
-inline constexpr double kMostOthers = 0.005;
+inline constexpr double kMostMismatches = 0.005;
 
 /// The difference between two results of the same piece.
 struct PieceDifference {
@@ -32,11 +32,11 @@ struct PieceDifference {
   uint64_t count = 0;
   /// Number of mismatches: pixels or rays whose numbers differ by more than kMostPixelDifference or kMostK, or that
   /// show different surfaces.
-  uint64_t others = 0;
+  uint64_t mismatches = 0;
   /// The largest difference among all others, of a number or of t in units of K.
   double largest = 0.0;
 
-  bool is_within_bounds() const { return static_cast<double>(others) <= kMostOthers * static_cast<double>(count); }
+  bool is_within_bounds() const { return static_cast<double>(mismatches) <= kMostMismatches * static_cast<double>(count); }
 };
 
 /// Compares colours and channels. Throws InputError with the file's name if the parts are not of the same picture.

@@ -78,7 +78,7 @@ class Comparison:
     is_equal: bool
     is_within: bool
     largest: float
-    others: int
+    mismatches: int
     count: int
 
 
@@ -178,9 +178,9 @@ class Job:
         events = [{**json.loads(line), "maker": file.stem} for file in files for line in file.read_text().splitlines()]
         return events if maker else sorted(events, key=lambda event: float(event["time_s"]))
 
-    def runner(self, device: str | None = None, *, tell: Callable[[str], None] = lambda words: None) -> Runner:
-        tell("loads the scene")
-        tell("compiles")
+    def runner(self, device: str | None = None, *, on_step: Callable[[str], None] = lambda words: None) -> Runner:
+        on_step("loads the scene")
+        on_step("compiles")
         return Runner(self, device)
 
     def preview(self, number: int, most_px: int) -> Any:
