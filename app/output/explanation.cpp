@@ -37,7 +37,7 @@ Json json_of(const Ray& ray, const Scene& scene) {
 }
 
 /// Writes the members that any hit has, a blocker too; json_of(ExplainedRay) adds those of the hits on the path.
-Json json_of(const Hit& hit, const Scene& scene) {
+Json json_of(const Hit& hit) {
   if (hit.object < 0) return nullptr;
   return {{"object", hit.object},
           {"primitive", hit.primitive},
@@ -54,7 +54,7 @@ Json json_of(const ExplainedSource& source, const Scene& scene) {
                {"shadow_ray", nullptr}};
   if (source.shadow_ray) {
     json["shadow_ray"] = json_of(*source.shadow_ray, scene);
-    json["shadow_ray"]["blocker"] = json_of(source.blocker, scene);
+    json["shadow_ray"]["blocker"] = json_of(source.blocker);
   }
   return json;
 }
@@ -78,7 +78,7 @@ Json json_of(const ExplainedRay& ray, const Scene& scene) {
   if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
   json.update(json_of(ray.ray, scene));
   json["weight"] = json_of(ray.weight);
-  json["hit"] = json_of(ray.hit, scene);
+  json["hit"] = json_of(ray.hit);
   if (ray.hit.object >= 0) {
     json["hit"].update({{"object_name", scene.objects[static_cast<size_t>(ray.hit.object)].name},
                         {"position", json_of_place(ray.position, scene)},

@@ -82,7 +82,7 @@ TEST(CopiedHitsTest, CopiesAreListedInTheOrderOfHits) {
           for (size_t i = 0; i + 1 < part.offsets.size(); ++i) {
             for (uint64_t k = part.offsets[i]; k < part.offsets[i + 1]; ++k) {
               const Hit& at = part.hits[k];
-              text += " " + std::to_string(at.object) + "." + std::to_string(at.primitive);
+              text.append(" ").append(std::to_string(at.object)).append(".").append(std::to_string(at.primitive));
             }
             text += " |";
           }

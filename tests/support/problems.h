@@ -16,7 +16,8 @@ namespace promin {
 inline std::string list_problems(const Error& error) {
   std::string list;
   for (const Problem& problem : error.problems()) {
-    list += (list.empty() ? "" : "\n") + std::string(problem.code.text()) + " " + problem.sentence();
+    if (!list.empty()) list += '\n';
+    list.append(problem.code.text()).append(" ").append(problem.sentence());
   }
   return list;
 }
