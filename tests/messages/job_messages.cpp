@@ -4,21 +4,23 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cast_job.h"
-#include "command_job.h"
 #include "commands/merge_command.h"
 #include "core/file.h"
 #include "jobs/job.h"
-#include "merge_job.h"
 #include "messages/message_cases.h"
-#include "missing_pieces.h"
 #include "options/job_words.h"
 #include "output/console.h"
 #include "output/run_program.h"
-#include "picture_job.h"
 #include "promin/ray.h"
-#include "ray_source.h"
 #include "rays/npy.h"
+#include "work/jobs/cast_job.h"
+#include "work/jobs/job_manifest.h"
+#include "work/jobs/merge_job.h"
+#include "work/jobs/missing_pieces.h"
+#include "work/jobs/picture_job.h"
+#include "work/jobs/ray_source.h"
+#include "work/jobs/spec_job.h"
+#include "work/spec/spec_json.h"
 
 namespace promin {
 namespace {
@@ -54,8 +56,8 @@ MessageCase spoil_piece(std::string_view code, const std::function<void(std::str
           }};
 }
 
-app::PicturePart make_part(uint32_t row, const std::string& driver) {
-  app::PicturePart part;
+work::PicturePart make_part(uint32_t row, const std::string& driver) {
+  work::PicturePart part;
   part.full_size = uvec2(1, 2);
   part.window = {{0, 0}, {1, 2}};
   part.part = {{0, row}, {1, row + 1}};
@@ -65,12 +67,12 @@ app::PicturePart make_part(uint32_t row, const std::string& driver) {
 }
 
 /// Merges a picture of two parts.
-MessageCase merge_parts(std::string_view code, const app::PicturePart& first, const app::PicturePart& second) {
+MessageCase merge_parts(std::string_view code, const work::PicturePart& first, const work::PicturePart& second) {
   return {code, [=] {
             const Job job = make_job("render");
             write_piece(job, 0, encode_part(first));
             write_piece(job, 1, encode_part(second));
-            static_cast<void>(app::merge_job(job, {"a.exr"}, {}, false, std::nullopt));
+            static_cast<void>(work::merge_job(job, {"a.exr"}, {}, false, std::nullopt));
           }};
 }
 
@@ -85,7 +87,7 @@ MessageCase merge_rays(std::string_view code, int second_ray, const std::string&
             };
             write_piece(job, 0, content("A", 0));
             write_piece(job, 1, content(second_driver, second_ray));
-            static_cast<void>(app::merge_job(job, {"a.npy"}, {}, false, std::nullopt));
+            static_cast<void>(work::merge_job(job, {"a.npy"}, {}, false, std::nullopt));
           }};
 }
 
@@ -119,6 +121,22 @@ std::vector<MessageCase> cases_of_folders() {
          write_case("job/job.json", text);
          make_job();
        }},
+      {"job.version.old",
+       [] {
+         make_job();
+         const std::vector<std::byte> bytes = read_file("job/job.json");
+         std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+         const std::string key = "\"promin_job\": ";
+         text.replace(text.find(key) + key.size(), 1, "1");
+         write_case("job/job.json", text);
+         make_job();
+       }},
+      {"job.build",
+       [] {
+         const Job job = make_job();
+         job.write(0, bytes_of("words", 100), 1.0, {"a device", "", "one"});
+         jobs::check_build(job, {"a device", "", "another"}, [](size_t) { return bytes_of("words", 99); });
+       }},
       {"job.other",
        [] {
          make_job();
@@ -135,27 +153,27 @@ std::vector<MessageCase> cases_of_folders() {
          const SourceFile source{"a.obj", stamp_of("a.obj")};
          write_case("a.obj", "another");
          Manifest manifest;
-         app::add_scene_files(manifest, {source});
+         work::add_scene_files(manifest, {source});
        }},
-      {"job.pieces.missing", [] { app::check_whole(make_job()); }},
-      {"job.kind.unknown", [] { app::check_job_files(make_job(), {}, std::nullopt); }},
+      {"job.pieces.missing", [] { work::check_whole(make_job()); }},
+      {"job.kind.unknown", [] { work::check_job_files(make_job(), {}, std::nullopt); }},
       {"job.pieces.many",
        [] {
          static_cast<void>(
-             app::cut_picture({{0, 0}, {4, 4}}, {.folder = {}, .pieces = 9, .tiles = {}, .share = {}}, 1));
+             work::cut_picture({{0, 0}, {4, 4}}, {.folder = {}, .pieces = 9, .tiles = {}, .share = {}}, 1));
        }},
       {"job.pieces.many",
        [] {
-         static_cast<void>(app::cut_picture({{0, 0}, {1 << 15, 1 << 15}},
-                                            {.folder = {}, .pieces = {}, .tiles = uvec2(1 << 15), .share = {}}, 1));
+         static_cast<void>(work::cut_picture({{0, 0}, {1 << 15, 1 << 15}},
+                                             {.folder = {}, .pieces = {}, .tiles = uvec2(1 << 15), .share = {}}, 1));
        }},
   };
 }
 
 std::vector<MessageCase> cases_of_pieces() {
-  app::PicturePart larger = make_part(1, "A");
+  work::PicturePart larger = make_part(1, "A");
   larger.full_size = uvec2(1, 3);
-  app::PicturePart bare = make_part(1, "A");
+  work::PicturePart bare = make_part(1, "A");
   bare.metadata.clear();
   return {
       {"file.missing", [] { static_cast<void>(make_job().read(0)); }},
@@ -169,12 +187,12 @@ std::vector<MessageCase> cases_of_pieces() {
          fs::copy_file(job.file_of(0), job.file_of(1));
          static_cast<void>(job.read(1));
        }},
-      {"job.piece.kind", [] { static_cast<void>(app::decode_part(bytes_of("words", 1), "a.piece")); }},
+      {"job.piece.kind", [] { static_cast<void>(work::decode_part(bytes_of("words", 1), "a.piece")); }},
       {"job.piece.kind",
        [] {
          const Job job = make_job("cast", {"part0"});
          write_piece(job, 0, bytes_of("words", 1));
-         static_cast<void>(app::merge_job(job, {"a.npy"}, {}, false, std::nullopt));
+         static_cast<void>(work::merge_job(job, {"a.npy"}, {}, false, std::nullopt));
        }},
       merge_parts("job.piece.other", make_part(0, "A"), larger),
       merge_parts("job.piece.other", make_part(0, "A"), bare),
@@ -184,42 +202,53 @@ std::vector<MessageCase> cases_of_pieces() {
       {"job.outputs.count",
        [] {
          const Job job = make_job("cast");
-         app::write_arguments(job, {"a.obj", "rays.npy"});
-         app::check_merged_hits(job, {"a.npy", "b.npy"});
+         work::write_job_spec(job, R"({"promin_cast_spec": 1, "scene": "a.obj", "rays": "rays.npy"})");
+         work::check_merged_hits(job, {"a.npy", "b.npy"});
        }},
       {"job.frame.missing",
        [] {
-         const Job job = make_job("render", app::name_pieces({0U, 1U}, {{{0, 0}, {1, 1}}}));
-         static_cast<void>(app::number_pictures(job, {"a.####.exr"}, std::vector<uint32_t>{7}));
+         const Job job = make_job("render", work::name_pieces({0U, 1U}, {{{0, 0}, {1, 1}}}));
+         static_cast<void>(work::number_pictures(job, {"a.####.exr"}, std::vector<uint32_t>{7}));
        }},
       {"output.frames.one",
        [] {
-         const Job job = make_job("render", app::name_pieces({0U, 1U}, {{{0, 0}, {1, 1}}}));
-         app::check_job_files(job, {"a.exr"}, std::nullopt);
+         const Job job = make_job("render", work::name_pieces({0U, 1U}, {{{0, 0}, {1, 1}}}));
+         work::check_job_files(job, {"a.exr"}, std::nullopt);
        }},
       {"job.frames.none",
-       [] { static_cast<void>(app::merge_job(make_job("cast"), {"a.npy"}, {}, false, std::vector<uint32_t>{7})); }},
+       [] { static_cast<void>(work::merge_job(make_job("cast"), {"a.npy"}, {}, false, std::vector<uint32_t>{7})); }},
   };
 }
 
 std::vector<MessageCase> cases_of_commands() {
   static const app::Console console(app::Verbosity::kQuiet);
   return {
-      {"job.command.unknown", [] { app::plan_job("dance", {}, "job", console, nullptr); }},
+      {"job.command.unknown", [] { app::plan_job_of_words("dance", {}, "job", console, nullptr); }},
       {"job.argument.wrong",
        [] {
-         app::plan_job("render", {"a.obj", "--help"}, "job", console, nullptr);
+         app::plan_job_of_words("render", {"a.obj", "--help"}, "job", console, nullptr);
        }},
       {"job.argument.wrong",
        [] {
-         app::plan_job("render", {"a.obj", "--job", "b"}, "job", console, nullptr);
+         app::plan_job_of_words("render", {"a.obj", "--job", "b"}, "job", console, nullptr);
        }},
       {"job.rays.none",
        [] {
          write_rays("rays.npy", std::vector<Ray>(1));
-         app::plan_job("render", {}, "job", console, app::open_rays("rays.npy", "job"));
+         app::plan_job_of_words("render", {}, "job", console, work::open_rays("rays.npy", "job"));
        }},
-      {"job.command.damaged", [] { app::plan_again(make_job("render"), console, nullptr); }},
+      {"job.spec.missing", [] { work::plan_again(make_job("render"), console); }},
+      {"spec.format", [] { work::parse_spec<work::RenderSpec>("{}", "a.json"); }},
+      {"spec.member.unknown",
+       [] { work::parse_spec<work::RenderSpec>(R"({"promin_render_spec": 1, "spq": 4})", "a.json"); }},
+      {"spec.member.value",
+       [] { work::parse_spec<work::RenderSpec>(R"({"promin_render_spec": 1, "spp": "four"})", "a.json"); }},
+      {"spec.file.name",
+       [] {
+         work::CastSpec spec;
+         spec.rays = "caf\xe9.npy";
+         static_cast<void>(work::write_spec(spec));
+       }},
       {"job.offsets.none",
        [] {
          make_job("render");

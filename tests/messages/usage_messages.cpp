@@ -27,6 +27,7 @@ struct WrongUsage {
 
 const WrongUsage kWrongUsages[] = {
     {"usage.command.unknown", {"rendr"}},
+    {"usage.command.unknown", {"rendr", "square.gltf", "-o", "a.png"}},
     {"usage.command.unknown", {"paint"}},
     {"usage.option.value", {"render", "square.gltf", "--aov", "depth,normel"}},
     {"usage.option.value", {"render", "square.gltf", "--filter", "bx"}},
