@@ -20,7 +20,7 @@ std::string join_sentences(const std::vector<Problem>& problems) {
 std::string Problem::sentence() const {
   std::string text = where.empty() ? what : where + ": " + what;
   if (!cure.empty()) text += "; " + cure;
-  return to_one_line(text);
+  return to_one_line(to_utf8(text));
 }
 
 Error::Error(const std::vector<Problem>& problems)

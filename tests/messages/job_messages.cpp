@@ -117,7 +117,7 @@ std::vector<MessageCase> cases_of_folders() {
          const std::vector<std::byte> bytes = read_file("job/job.json");
          std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
          const std::string key = "\"promin_job\": ";
-         text.insert(text.find(key) + key.size(), "9");
+         text.insert(text.find(key) + key.size(), 1, '9');
          write_case("job/job.json", text);
          make_job();
        }},
@@ -160,12 +160,12 @@ std::vector<MessageCase> cases_of_folders() {
       {"job.pieces.many",
        [] {
          static_cast<void>(
-             work::cut_picture({{0, 0}, {4, 4}}, {.folder = {}, .pieces = 9, .tiles = {}, .share = {}}, 1));
+             work::cut_picture({{0, 0}, {4, 4}}, {.pieces = 9, .tiles = {}, .folder = {}, .share = {}}, 1));
        }},
       {"job.pieces.many",
        [] {
          static_cast<void>(work::cut_picture({{0, 0}, {1 << 15, 1 << 15}},
-                                             {.folder = {}, .pieces = {}, .tiles = uvec2(1 << 15), .share = {}}, 1));
+                                             {.pieces = {}, .tiles = uvec2(1 << 15), .folder = {}, .share = {}}, 1));
        }},
   };
 }

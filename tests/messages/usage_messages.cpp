@@ -108,7 +108,6 @@ const WrongUsage kWrongUsages[] = {
     {"usage.options.contradict", {"render", "square.gltf", "-o", "a.exr", "--from", "left", "--eye", "0", "2", "0"}},
     {"usage.options.contradict", {"render", "square.gltf", "-o", "a.exr", "--from", "left", "--camera", "0"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--from", "lefty"}},
-    {"usage.option.useless", {"render", "square.gltf", "-o", "a.exr", "--fit", "0.5"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--fit", "1.5"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--zoom", "0"}},
     {"usage.option.few", {"render", "square.gltf", "-o", "a.exr", "--up", "north"}},

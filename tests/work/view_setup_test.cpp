@@ -422,7 +422,9 @@ TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
   scene.cameras = {far};
   EXPECT_THAT(sentence_of({}), HasSubstr("shows the model on 11 % of the picture's side; --from three-quarter"))
       << "a box of size 2, its front 19 away";
-  EXPECT_EQ(sentence_of({.camera = "0"}), "") << "the user's choice";
+  ViewOptions named;
+  named.camera = "0";
+  EXPECT_EQ(sentence_of(named), "") << "the user's choice";
   scene.cameras[0].eye.z = 6.0F;
   EXPECT_EQ(sentence_of({}), "");
 }

@@ -202,7 +202,7 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   } else if (count != vertex_count) {
     report.repair({"gltf.accessor.count", "an attribute does not have one element for each vertex",
                    std::to_string(count) + " for " + std::to_string(vertex_count), place,
-                   "give all attributes one count", "the attribute is left out"});
+                   "give all attributes the same number of elements", "the attribute is left out"});
   }
   return has_wrong_format || count != vertex_count;
 }

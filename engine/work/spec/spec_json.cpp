@@ -626,7 +626,7 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
   try {
     field->read(value, spec);
   } catch (const WrongValue& wrong) {
-    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), name, "correct it or leave it out");
+    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), "", "correct it or leave it out");
   }
 }
 
