@@ -203,7 +203,7 @@ def test_text_that_is_not_utf8(tmp_path: Path) -> None:
     scene = promin.Scene.load(latin)
     assert [found.name for found in scene.objects] == ["caf\ufffd"]
     assert [material.name for material in scene.materials] == ["m\ufffdller"]
-    with pytest.raises(promin.InputError, match=r"none\\xe9"):
+    with pytest.raises(promin.InputError, match="none\ufffd"):
         promin.Scene.load(tmp_path / os.fsdecode(b"none\xe9.obj"))
     named = tmp_path / os.fsdecode(b"caf\xe9.obj")
     os.rename(latin, named)

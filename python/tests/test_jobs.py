@@ -454,7 +454,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
     with fails(promin.InputError, "spec.format", "spec.json: "):
         jobs.open(tmp_path / "job").runner()
     (tmp_path / "job/spec.json").unlink()
-    with pytest.raises(promin.InputError, match="does not say how the job's pieces are made, .*spec.json"):
+    with fails(promin.InputError, "job.spec.missing", "spec.json: "):
         jobs.open(tmp_path / "job").runner()
 
 

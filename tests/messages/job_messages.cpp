@@ -127,7 +127,7 @@ std::vector<MessageCase> cases_of_folders() {
          const std::vector<std::byte> bytes = read_file("job/job.json");
          std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
          const std::string key = "\"promin_job\": ";
-         text.replace(text.find(key) + key.size(), 1, "1");
+         text[text.find(key) + key.size()] = '1';
          write_case("job/job.json", text);
          make_job();
        }},

@@ -274,7 +274,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
 
 
 def plays_what_it_recorded(bin_folder, scenes, folder):
-    session = Session(bin_folder, scenes, folder, "--record", "flight.json", files=Session.SMALL)
+    session = Session(bin_folder, scenes, folder, "--record", "flight.json")
     with session as viewer:
         # Paused, a screenshot is of one sample a pixel, as what `promin render` gives below.
         viewer.press("p")
@@ -291,7 +291,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
     expect(sum(rest > 0.8 for rest in rests[1:]) > 0, f"a rest of a second became {rests}")
 
     words = ["--replay", "flight.json", "--fps", "stored"]
-    session = Session(bin_folder, scenes, folder, *words, files=Session.SMALL, PROMIN_VALIDATION="core")
+    session = Session(bin_folder, scenes, folder, *words, PROMIN_VALIDATION="core")
     with session as viewer:
         code = viewer.wait_for_end()
         expect(code == 0, f"the replay ended with {code}: {viewer.err}")
@@ -302,7 +302,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
 
     # By time, it takes its time.
     begin = time.monotonic()
-    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10", files=Session.SMALL)
+    session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10")
     with session as viewer:
         code = viewer.wait_for_end()
     seconds = path[-1]["time_s"]
@@ -313,7 +313,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
     # Between frames window and renderer have the same cameras.
     half_way = {**flight, "fps": 7, "frames": [{**path[0], "time_s": 0}, {**path[-1], "time_s": 0.2}]}
     (folder / "half_way.json").write_text(json.dumps(half_way))
-    session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open", files=Session.SMALL)
+    session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open")
     with session as viewer:
         viewer.wait_for_line("^2 frames: ", 0, "end of the replay")
         viewer.focus()
