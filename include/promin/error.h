@@ -30,14 +30,17 @@ enum class Setting {
 /// as "job.piece.cut". Codes are stable; sentences are not. A code that has another form does not compile.
 class ProblemCode {
  public:
+  /// Takes a literal.
   template <size_t kSize>
   consteval ProblemCode(const char (&code)[kSize])  // NOLINT(google-explicit-constructor): a literal is a code.
       : text_(code, kSize - 1) {
     if (!is_code(text_)) throw "a code is two to four words of lower-case letters, joined by dots";
   }
 
+  /// Returns the words with their dots.
   constexpr std::string_view text() const { return text_; }
 
+  /// Compares the words.
   friend constexpr bool operator==(const ProblemCode& a, const ProblemCode& b) { return a.text_ == b.text_; }
 
  private:

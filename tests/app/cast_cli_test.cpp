@@ -103,8 +103,8 @@ TEST_F(CastTest, AnyNumberOfIdenticalFacesIsTraced) {
   EXPECT_NE(picture.at(8, 6), picture.at(0, 0));
 }
 
-TEST_F(CastTest, ObjectsHaveTheFilesNumbers) {
-  // Each f with shapes is an object of the file: three spheres are objects 0, 0 and 1.
+TEST_F(CastTest, EachSphereIsAnObject) {
+  // Spheres of one material are objects of their own.
   write("three.nff", "f 1 1 1 1 0 0 0 0 s 0 0 0 1 s 5 0 0 1 f 1 0 0 1 0 0 0 0 f 1 0 0 1 0 0 0 0 s 10 0 0 1");
   std::vector<Ray> rays;
   for (const float x : {0.0F, 5.0F, 10.0F, 15.0F}) rays.push_back({vec3(x, 0, 4), 0, vec3(0, 0, -1), kInfinity});
@@ -113,7 +113,7 @@ TEST_F(CastTest, ObjectsHaveTheFilesNumbers) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   std::vector<int32_t> objects;
   for (const Hit& hit : read_hits("hits.npy")) objects.push_back(hit.object);
-  EXPECT_THAT(objects, ElementsAre(0, 0, 1, -1));
+  EXPECT_THAT(objects, ElementsAre(0, 1, 2, -1));
 }
 
 TEST_F(CastTest, RaysThatCannotHitAreCounted) {
@@ -190,7 +190,7 @@ TEST_F(CastTest, AllTellsEveryHit) {
     objects.push_back(hit.object);
   }
   EXPECT_THAT(ts, ElementsAre(1.5F, 2.5F, 4, 5, 6.5F, 7.5F, 3, 5));
-  EXPECT_THAT(objects, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1));
+  EXPECT_THAT(objects, ElementsAre(0, 0, 1, 1, 2, 2, 2, 2));
   EXPECT_EQ(json::parse(read("s.json")).at("rays").at("primary"), 3);
   EXPECT_THAT(files(), ElementsAre("hits.npy", "o.npy", "rays.npy", "s.json", "three.nff"));
 }

@@ -53,8 +53,8 @@ TEST_F(SpecCliTest, OptionsOverrideIt) {
 TEST_F(SpecCliTest, WrongOnesAreRefused) {
   write("spec.json", R"({"promin_render_spec": 1, "spp": 0})");
   expect_failure(run({"render", "square.gltf", "--spec", "spec.json"}), 3,
-                 "spp takes a whole number from 1 to 65535, not 0, spec.json: spp; correct it or leave it out");
-  expect_failure(run({"render", "--spec", "none.json"}), 3, "the file does not exist, none.json");
+                 "promin: spec.json: spp takes a whole number from 1 to 65535, not 0; correct it or leave it out");
+  expect_failure(run({"render", "--spec", "none.json"}), 3, "promin: none.json: the file does not exist");
   write("spec.json", R"({"promin_render_spec": 1})");
   expect_failure(run({"render", "--spec", "spec.json"}), 2, "SCENE is required");
   expect_failure(run({"cast", "--spec", "spec.json"}), 3, "the file has no member \"promin_cast_spec\"");

@@ -361,7 +361,7 @@ TEST(BvhBuilders, AnUnknownNameIsAUsageErrorThatListsTheKnownOnes) {
     }
     return "no error";
   };
-  EXPECT_EQ(message_for("SHA"), "there is no BVH builder \"SHA\"; known: sah, median, spatial");
+  EXPECT_EQ(message_for("SHA"), "there is no BVH builder \"SHA\"; did you mean \"sah\"? Known: sah, median, spatial");
   EXPECT_EQ(message_for("medien"),
             "there is no BVH builder \"medien\"; did you mean \"median\"? Known: sah, median, spatial");
 }

@@ -201,7 +201,7 @@ TEST(SpecJsonTest, FilesAreRelativeToTheSpecification) {
 
 TEST(SpecJsonTest, WrongMembersAreRefusedTogether) {
   EXPECT_THAT(refusal(R"("max_dept": 3)"),
-              HasSubstr("a specification has no member \"max_dept\", folder/spec.json; did you mean max_depth?"));
+              HasSubstr("folder/spec.json: a specification has no member \"max_dept\"; did you mean max_depth?"));
   const std::string both = refusal(R"("spp": 0, "fit": 2)");
   EXPECT_THAT(both, HasSubstr("spp takes a whole number from 1 to 65535, not 0"));
   EXPECT_THAT(both, HasSubstr("fit takes a number from 0.05 to 1, not 2"));

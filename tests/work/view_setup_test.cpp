@@ -420,12 +420,12 @@ TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
   far.up = vec3(0.0F, 1.0F, 0.0F);
   far.yfov = 2.0F * std::atan(0.5F);
   scene.cameras = {far};
-  EXPECT_THAT(sentence_of({}), HasSubstr("shows the model on 11 % of the picture's side; --from three-quarter"))
-      << "a box of size 2, its front 19 away";
+  EXPECT_THAT(sentence_of({}), HasSubstr("shows the model on 5 % of the picture's side; --from three-quarter"))
+      << "a ball of radius 1/2, its front 19.5 away";
   ViewOptions named;
   named.camera = "0";
   EXPECT_EQ(sentence_of(named), "") << "the user's choice";
-  scene.cameras[0].eye.z = 6.0F;
+  scene.cameras[0].eye.z = 5.0F;
   EXPECT_EQ(sentence_of({}), "");
 }
 
