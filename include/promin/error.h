@@ -30,16 +30,13 @@ enum class Setting {
 /// as "job.piece.cut". Codes are stable; sentences are not. A code that has another form does not compile.
 class ProblemCode {
  public:
-  /// Takes a literal.
   template <size_t kSize>
-  consteval ProblemCode(const char (&code)[kSize])  // NOLINT(google-explicit-constructor): a literal is a code.
+  consteval ProblemCode(const char (&code)[kSize])  ///< Takes a literal. NOLINT(google-explicit-constructor)
       : text_(code, kSize - 1) {
     if (!is_code(text_)) throw "a code is two to four words of lower-case letters, joined by dots";
   }
 
-  /// Returns the words with their dots.
-  constexpr std::string_view text() const { return text_; }
-
+  constexpr std::string_view text() const { return text_; }  ///< Returns the words with their dots.
   /// Compares the words.
   friend constexpr bool operator==(const ProblemCode& a, const ProblemCode& b) { return a.text_ == b.text_; }
 
