@@ -30,9 +30,9 @@ enum class Setting {
 /// as "job.piece.cut". Codes are stable; sentences are not. A code that has another form does not compile.
 class ProblemCode {
  public:
+  /// Takes a literal.
   template <size_t kSize>
-  consteval ProblemCode(const char (&code)[kSize])  ///< Takes a literal. NOLINT(google-explicit-constructor)
-      : text_(code, kSize - 1) {
+  consteval ProblemCode(const char (&code)[kSize]) : text_(code, kSize - 1) {  // NOLINT(google-explicit-constructor)
     if (!is_code(text_)) throw "a code is two to four words of lower-case letters, joined by dots";
   }
 
