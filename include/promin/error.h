@@ -30,11 +30,11 @@ enum class Setting {
 /// as "job.piece.cut". Codes are stable; sentences are not. A code that has another form does not compile.
 class ProblemCode {
  public:
-  /// Takes a literal.
   template <size_t kSize>
-  consteval ProblemCode(const char (&code)[kSize]) : text_(code, kSize - 1) {  // NOLINT(google-explicit-constructor)
+  consteval ProblemCode(const char (&code)[kSize])  // NOLINT(google-explicit-constructor)
+      : text_(code, kSize - 1) {
     if (!is_code(text_)) throw "a code is two to four words of lower-case letters, joined by dots";
-  }
+  }  ///< Takes a literal.
 
   constexpr std::string_view text() const { return text_; }  ///< Returns the words with their dots.
   /// Compares the words.
