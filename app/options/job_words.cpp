@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options/job_words.h"
 
-#include <fmt/format.h>
-
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <iterator>
@@ -14,8 +12,6 @@
 #include "options/spec_options.h"
 #include "options/tracing_options.h"
 #include "promin/error.h"
-#include "work/jobs/cast_job.h"
-#include "work/jobs/picture_job.h"
 #include "work/jobs/spec_job.h"
 
 namespace promin::app {
@@ -74,14 +70,9 @@ Spec read_words(const std::string& name, void (*add_options)(CLI::App&, Spec&),
 std::unique_ptr<PlannedJob> plan_job_of_words(const std::string& kind, const std::vector<std::string>& arguments,
                                               const std::filesystem::path& folder, const Messages& messages,
                                               std::shared_ptr<RaySource> rays) {
-  if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "leave the rays out"});
-    return plan_job(read_words(kind, add_render_options, arguments), folder, messages);
-  }
-  if (kind == kRayJob)
-    return plan_job(read_words(kind, add_cast_options, arguments), folder, messages, std::move(rays));
-  throw UsageError(
-      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+  return plan_job_of_kind(
+      kind, [&] { return read_words(kind, add_render_options, arguments); },
+      [&] { return read_words(kind, add_cast_options, arguments); }, folder, messages, std::move(rays));
 }
 
 }  // namespace promin::app

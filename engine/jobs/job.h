@@ -54,9 +54,9 @@ enum class PieceState {
 struct Maker {
   /// Device and driver in words.
   std::string made_on;
-  /// The hash of its results for a fixed test (work/fingerprint.h); empty if the test was not made.
+  /// The hash of its results for a fixed test (work/jobs/fingerprint.h); empty if the test was not made.
   std::string fingerprint;
-  /// The build of its program (work/build_id.h); empty for pieces that a function makes.
+  /// The build of its program (work/jobs/build_id.h); empty for pieces that a function makes.
   std::string build = {};
 
   bool operator==(const Maker&) const = default;
@@ -161,7 +161,8 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
                  const std::function<Content(size_t piece)>& make);
 
 /// Returns a finished piece that this maker has to make again before others, because another build has made it on the
-/// same device. Nothing if there is none, or if this build has made pieces of the job: it has then passed check_build.
+/// same device. Returns nothing without such a piece, or if this build has made pieces of the job: it has then passed
+/// check_build.
 std::optional<size_t> find_piece_of_other_build(const Job& job, const Maker& maker);
 /// Makes such a piece again, if there is one, and writes nothing. Throws UsageError unless its bytes are equal, because
 /// the pieces of the two builds must not be mixed. Returns the piece.

@@ -27,24 +27,18 @@ class Frustum {
 
   /// A bit for each side on which a point lies outside.
   uint32_t sides_beyond(const dvec3& point) const {
-    const dvec3 v = point - eye_;
-    const double depth = glm::dot(v, look_);
-    const double x = glm::dot(v, right_);
-    const double y = glm::dot(v, up_);
-    const double growth = is_parallel_ ? 1.0 : depth;
-    const double width = half_width_ * growth;
-    const double height = half_height_ * growth;
-    const auto bit = [](bool is_beyond, uint32_t place) { return is_beyond ? 1U << place : 0U; };
-    return bit(depth <= near_, 0) | bit(x < -width, 1) | bit(x > width, 2) | bit(y < -height, 3) | bit(y > height, 4);
+    const Place place = place_of(point);
+    const dvec2& half = place.half_size;
+    const auto bit = [](bool is_beyond, uint32_t number) { return is_beyond ? 1U << number : 0U; };
+    return bit(place.depth <= near_, 0) | bit(place.aside.x < -half.x, 1) | bit(place.aside.x > half.x, 2) |
+           bit(place.aside.y < -half.y, 3) | bit(place.aside.y > half.y, 4);
   }
 
   /// Returns where a picture from -1 to 1 on both sides shows a point; infinite for one at the eye or behind it.
-  dvec2 place_of(const dvec3& point) const {
-    const dvec3 v = point - eye_;
-    const double depth = glm::dot(v, look_);
-    if (depth <= 0.0) return dvec2(std::numeric_limits<double>::infinity());
-    const double growth = is_parallel_ ? 1.0 : depth;
-    return {glm::dot(v, right_) / (half_width_ * growth), glm::dot(v, up_) / (half_height_ * growth)};
+  dvec2 project(const dvec3& point) const {
+    const Place place = place_of(point);
+    if (place.depth <= 0.0) return dvec2(std::numeric_limits<double>::infinity());
+    return place.aside / place.half_size;
   }
 
   /// Whether a ray of the picture meets a plane. Which side of it rays go to changes on a line of the picture, so that
@@ -63,6 +57,20 @@ class Frustum {
   }
 
  private:
+  /// A point as the camera has it: its depth, its place beside the axis, and half of the picture's size at its depth.
+  struct Place {
+    double depth;
+    dvec2 aside;
+    dvec2 half_size;
+  };
+
+  Place place_of(const dvec3& point) const {
+    const dvec3 v = point - eye_;
+    const double depth = glm::dot(v, look_);
+    const double growth = is_parallel_ ? 1.0 : depth;
+    return {depth, {glm::dot(v, right_), glm::dot(v, up_)}, dvec2(half_width_, half_height_) * growth};
+  }
+
   dvec3 eye_;
   dvec3 look_;
   dvec3 right_;
@@ -112,7 +120,7 @@ double covered_share(const Scene& scene, const Camera& camera, float aspect_rati
   dvec2 hi = -lo;
   for (uint32_t corner = 0; corner < 8; ++corner) {
     const glm::bvec3 is_high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
-    const dvec2 place = frustum.place_of(glm::mix(dvec3(box.lo), dvec3(box.hi), is_high));
+    const dvec2 place = frustum.project(glm::mix(dvec3(box.lo), dvec3(box.hi), is_high));
     lo = glm::min(lo, place);
     hi = glm::max(hi, place);
   }

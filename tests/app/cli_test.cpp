@@ -253,7 +253,8 @@ TEST_F(CliTest, UnwritableOutputsAreFoundBeforeTheWork) {
   fs::create_directory(folder() / "folder.exr");
   // The scene does not exist: it is not read before the outputs are known to be writable.
   expect_failure(run({"render", "none.obj", "-o", "none/a.exr"}), 1, "output.folder.missing none/a.exr: none");
-  expect_failure(run({"render", "none.obj", "-o", "old.exr/a.exr"}), 1, "old.exr/a.exr: the folder of the output file does not exist");
+  expect_failure(run({"render", "none.obj", "-o", "old.exr/a.exr"}), 1,
+                 "old.exr/a.exr: the folder of the output file does not exist");
   expect_failure(run({"render", "none.obj", "-o", "folder.exr"}), 1, "output.kind folder.exr:");
   expect_failure(run({"render", "none.obj", "-o", "old.exr", "--stats", "none/s.json"}), 1, "none/s.json");
   expect_failure(run({"render", "none.obj", "-o", "old.exr", "--stats", "/dev/null"}), 1, "/dev/null");

@@ -117,7 +117,8 @@ void run_spheres(Lab& lab) {
   }
 }
 
-/// A slab of thickness d keeps a ray's direction and shifts it by d sin(i - r) / cos r. Each face's lift shifts it, too.
+/// A slab of thickness d keeps a ray's direction and shifts it by d sin(i - r) / cos r. Each face's lift shifts it,
+/// too.
 void run_slabs(Lab& lab) {
   Random random(46);
   for (const double thickness : {1e-3, 1.0}) {

@@ -200,7 +200,8 @@ void run_facing_mirrors(Lab& lab) {
           worst = std::numeric_limits<double>::infinity();
           continue;
         }
-        // With its reflections unfolded, the exact ray is a straight line: it has crossed half a gap and one more a bounce.
+        // With its reflections unfolded, the exact ray is a straight line: it has crossed half a gap and one more a
+        // bounce.
         const Vector d(first[i].direction);
         const Real t = (Real(0.5) + bounce) * Real(gap) / d.z;
         Vector exact = Vector(first[i].origin) + t * d;

@@ -25,7 +25,7 @@ size_t align(size_t size, size_t alignment) {
   return (size + alignment - 1) / alignment * alignment;
 }
 
-/// Returns the build id among the notes of a segment; empty if there is none.
+/// Returns the build id among the notes of a segment; empty without one.
 std::string find_note(std::span<const unsigned char> notes, size_t alignment) {
   constexpr std::string_view kOwner("GNU", 4);
   for (size_t at = 0; at + sizeof(ElfW(Nhdr)) <= notes.size();) {

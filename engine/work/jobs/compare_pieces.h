@@ -36,7 +36,9 @@ struct PieceDifference {
   /// The largest difference among all others, of a number or of t in units of K.
   double largest = 0.0;
 
-  bool is_within_bounds() const { return static_cast<double>(mismatches) <= kMostMismatches * static_cast<double>(count); }
+  bool is_within_bounds() const {
+    return static_cast<double>(mismatches) <= kMostMismatches * static_cast<double>(count);
+  }
 };
 
 /// Compares colours and channels. Throws InputError with the file's name if the parts are not of the same picture.

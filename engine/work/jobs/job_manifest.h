@@ -25,7 +25,7 @@ void add_scene_files(jobs::Manifest& manifest, const std::vector<SourceFile>& so
 std::filesystem::path spec_file(const jobs::Job& job);
 /// Writes its text. Throws RunError.
 void write_job_spec(const jobs::Job& job, const std::string& text);
-/// Returns its text; nothing if there is none, as for a job whose pieces a function makes.
+/// Returns its text; nothing for a job without it, such as one whose pieces a function makes.
 std::optional<std::string> read_job_spec(const jobs::Job& job);
 
 }  // namespace promin::work

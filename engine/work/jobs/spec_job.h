@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -24,6 +25,13 @@ std::unique_ptr<PlannedJob> plan_job(RenderSpec spec, const std::filesystem::pat
 std::unique_ptr<PlannedJob> plan_job(CastSpec spec, const std::filesystem::path& folder, const Messages& messages,
                                      std::shared_ptr<RaySource> rays = nullptr);
 
+/// Plans a job of the kind "render" or "cast", whose specification one of the functions reads. Throws UsageError for
+/// another kind and for rays of a job of pictures.
+std::unique_ptr<PlannedJob> plan_job_of_kind(const std::string& kind, const std::function<RenderSpec()>& read_pictures,
+                                             const std::function<CastSpec()>& read_hits,
+                                             const std::filesystem::path& folder, const Messages& messages,
+                                             std::shared_ptr<RaySource> rays);
+
 /// Plans the job of the kind "render" or "cast" from the text of its specification; `file` is named in messages, and
 /// relative files of the text are relative to its folder.
 std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text,
@@ -39,7 +47,7 @@ jobs::Job create_job(PlannedJob& planned, const std::filesystem::path& folder);
 std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Messages& messages,
                                        std::shared_ptr<RaySource> rays = nullptr);
 
-/// Returns the driver_of of the job's finished pieces; empty if there are none.
+/// Returns the driver_of of the job's finished pieces; empty if no piece is finished.
 std::string find_driver(const jobs::Job& job);
 
 }  // namespace promin::work

@@ -17,35 +17,45 @@
 #include "promin/image.h"
 
 namespace promin::work {
+namespace {
 
-void check_tracing_options(const TracingOptions& options) {
-  if (options.bvh && options.builder) {
-    throw UsageError({"usage.options.contradict", "--bvh and --builder contradict each other", "", "leave one out"});
+/// An option, or a group that counts as one, with its name and whether it is given.
+using Given = std::pair<bool, std::string_view>;
+
+void refuse_if(ProblemCode code, bool holds, const std::string& what, const std::string& cure) {
+  if (holds) throw UsageError({code, what, "", cure});
+}
+
+/// Refuses the first of the others that is given beside `name`.
+void refuse_beside(std::string_view name, std::initializer_list<Given> others,
+                   const std::string& cure = "leave one out") {
+  for (const auto& [is_given, other] : others) {
+    refuse_if("usage.options.contradict", is_given, fmt::format("{} and {} contradict each other", name, other), cure);
   }
 }
 
+}  // namespace
+
+void check_tracing_options(const TracingOptions& options) {
+  if (options.bvh) refuse_beside("--bvh", {{options.builder.has_value(), "--builder"}});
+}
+
 void check_pose_options(const PoseOptions& pose, bool names_camera) {
-  const auto refuse_beside = [](bool is_given, std::string_view name,
-                                std::initializer_list<std::pair<bool, std::string_view>> others) {
-    for (const auto& [is_other_given, other] : others) {
-      if (!is_given || !is_other_given) continue;
-      throw UsageError({"usage.options.contradict", fmt::format("{} and {} contradict each other", name, other), "",
-                        "leave one out"});
-    }
-  };
   const bool has_eye = pose.eye.has_value();
   const bool has_look_at = pose.look_at.has_value();
-  refuse_beside(has_look_at, "--look-at", {{pose.direction.has_value(), "--direction"}});
-  refuse_beside(pose.from.has_value(), "--from",
-                {{names_camera, "--camera"},
-                 {has_eye, "--eye"},
-                 {has_look_at, "--look-at"},
-                 {pose.direction.has_value(), "--direction"}});
-  refuse_beside(pose.fit.has_value(), "--fit",
-                {{names_camera, "--camera"},
-                 {has_eye, "--eye"},
-                 {has_look_at, "--look-at"},
-                 {pose.from == Framing::kInside, "--from inside"}});
+  if (has_look_at) refuse_beside("--look-at", {{pose.direction.has_value(), "--direction"}});
+  if (pose.from) {
+    refuse_beside("--from", {{names_camera, "--camera"},
+                             {has_eye, "--eye"},
+                             {has_look_at, "--look-at"},
+                             {pose.direction.has_value(), "--direction"}});
+  }
+  if (pose.fit) {
+    refuse_beside("--fit", {{names_camera, "--camera"},
+                            {has_eye, "--eye"},
+                            {has_look_at, "--look-at"},
+                            {pose.from == Framing::kInside, "--from inside"}});
+  }
 }
 
 namespace {
@@ -75,21 +85,6 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
 }
 
 namespace {
-
-/// An option, or a group that counts as one, with its name and whether it is given.
-using Given = std::pair<bool, std::string_view>;
-
-void refuse_if(ProblemCode code, bool holds, const std::string& what, const std::string& cure) {
-  if (holds) throw UsageError({code, what, "", cure});
-}
-
-/// Refuses the first of the others that is given beside `name`.
-void refuse_beside(std::string_view name, std::initializer_list<Given> others,
-                   const std::string& cure = "leave one out") {
-  for (const auto& [is_given, other] : others) {
-    refuse_if("usage.options.contradict", is_given, fmt::format("{} and {} contradict each other", name, other), cure);
-  }
-}
 
 bool shades_for_debugging(const RenderSpec& options) {
   return options.view.debug_view != DebugView::kNone;
@@ -268,14 +263,11 @@ void check_query(const CastSpec& options) {
     throw UsageError(
         {"usage.options.contradict", asked[0] + " and " + asked[1] + " contradict each other", "", "give one of them"});
   }
-  if (options.is_all && !options.offsets && !options.job.share) {
-    throw UsageError({"usage.option.needs", "--all is given without --offsets", "",
-                      "add --offsets OFFSETS.npy, which says where the hits of each ray begin"});
-  }
-  if (options.offsets && !options.is_all) {
-    throw UsageError(
-        {"usage.option.needs", "--offsets is given without --all", "", "add --all or leave --offsets out"});
-  }
+  refuse_if("usage.option.needs", options.is_all && !options.offsets && !options.job.share,
+            "--all is given without --offsets",
+            "add --offsets OFFSETS.npy, which says where the hits of each ray begin");
+  refuse_if("usage.option.needs", options.offsets && !options.is_all, "--offsets is given without --all",
+            "add --all or leave --offsets out");
 }
 
 void check_job_options(const CastSpec& options) {
@@ -284,17 +276,11 @@ void check_job_options(const CastSpec& options) {
     throw UsageError({"usage.option.required", "--output is required", "", "see promin cast --help"});
   }
   if (!options.job.folder) return;
-  const std::pair<bool, std::string_view> others[] = {{options.tracing.stats.has_value(), "--stats"},
-                                                      {options.tracing.repeat_count > 1, "--repeat"}};
-  for (const auto& [is_given, name] : others) {
-    if (!is_given) continue;
-    throw UsageError(
-        {"usage.options.contradict", fmt::format("--job and {} contradict each other", name), "", "leave one out"});
-  }
-  if (options.job.share && !options.outputs().empty()) {
-    throw UsageError({"usage.options.contradict", "--piece and --output contradict each other: with --piece no file is written",
-                      "", "leave one out; promin merge writes the file when all pieces are made"});
-  }
+  refuse_beside("--job",
+                {{options.tracing.stats.has_value(), "--stats"}, {options.tracing.repeat_count > 1, "--repeat"}});
+  refuse_if("usage.options.contradict", options.job.share && !options.outputs().empty(),
+            "--piece and --output contradict each other: with --piece no file is written",
+            "leave one out; promin merge writes the file when all pieces are made");
 }
 
 }  // namespace
