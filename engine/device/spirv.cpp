@@ -63,7 +63,6 @@ struct Block {
     const Words before = instructions[instructions.size() - 2];
     return op_of(before) == kind ? before : Words();
   }
-  bool begins_with_phi() const { return op_of(instructions[1]) == Op::OpPhi; }
 };
 
 struct Function {
@@ -236,12 +235,10 @@ class FunctionPruner {
   FunctionPruner(Function& function, KnownValues& values) : function_(function), values_(values) {
     for (Block& block : function_.blocks) {
       block_of_.emplace_back(block.label(), &block);
-      has_loop_with_phi_ = has_loop_with_phi_ || (!block.merge(Op::OpLoopMerge).empty() && block.begins_with_phi());
     }
     std::ranges::sort(block_of_);
     // Each round finds more known values, because fewer blocks lead to others, and thus fewer live blocks. No round
     // marks live code as dead.
-    if (has_loop_with_phi_) return;
     size_t before = function_.blocks.size();
     for (size_t now = mark_live_blocks(); now != before; now = mark_live_blocks()) before = now;
   }
@@ -277,12 +274,15 @@ class FunctionPruner {
     return *found->second;
   }
 
-  /// The only block that a conditional branch leads to, if that is known.
+  /// The only block that a conditional branch leads to, if that is known. A branch from the end of a loop to its begin
+  /// stays, because a loop without one is not valid.
   std::optional<uint32_t> known_target(const Block& block) const {
     const Words terminator = block.terminator();
-    if (has_loop_with_phi_ || op_of(terminator) != Op::OpBranchConditional) return std::nullopt;
+    if (op_of(terminator) != Op::OpBranchConditional) return std::nullopt;
     const auto condition = values_.of(terminator[1]);
     if (!condition) return std::nullopt;
+    const uint32_t other = terminator[*condition != 0 ? 3 : 2];
+    if (&block_of(other) <= &block) return std::nullopt;
     return terminator[*condition != 0 ? 2 : 3];
   }
 
@@ -351,7 +351,7 @@ class FunctionPruner {
     for (const Words instruction : block.instructions) {
       switch (op_of(instruction)) {
         case Op::OpPhi:
-          write_phi(instruction, block.label(), out);
+          write_phi(instruction, block, out);
           break;
         case Op::OpSelectionMerge:
           if (!target) append(out, instruction);
@@ -369,12 +369,15 @@ class FunctionPruner {
     }
   }
 
-  void write_phi(Words phi, uint32_t label, std::vector<uint32_t>& out) const {
+  void write_phi(Words phi, const Block& block, std::vector<uint32_t>& out) const {
     const size_t first = out.size();
     out.insert(out.end(), phi.begin(), phi.begin() + 3);
     for (size_t i = 3; i + 1 < phi.size(); i += 2) {
-      if (leads_to(block_of(phi[i + 1]), label)) append(out, phi.subspan(i, 2));
+      if (leads_to(block_of(phi[i + 1]), block.label())) append(out, phi.subspan(i, 2));
     }
+    // A dead continue target leads back to its loop (write_dead). Nothing reaches it, so any value will do.
+    const Words loop = block.merge(Op::OpLoopMerge);
+    if (!loop.empty() && !block_of(loop[2]).is_live) out.insert(out.end(), {phi[2], loop[2]});
     out[first] = word(Op::OpPhi, static_cast<uint32_t>(out.size() - first));
   }
 
@@ -404,7 +407,6 @@ class FunctionPruner {
   KnownValues& values_;
   /// Sorted by label.
   std::vector<std::pair<uint32_t, Block*>> block_of_;
-  bool has_loop_with_phi_ = false;
 };
 
 /// Marks functions that the entry points reach, and returns their remaining code.

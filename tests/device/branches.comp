@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #version 450
-// Branches of every form that hang on specialisation constants. `compute` in branches.h computes the same.
+// Branches of every form that depend on specialisation constants. `compute` in branches.h computes the same.
 layout(local_size_x = 1) in;
 
 layout(constant_id = 0) const uint FIRST = 0u;
@@ -40,8 +40,46 @@ uint turn(uint x) {
   return x;
 }
 
+struct Walk {
+  uint at;
+  uint steps;
+};
+
+uint next_step(uint i) {
+  if (THIRD) {
+    i += 2u;
+  } else {
+    i += 1u;
+  }
+  return i;
+}
+
+// One return, so spirv-opt inlines it with its loops.
+void walk(inout Walk w) {
+  // The continue target has several blocks.
+  for (uint i = 0u; i < 9u; i = next_step(i)) {
+    if (FIRST == 1u && w.at % 7u == 3u) break;
+    if (FIRST == 2u) {
+      w.at += i + 4u;
+      break;
+    }
+    w.at = w.at * 3u + called_twice(i);
+    w.steps += 1u;
+  }
+  // Without THIRD nothing leads back to the begin.
+  do {
+    const uint before = w.at;
+    w.at += w.steps + 1u;
+    w.steps ^= before & 1u;
+  } while (THIRD && w.at < 200u);
+}
+
 void main() {
   uint x = numbers[gl_WorkGroupID.x];
+  Walk w = Walk(x % 50u, SECOND);
+  walk(w);
+  walk(w);
+  x += w.at * (w.steps + 1u);
   if (FIRST > 0u) {
     x = with_first(x);
   } else {

@@ -34,6 +34,10 @@ class Branches {
   uint32_t compute(uint32_t x) const {
     const bool is_any = first_ != 0 || third_;
     const uint32_t chosen = third_ ? first_ : second_;
+    Walk w{x % 50, second_};
+    walk(w);
+    walk(w);
+    x += w.at * (w.steps + 1);
     x = first_ > 0 ? called_twice(x) + 7 : x ^ 21U;
     if (second_ != 0 && called_twice(x) % 2 != 0) x += 100;
     if (third_ || x % 2 != 0) x += 1000;
@@ -49,7 +53,29 @@ class Branches {
   }
 
  private:
+  struct Walk {
+    uint32_t at;
+    uint32_t steps;
+  };
+
   static uint32_t called_twice(uint32_t x) { return x * 5 + 1; }
+
+  void walk(Walk& w) const {
+    for (uint32_t i = 0; i < 9; i += third_ ? 2 : 1) {
+      if (first_ == 1 && w.at % 7 == 3) break;
+      if (first_ == 2) {
+        w.at += i + 4;
+        break;
+      }
+      w.at = w.at * 3 + called_twice(i);
+      w.steps += 1;
+    }
+    do {
+      const uint32_t before = w.at;
+      w.at += w.steps + 1;
+      w.steps ^= before & 1U;
+    } while (third_ && w.at < 200);
+  }
 
   uint32_t turn(uint32_t x) const {
     while (first_ > 1 && x < 1000) {

@@ -5,27 +5,29 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <tuple>
+#include <vector>
 
 #include "branches.spv.h"
 #include "device/branches.h"
 #include "device/buffer.h"
 #include "device/device.h"
 #include "gpu/device_fixture.h"
+#include "support/read_spirv.h"
 
 namespace promin::gpu {
 namespace {
 
-class PipelineTest : public test::DeviceTest {};
-
-// Pipelines are compiled from what is left of a shader once it is known what its constants are.
-TEST_F(PipelineTest, ComputesTheSameWithoutItsDeadCode) {
-  std::vector<uint32_t> numbers(500);
-  for (const test::BranchConstants& constants : test::all_branch_constants()) {
+class PipelineTest : public test::DeviceTest {
+ protected:
+  /// Returns what branches.comp makes of the numbers from 0.
+  std::vector<uint32_t> run(std::span<const uint32_t> branches, const test::BranchConstants& constants) {
+    std::vector<uint32_t> numbers(500);
     std::iota(numbers.begin(), numbers.end(), 0U);
     Buffer buffer(device(), numbers.size() * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer);
     buffer.write(std::as_bytes(std::span(numbers)));
     const BoundBuffer bound{.binding = 0, .buffer = &buffer};
-    const ComputePipeline pipeline(device(), k_branches_spirv, constants.list(), {&bound, 1});
+    const ComputePipeline pipeline(device(), branches, constants.list(), {&bound, 1});
     device().run([&](const vk::raii::CommandBuffer& commands) {
       pipeline.dispatch(commands, uvec2(static_cast<uint32_t>(numbers.size()), 1));
       const vk::MemoryBarrier after(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eHostRead);
@@ -33,11 +35,19 @@ TEST_F(PipelineTest, ComputesTheSameWithoutItsDeadCode) {
                                {}, {});
     });
     buffer.read(std::as_writable_bytes(std::span(numbers)));
-    const test::Branches branches(constants);
-    for (uint32_t i = 0; i < numbers.size(); ++i) {
-      ASSERT_EQ(numbers[i], branches.compute(i))
-          << i << " with " << constants.first << ' ' << constants.second << ' ' << constants.third;
-    }
+    return numbers;
+  }
+};
+
+// Pipelines are compiled from the code that is live with the values of the constants.
+TEST_F(PipelineTest, ComputesTheSameWithoutItsDeadCode) {
+  const std::vector<uint32_t> with_calls = read_spirv(PROMIN_BRANCHES_SPIRV);
+  for (const test::BranchConstants& constants : test::all_branch_constants()) {
+    SCOPED_TRACE(testing::PrintToString(std::tuple(constants.first, constants.second, constants.third)));
+    std::vector<uint32_t> expected(500);
+    for (uint32_t i = 0; i < expected.size(); ++i) expected[i] = test::Branches(constants).compute(i);
+    EXPECT_EQ(run(k_branches_spirv, constants), expected);
+    EXPECT_EQ(run(with_calls, constants), expected);
   }
 }
 
