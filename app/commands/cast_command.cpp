@@ -252,7 +252,7 @@ void cast(const CastSpec& options, bool prints_spec) {
 }  // namespace
 
 Command add_cast_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "cast", "Cast rays from a file at a scene and write their hits");
+  CLI::App& command = add_command(program, "cast", "Cast rays from a file into a scene and write their hits");
   const auto options = std::make_shared<CastSpec>();
   const auto prints_spec = std::make_shared<bool>(false);
   add_spec_option(command, *options);

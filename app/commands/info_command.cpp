@@ -273,7 +273,8 @@ void print_info(const InfoOptions& options) {
 }  // namespace
 
 Command add_info_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "info", "Print the contents of a scene and which parts of it are modelled");
+  CLI::App& command =
+      add_command(program, "info", "Print the contents of a scene and say which of them promin renders");
   const auto options = std::make_shared<InfoOptions>();
   OptionTable table(command);
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
@@ -283,7 +284,7 @@ Command add_info_command(CLI::App& program) {
   add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
   table.add_flag("--json", "Print JSON (docs/usage.md, \"Scenes as JSON\")", options->is_json);
-  table.add_flag("--no-texels", "Read only the sizes of images: faster, but damaged images are not found",
+  table.add_flag("--no-texels", "Read only the sizes of images. This is faster but does not find damaged images",
                  options->skips_texels);
   return {&command, [options] { print_info(*options); }};
 }
