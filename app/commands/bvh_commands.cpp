@@ -72,7 +72,8 @@ Scene load(const BvhOptions& options, const Console& console) {
 
 void build(const BvhOptions& options) {
   if (lower_case_ending(options.file) != ".pbvh") {
-    throw UsageError({"output.ending", "the output's ending \"" + options.file.extension().string() + "\" is unknown",
+    throw UsageError({"output.ending",
+                      "the output's extension \"" + options.file.extension().string() + "\" is unknown",
                       options.file.string(), "use .pbvh"});
   }
   check_outputs({options.scene}, {options.file}, std::nullopt);

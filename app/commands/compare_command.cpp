@@ -49,7 +49,7 @@ struct CompareOptions {
 PictureEncoding common_encoding(const CompareOptions& options) {
   const PictureEncoding encoding = encoding_of(options.first);
   if (encoding == encoding_of(options.second)) return encoding;
-  throw InputError({"picture.pair.spaces", "one picture holds linear light, the other holds sRGB values",
+  throw InputError({"picture.pair.spaces", "one picture contains linear light, but the other contains sRGB values",
                     fmt::format("{} and {}", options.first.string(), options.second.string()),
                     "give two .exr or two .png files"});
 }

@@ -174,8 +174,9 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
   const std::optional<Problem> halved = warn_of(fit_images(scene.images, scene.textures, kDefaultTextureBytes));
   if (halved) scene.warnings.push_back(message_of(*halved));
   if (scene.cameras.empty() || default_size(scene.cameras.front())) return;
-  scene.warnings.push_back(fmt::format("the camera's aspect ratio of {} gives no sensible width; give --size",
-                                       scene.cameras.front().aspect_ratio));
+  scene.warnings.push_back(
+      fmt::format("the camera's aspect ratio of {} is too extreme to compute the width of the picture; give --size",
+                  scene.cameras.front().aspect_ratio));
 }
 
 /// A scene as it would be rendered, with added lights.

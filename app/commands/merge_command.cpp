@@ -32,8 +32,8 @@ void merge(const MergeOptions& options) {
   if (options.offsets) files.push_back(*options.offsets);
   const jobs::Job job = jobs::Job::open(options.folder);
   if (options.offsets && job.manifest().kind == kPictureJob) {
-    throw UsageError({"job.offsets.none", "--offsets needs a job of rays, and this job is one of pictures",
-                      job.folder().string(), "leave --offsets out"});
+    throw UsageError({"job.offsets.none", "--offsets needs a job of rays, but this is a job of pictures",
+                      job.folder().string(), "remove --offsets"});
   }
   check_job_files(job, files);
   check_outputs({}, files, {});

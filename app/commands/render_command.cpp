@@ -340,7 +340,7 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
   throw UsageError({"output.foreign", found->string() + " exists already and promin did not make it from " + scene, "",
-                    "name the file to write by -o"});
+                    "give the file to write with -o"});
 }
 
 /// Throws UsageError if several pictures would be written to the standard output.
@@ -348,7 +348,7 @@ void check_standard_output(const RenderSpec& options) {
   const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
   if (count == 0) return;
   const auto refuse = [](const std::string& what) {
-    throw UsageError({"output.standard.taken", what, "", "name a file"});
+    throw UsageError({"output.standard.taken", what, "", "give a file"});
   };
   if (count > 1) refuse("-o - is given twice");
   if (options.path) refuse("-o - takes one picture, not the frames of --path");

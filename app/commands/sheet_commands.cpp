@@ -139,9 +139,10 @@ uvec2 picture_size(const SheetOptions& options) {
 
 void check_sheet_size(const uvec2& size) {
   if (size.x <= kMaxSide && size.y <= kMaxSide) return;
-  throw UsageError({"sheet.size",
-                    fmt::format("the sheet would have {}x{} pixels, more than {} on a side", size.x, size.y, kMaxSide),
-                    "", "give a smaller --size or other --columns"});
+  throw UsageError(
+      {"sheet.size",
+       fmt::format("the sheet would have {}x{} pixels, but a side can have at most {}", size.x, size.y, kMaxSide), "",
+       "give a smaller --size or other --columns"});
 }
 
 void make_sheet(const SheetOptions& options) {

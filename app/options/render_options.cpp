@@ -70,7 +70,7 @@ PixelWindow read_window(const OptionValues& words) {
   const PixelWindow window = {{words.whole(0, 0, kMaxSide), words.whole(1, 0, kMaxSide)},
                               {words.whole(2, 0, kMaxSide), words.whole(3, 0, kMaxSide)}};
   if (window.lo.x >= window.hi.x || window.lo.y >= window.hi.y) {
-    words.refuse("--crop is empty: it takes X0 < X1 and Y0 < Y1");
+    words.refuse("--crop contains no pixels, because it needs X0 < X1 and Y0 < Y1");
   }
   return window;
 }
@@ -151,7 +151,7 @@ FrameRange read_frames(const OptionValues& words) {
   const size_t dash = text.find('-');
   const OptionValues ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
   const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
-  if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
+  if (range.first > range.last) words.refuse("--frames contains no frame, because A-B needs A <= B");
   return range;
 }
 
@@ -312,11 +312,12 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   };
   table.add("--target-error", "E", std::string(target_help),
             [&](const OptionValues& w) { error.target = read_error(w); });
-  table.add("--min-spp", "N",
-            fmt::format("With --target-error: smallest number of samples per pixel, a power of two from {0} [{1}; {0} if "
-                        "--target-error is 1/{2:g} or more]",
-                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError),
-            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
+  table.add(
+      "--min-spp", "N",
+      fmt::format("With --target-error: smallest number of samples per pixel, a power of two from {0} [{1}; {0} if "
+                  "--target-error is 1/{2:g} or more]",
+                  kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError),
+      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
             fmt::format("With --target-error: largest number of samples per pixel, a power of two up to {} [{}]",
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),

@@ -104,7 +104,8 @@ void check_aspect_ratio(float aspect_ratio) {
 
 void check_fit(float fit) {
   if (fit >= kMinFit && fit <= 1.0F) return;
-  throw UsageError({"framing.fit", "the part of the picture to cover is out of range", "framing", "give 0.05 to 1"});
+  throw UsageError(
+      {"framing.fit", "the fraction of the picture to cover is out of range", "framing", "give 0.05 to 1"});
 }
 
 /// The axes of a camera's picture, orthonormal.

@@ -120,7 +120,7 @@ def change_view(view: View, given: Mapping[str, Any]) -> View:
     if "quality" in changes:
         beside = [name for name in _NUMBERS_OF_SAMPLES if name in changes]
         if beside:
-            raise UsageError(f"quality and {beside[0]} contradict each other; leave one out")
+            raise UsageError(f"quality and {beside[0]} contradict each other; remove one of them")
         changes = {**{name: getattr(View, name) for name in _NUMBERS_OF_SAMPLES}, **changes}
     elif any(name in changes for name in _NUMBERS_OF_SAMPLES):
         changes["quality"] = None
@@ -156,7 +156,7 @@ def settle_quality(view: View) -> View:
         return view
     for name in _NUMBERS_OF_SAMPLES:
         if getattr(view, name) != getattr(View, name):
-            raise UsageError(f"quality and {name} contradict each other; leave one out")
+            raise UsageError(f"quality and {name} contradict each other; remove one of them")
     fields = _promin.read_quality(str(view.quality) or "-", str(view.debug_view) or "-")
     if fields["target_error"] is None:
         fields["error_in"] = view.error_in
@@ -273,7 +273,7 @@ def check_shading(view: View, aovs: tuple[str, ...]) -> None:
         if name in aovs:
             raise UsageError(
                 f'aovs with "{name}" and debug_view="{view.debug_view}" contradict each other: a debug view has no '
-                f"{lacks}; leave one out"
+                f"{lacks}; remove one of them"
             )
 
 
@@ -286,7 +286,7 @@ def _check_samples(view: View) -> None:
         name = "time_limit" if view.target_error is None else "target_error"
         if isinstance(view.spp, (int, np.integer)) and view.spp not in (1, View.spp):
             raise UsageError(
-                f"{name} and spp={view.spp} contradict each other; leave one out; min_spp and max_spp limit the samples"
+                f"{name} and spp={view.spp} contradict each other; remove one of them; min_spp and max_spp limit the samples"
             )
         return
     for name in ("min_spp", "max_spp", "error_in"):

@@ -75,7 +75,7 @@ def check_outputs(job: jobs.Job, outputs: list[str]) -> None:
     job.check_outputs(outputs)
     for output in outputs:
         if outputs.count(output) > 1:
-            raise jobs.UsageError(f"the same output file is named twice, {output}; name different files")
+            raise jobs.UsageError(f"the same output file is named twice, {output}; use different files")
         if not os.access(Path(output).parent, os.W_OK):
             raise jobs.RunError(f"cannot write to the folder, {Path(output).parent}; make it, or check permissions")
 

@@ -62,7 +62,7 @@ TEST_F(CastJobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
       }
     }
   }
-  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the job's results are written to two files"));
+  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the results of this job need two files"));
   expect_done(run({"merge", "job", "-o", "merged.npy", "--offsets", "merged_offsets.npy"}));
   EXPECT_TRUE(read("merged.npy") == read("whole.npy") && read("merged_offsets.npy") == read("whole_offsets.npy"));
 }
@@ -112,7 +112,7 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   EXPECT_THAT(run({"merge", "job", "-o", "cut.npy"}).err, HasSubstr("3 of 4 pieces are missing or bad"));
   const ProcessResult result =
       run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; it is made again"));
   EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now: cut.npy"));
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));

@@ -105,7 +105,7 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   EXPECT_THAT(one_file.err, HasSubstr("promin: one.exr: several frames would be written to one file"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "one.exr"));
   EXPECT_THAT(run({"merge", "job", "-o", "cut.##.exr", "--offsets", "o.npy"}).err,
-              HasSubstr("job: --offsets needs a job of rays, and this job is one of pictures; leave --offsets out"));
+              HasSubstr("job: --offsets needs a job of rays, but this is a job of pictures; remove --offsets"));
   for (const char* number : {"00", "01"}) {
     EXPECT_TRUE(read(std::string("cut.") + number + ".exr") == read(std::string("whole.") + number + ".exr"));
   }
@@ -229,7 +229,7 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   const ProcessResult result =
       run({"render", "square.gltf", "--size", "61", "47", "--job", "job", "--pieces", "4", "-o", "cut.exr"});
   expect_done(result);
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; it is made again"));
   EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
   EXPECT_THAT(result.err, HasSubstr("promin: note: the job continues: 1 of 4 pieces are there"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now"));

@@ -106,7 +106,8 @@ TEST_F(GltfTest, PointsAndLinesTakeANumberButAreNotDrawn) {
   EXPECT_TRUE(std::holds_alternative<Mesh>(scene.objects[4].shape));
   EXPECT_THAT(
       scene.warnings,
-      ElementsAre("meshes[0].primitives[0]: a mesh primitive holds points or lines, and 3 more; they are not drawn"));
+      ElementsAre(
+          "meshes[0].primitives[0]: a mesh primitive contains points or lines, and 3 more; promin does not draw them"));
 }
 
 TEST_F(GltfTest, SparseAccessorsReplaceElements) {
@@ -742,9 +743,9 @@ TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
       {{"normalTexture", {{"index", 0}}}, {"emissiveTexture", {{"index", 1}}}, {"occlusionTexture", {{"index", 2}}}});
   gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}, {{"uri", "../c.png"}}};
   gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}};
-  EXPECT_THAT(load(gltf).warnings,
-              UnorderedElementsAre(HasSubstr(", and 1 more; materials"),
-                                   testing::AllOf(HasSubstr("leaves the scene's folder"), HasSubstr("--root DIR"))));
+  EXPECT_THAT(load(gltf).warnings, UnorderedElementsAre(HasSubstr(", and 1 more; materials"),
+                                                        testing::AllOf(HasSubstr("leads out of the scene's folder"),
+                                                                       HasSubstr("--root DIR"))));
 }
 
 // Lights and sky
@@ -924,7 +925,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_THAT(load(gltf).warnings,
               ElementsAre("the sky's panorama images[0] is ignored: the picture has an unknown format"));
   gltf.json["images"] = {{{"uri", "../sky.exr"}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("leaves the scene's folder")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("leads out of the scene's folder")));
   skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
   skies[0]["panorama"] = {{"equirectangular", 2}};

@@ -197,7 +197,7 @@ TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");
   EXPECT_THAT(mesh_of(scene, 0).triangles, SizeIs(1));
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(2)) << "those left out have no number";
-  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a face has fewer than 3 corners, and 2 more; it is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a face has fewer than 3 corners, and 2 more; promin omits it"));
   expect_strict_refusal(kSquare + "f 1 2\nf 1 2 3\n", "obj.face.corners", ": line 5");
 }
 
@@ -218,7 +218,7 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
                                                 HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13: "),
-                                                HasSubstr(", and 2 more; "), HasSubstr("the face is left out"))));
+                                                HasSubstr(", and 2 more; "), HasSubstr("promin omits the face"))));
   expect_strict_refusal(text, "obj.position.range", ": line 13");
   EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasProblem("obj.faces.none"));
 }
@@ -374,11 +374,11 @@ TEST_F(ObjTest, NumbersOfMaterialsThatAreNoneAreIgnored) {
   EXPECT_EQ(m.phong().specular, vec3(0));
   EXPECT_THAT(warnings,
               ElementsAre("mtllib m.mtl line 3: Ks of a material is not a number from 0 to 1e15 (\"nan\"), and 1 "
-                          "more; the statement is ignored",
+                          "more; promin ignores the statement",
                           HasSubstr("Ns of a material"), HasSubstr("Ka of a material")));
   for (const char* line : {"Kd x\n", "Ke 1e999 0 0\n", "illum -1\n", "Ns 1e16\n", "d full\n", "Tr x\n", "Ni nan\n"}) {
     EXPECT_EQ(material(std::string("Kd 1 0 0\nd 0.5\n") + line, &warnings).phong().diffuse, vec3(1, 0, 0)) << line;
-    EXPECT_THAT(warnings, ElementsAre(HasSubstr("the statement is ignored"))) << line;
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("promin ignores the statement"))) << line;
     expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "mtl.number.range", ": mtllib m.mtl line 4");
   }
   EXPECT_EQ(material("Kd -0.5 0.25 -1e-9\n", &warnings).phong().diffuse, vec3(0, 0.25F, 0));
@@ -464,9 +464,10 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
     EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1)) << line;
     return scene.warnings;
   };
-  EXPECT_THAT(warnings_of("mtllib ../none.mtl"), ElementsAre(HasSubstr("leaves the scene's folder (\"../none.mtl\")")));
-  EXPECT_THAT(warnings_of("mtllib /etc/none"), ElementsAre(HasSubstr("is an absolute path (\"/etc/none\")")));
-  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is not a relative path")));
+  EXPECT_THAT(warnings_of("mtllib ../none.mtl"),
+              ElementsAre(HasSubstr("leads out of the scene's folder (\"../none.mtl\")")));
+  EXPECT_THAT(warnings_of("mtllib /etc/none"), ElementsAre(HasSubstr("is absolute (\"/etc/none\")")));
+  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is not relative")));
   EXPECT_THAT(warnings_of("mtllib"), IsEmpty());
   write("empty.mtl", "");
   EXPECT_THAT(warnings_of("mtllib empty.mtl"), ElementsAre(HasSubstr("\"empty.mtl\" is ignored: the file is empty")));
@@ -660,7 +661,7 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
               testing::UnorderedElementsAre(
                   testing::StartsWith("a file does not exist (\"none.png\"); materials are drawn without it"),
                   testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
-                  testing::StartsWith("a file's name leaves the scene's folder (\"../b.png\"); materials"),
+                  testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); materials"),
                   testing::StartsWith("image \"empty.png\": the file is empty")));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.phong().diffuse, vec3(0.8F));
@@ -688,7 +689,7 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   const LoadedScene beside = load_with("map_Kd C:\\x\\a.png\nmap_Ks /y/a.png\n");
   EXPECT_TRUE(beside.materials.at(0).phong().specular_texture.exists());
   EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from the scene's folder")));
-  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not a relative path")));
+  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not relative")));
 }
 
 // Maps of heights

@@ -232,7 +232,7 @@ TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
   EXPECT_THAT(refusal_of<UsageError>([&] {
                 check_build(job, {"here", "print", "two"}, other);
               }),
-              HasSubstr("were made by another build of promin, and this build makes piece part2 with other bits"));
+              HasSubstr("were made by another build of promin, and this build computes other bits for piece part2"));
   // Once a build has made a piece, its processes need no proof.
   make_piece(job, 0, {"here", "print", "two"}, make_content);
   EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);

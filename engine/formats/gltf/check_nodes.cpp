@@ -69,7 +69,7 @@ void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadR
   }
   if (reached_count == nodes.size()) return;
   const auto lost = std::ranges::find_if(parent_counts, [](uint32_t count) { return count > 0; });
-  report.refuse("gltf.node.cycle", "the node is its own ancestor or lies below one that is",
+  report.refuse("gltf.node.cycle", "the node is its own ancestor, or lies below such a node",
                 node_place(static_cast<size_t>(lost - parent_counts.begin())),
                 "remove the child that closes the cycle");
 }

@@ -171,7 +171,7 @@ std::vector<FileExtension> check_gltf_extensions(const json& document, bool is_s
     } else if (extension.required >= 0 && !extension.geometry_place.empty()) {
       report.refuse(
           "gltf.extension.required",
-          "the required extension " + extension.name + " is not implemented, and without it the geometry is unknown",
+          "the required extension " + extension.name + " is not implemented, so promin cannot read the geometry",
           extension.geometry_place, "export the scene without it");
     } else {
       warn_of_unknown(extension, report);

@@ -36,8 +36,8 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
   // Both as they are given and as the light has them.
   if (inner < outer && light.inner_cone_angle < light.outer_cone_angle) return;
-  report.repair({"gltf.light.cone", "a spot's inner cone angle is not less than its outer", "", place + ".spot",
-                 "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
+  report.repair({"gltf.light.cone", "a spot's inner cone angle is not less than its outer cone angle", "",
+                 place + ".spot", "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
   light.outer_cone_angle = std::max(light.outer_cone_angle, kLeastConeAngle);
   light.inner_cone_angle = std::nextafter(light.outer_cone_angle, 0.0F);
 }
@@ -157,13 +157,13 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   light.kind = kind_of(source["type"]);
   const dvec3 position(placed.world_from_object[3]);
   if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kMaxCoordinate)) {
-    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "it is left out"});
+    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "promin omits it"});
     return std::nullopt;
   }
   if (light.kind != LightKind::kPoint) {
     const std::optional<dvec3> direction = direction_of(placed);
     if (!direction) {
-      report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "it is left out"});
+      report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
       return std::nullopt;
     }
     light.direction = vec3(*direction);

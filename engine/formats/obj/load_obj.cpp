@@ -179,11 +179,11 @@ bool has_texture(const Material& material) {
 
 void refuse_without_faces(const ObjText& text, LoadReport& report) {
   const auto refuse = [&](const std::string& what) {
-    report.refuse("obj.faces.none", what, "", "export it with faces");
+    report.refuse("obj.faces.none", what, "", "export the model with faces");
   };
   const std::string vertices = "the file has " + std::to_string(text.positions.size()) + " vertices but no faces";
-  if (text.small_face_count > 0) return refuse("all faces have fewer than 3 corners: there is nothing to draw");
-  if (text.has_lines_or_points) return refuse(vertices + ", and lines and points are not drawn");
+  if (text.small_face_count > 0) return refuse("all faces have fewer than 3 corners, so there is nothing to draw");
+  if (text.has_lines_or_points) return refuse(vertices + ", and promin does not draw lines and points");
   refuse(text.positions.empty() ? "the file has neither vertices nor faces" : vertices);
 }
 

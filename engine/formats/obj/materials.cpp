@@ -56,8 +56,8 @@ std::vector<std::string> find_library(const std::string& line, LoadReport& repor
   if (missing.empty()) return files;
   if (auto whole = find_by_last_part(line, "", report)) return {*whole};
   for (const std::string& name : missing) {
-    report.warn("the material file " + quote(name) +
-                " is not read and its materials are grey: " + reason_against(name, report));
+    report.warn("promin cannot read the material file " + quote(name) +
+                ", so its materials are grey: " + reason_against(name, report));
   }
   return files;
 }

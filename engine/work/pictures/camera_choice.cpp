@@ -31,7 +31,7 @@ std::string list_cameras(const Scene& scene) {
 /// The name is tried first, because a camera may be called "2".
 const Camera& find_camera(const Scene& scene, const std::string& selection) {
   if (scene.cameras.empty()) {
-    throw UsageError({"camera.missing", "the scene has no cameras", scene.file.string(), "leave --camera out"});
+    throw UsageError({"camera.missing", "the scene has no cameras", scene.file.string(), "remove --camera"});
   }
   for (const Camera& camera : scene.cameras) {
     if (camera.name == selection) return camera;
@@ -109,8 +109,9 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
     direction = middle_of(bounds) + scene.center - *pose.eye;
     // The bounds of shapes are rounded to fp32.
     if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(bounds.extent()))) {
-      throw UsageError({"camera.eye.middle", "--eye is at the middle of the scene, so there is no direction of view",
-                        "", "give --look-at or --direction as well"});
+      throw UsageError({"camera.eye.middle",
+                        "--eye is at the middle of the scene, so promin cannot derive a direction of view", "",
+                        "give --look-at or --direction as well"});
     }
   }
   face(camera, direction, pose.up);

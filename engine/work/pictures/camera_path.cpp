@@ -81,7 +81,7 @@ TimedCamera read_frame(const json& frame, int version, const std::string& place,
   }
   if (frame.contains("fov_deg") == frame.contains("ymag")) {
     report.refuse("path.frame.choice", "a frame has both fov_deg and ymag, or neither", place,
-                  "give only one: fov_deg for a perspective camera");
+                  "give fov_deg for a perspective camera, or ymag for an orthographic one");
   } else if (frame.contains("fov_deg")) {
     timed.camera.yfov = static_cast<float>(glm::radians(frame["fov_deg"].get<double>()));
   } else {
