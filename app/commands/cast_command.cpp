@@ -65,7 +65,7 @@ struct RayChunks {
 void warn_of_idle_rays(const RayChunks& chunks, const Console& console) {
   if (chunks.idle_count == 0) return;
   console.warn(
-      fmt::format("{} of {} cannot hit anything, the first of them is number {}: a ray needs a direction that is not "
+      fmt::format("{} of {} cannot hit anything; the first of them is number {}; a ray needs a direction that is not "
                   "0, tmin < tmax and no NaN",
                   chunks.idle_count, count_of(chunks.reader.count(), "ray"), chunks.first_idle));
 }

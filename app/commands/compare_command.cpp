@@ -160,7 +160,8 @@ void warn_of_idle_limit(const CompareOptions& options, PictureEncoding encoding)
   const std::string meant =
       *options.fail <= kMostCode ? fmt::format("; {0:g} of 255 is --fail {0:g}/255", *options.fail) : "";
   Console(Verbosity::kNormal)
-      .warn(fmt::format("--fail {:g} never fails: the values of these files are 0 to 1{}", *options.fail, meant));
+      .warn(fmt::format("--fail {:g} never fails, because the values of these files are from 0 to 1{}", *options.fail,
+                        meant));
 }
 
 /// Throws DifferenceError if more pixels differ than allowed. `in` names the channel.

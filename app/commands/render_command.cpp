@@ -85,20 +85,21 @@ void tell_reached(const RunStats& stats, double limit_s, double taken_s, const C
   if (taken_s > kLateShare * limit_s) {
     const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
     console.note(fmt::format("the picture took {:.1f} s, longer than the limit of {:g} s{}", taken_s, limit_s,
-                             is_least ? ": even one sample a pixel takes longer" : ""));
+                             is_least ? ": even one sample per pixel takes longer" : ""));
   }
   const uint32_t samples = stats.view->samples_per_pixel;
   if (!stats.view->error_target && samples < kDefaultSamples) {
     const double sample_s = 1e-3 * stats.median_trace_ms() / samples;
-    console.note(fmt::format("the time sufficed for {} of the usual {} samples a pixel, which take about {:.0f} s",
-                             samples, kDefaultSamples, taken_s + (kDefaultSamples - samples) * sample_s));
+    console.note(
+        fmt::format("the time was enough for {} of the default {} samples per pixel, which take about {:.0f} s",
+                    samples, kDefaultSamples, taken_s + (kDefaultSamples - samples) * sample_s));
   }
   const bool can_refine = !stats.errors.empty() && stats.errors.back().unmet_pixels > 0 &&
                           stats.view->error_target->max_samples < kMaxRefinedSamples;
   if (taken_s < kEarlyShare * limit_s && can_refine) {
     const uint32_t most = stats.view->error_target->max_samples;
     console.note(
-        fmt::format("the picture ended before the limit, because --max-spp allows {} samples a pixel; "
+        fmt::format("the picture was complete before the limit, because --max-spp allows {} samples per pixel; "
                     "--max-spp {} uses more of the time",
                     most, std::min(4 * most, kMaxRefinedSamples)));
   }

@@ -22,7 +22,7 @@ void add_cast_options(CLI::App& command, CastSpec& options) {
   table.add_repeated("-o,--output", "HITS.npy",
                      "NumPy file to write: t, object, primitive, u, v and normal of each ray's nearest hit",
                      [&](const OptionValues& w) {
-                       if (w.all().size() > 1) w.refuse("--output takes one file here");
+                       if (w.all().size() > 1) w.refuse("--output takes only one file here");
                        options.output = w.text();
                      });
   table.add_flag("--any", "Report only whether a ray hits anything. t is 0 on a hit and infinite on a miss",

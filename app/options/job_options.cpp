@@ -12,7 +12,7 @@ constexpr uint32_t kMostShares = 1000000;
 jobs::Share read_share(const OptionValues& words) {
   const std::string& text = words.text();
   const size_t slash = text.find('/');
-  if (slash == std::string::npos) words.refuse(fmt::format("--piece takes I/N, as 0/4, not \"{}\"", text));
+  if (slash == std::string::npos) words.refuse(fmt::format("--piece takes I/N, such as 0/4, not \"{}\"", text));
   const OptionValues numbers = words.with({text.substr(0, slash), text.substr(slash + 1)});
   const uint32_t count = numbers.whole(1, 1, kMostShares);
   return {numbers.whole(0, 0, count - 1), count};

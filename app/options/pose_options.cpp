@@ -27,7 +27,7 @@ dvec3 read_up(const OptionValues& words) {
 /// Adds rows that name the replacement of a former option.
 void add_former_options(OptionTable& table) {
   table.add_hidden("--look", [](const OptionValues& w) {
-    w.refuse("there is no option --look: --look-at X Y Z takes a point to look at, --direction X Y Z a direction");
+    w.refuse("there is no option --look; use --look-at X Y Z for a point, or --direction X Y Z for a direction");
   });
   table.add_hidden("--framing", [](const OptionValues& w) {
     const bool is_known = std::ranges::find(framing_names(), w.text()) != framing_names().end();

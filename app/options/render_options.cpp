@@ -94,8 +94,8 @@ uvec2 read_size(const OptionValues& words) {
   const size_t by = text.find_first_of("xX,*");
   const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
   if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
-    words.refuse(fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"",
-                             fmt::join(size_names(), " or "), words.text()),
+    words.refuse(fmt::format("--size takes a size such as 640x480, a width, {}, not \"{}\"", list_choices(size_names()),
+                             words.text()),
                  nearest_name(text, size_names()));
   }
   const std::string height = by == std::string::npos ? "" : text.substr(by + 1);

@@ -22,14 +22,15 @@ void add_scene_argument(OptionTable& table, TracingOptions& options) {
 }
 
 void add_device_option(OptionTable& table, std::optional<std::string>& device) {
-  table.add("--device", "NAME|INDEX",
-            "Vulkan device: a part of its name, its index, or uuid: followed by its UUID. `promin devices --json` "
-            "prints them",
-            [&](const OptionValues& w) {
-              if (w.text().empty())
-                w.refuse("--device takes a part of a device's name, its index or uuid: and its UUID, not \"\"");
-              device = w.text();
-            });
+  table.add(
+      "--device", "NAME|INDEX",
+      "Vulkan device: a part of its name, its index, or uuid: followed by its UUID. `promin devices --json` "
+      "prints them",
+      [&](const OptionValues& w) {
+        if (w.text().empty())
+          w.refuse("--device takes a part of a device's name, its index, or uuid: followed by its UUID, not \"\"");
+        device = w.text();
+      });
 }
 
 void add_tracing_options(OptionTable& table, TracingOptions& options) {

@@ -53,7 +53,8 @@ void warn_of_tiny_meshes(const VertexBounds& bounds, Scene& scene) {
     if (primitive_count(scene, object) == 0) continue;
     const bool is_mesh = std::holds_alternative<Mesh>(scene.geometries[object.geometry]);
     if (!is_mesh || max_component(bounds.of_objects[i].extent()) >= kSmallestMesh) continue;
-    scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
+    scene.warnings.push_back("object " + std::to_string(i) +
+                             " is smaller than 1e-18, so fp32 cannot represent its triangles");
   }
 }
 
@@ -71,8 +72,8 @@ void warn_of_turned_normals(Scene& scene) {
   if (count == 0) return;
   scene.warnings.push_back(
       std::to_string(count) +
-      (count == 1 ? " triangle has vertex normals that point against its winding: the normals are reversed"
-                  : " triangles have vertex normals that point against their winding: the normals are reversed"));
+      (count == 1 ? " triangle has vertex normals that point against its winding; promin reverses the normals"
+                  : " triangles have vertex normals that point against their winding; promin reverses the normals"));
 }
 
 std::vector<bool> find_shown_materials(const Scene& scene) {
@@ -117,7 +118,7 @@ void warn_of_rough_glass(Scene& scene) {
   const std::string other = count == 1 ? "" : " and " + count_of(count - 1, "other") + " like it";
   scene.warnings.push_back("material " + (name.empty() ? std::to_string(first) : quote(name)) + other +
                            (count == 1 ? " is" : " are") +
-                           " rough glass: only a sky is blurred through it, and objects look sharp");
+                           " rough glass, which blurs only the sky; objects behind it look sharp");
 }
 
 /// Warns of geometry outside the view of a camera that frames the scene.

@@ -109,7 +109,7 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
   std::error_code error;
   report.add_source(file);
   const fs::file_status status = fs::status(file, error);
-  if (fs::is_directory(status)) return refuse("file.folder", "a file is a folder", "give a file");
+  if (fs::is_directory(status)) return refuse("file.folder", "the path of a file is a folder", "give a file");
   if (fs::exists(status) && !fs::is_regular_file(status))
     return refuse("file.kind", "a file is not a regular file", "give a file");
   if (!fs::exists(status)) {

@@ -98,8 +98,8 @@ dvec3 normalize_up(const vec3& up) {
 
 void check_aspect_ratio(float aspect_ratio) {
   if (aspect_ratio > 0.0F && std::isfinite(aspect_ratio)) return;
-  throw UsageError(
-      {"framing.aspect", "the aspect ratio is not positive and finite", "framing", "give width over height"});
+  throw UsageError({"framing.aspect", "the aspect ratio is not positive and finite", "framing",
+                    "give the width divided by the height"});
 }
 
 void check_fit(float fit) {

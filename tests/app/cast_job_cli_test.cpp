@@ -112,8 +112,8 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   EXPECT_THAT(run({"merge", "job", "-o", "cut.npy"}).err, HasSubstr("3 of 4 pieces are missing or bad"));
   const ProcessResult result =
       run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; it is made again"));
-  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; promin makes it again"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; promin makes it again"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now: cut.npy"));
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
 

@@ -644,7 +644,7 @@ TEST_F(CliTest, ATimeLimitHasUnitsAndNamesWhatGivesThePictureAgain) {
     OptionValues command = picture;
     command.insert(command.end(), {"-o", "a.exr", "--time-limit", time});
     const ProcessResult result = run(command);
-    EXPECT_THAT(result.err, HasSubstr(" s, longer than the limit of 0.001 s: even one sample a pixel takes longer"));
+    EXPECT_THAT(result.err, HasSubstr(" s, longer than the limit of 0.001 s: even one sample per pixel takes longer"));
     EXPECT_THAT(result.err, HasSubstr("the same picture again: --spp 1\n"));
     EXPECT_THAT(result.out, StartsWith("16x9, 1 spp, "));
   }
@@ -654,7 +654,7 @@ TEST_F(CliTest, ATimeLimitHasUnitsAndNamesWhatGivesThePictureAgain) {
   command.insert(command.end(), {"-o", "a.exr", "--time-limit", "2min"});
   const std::string notes = run(command).err;
   EXPECT_THAT(notes, HasSubstr("the same picture again: --target-error 1.5258789e-05 "));
-  EXPECT_THAT(notes, HasSubstr("--max-spp allows 8 samples a pixel; --max-spp 32 uses more of the time\n"));
+  EXPECT_THAT(notes, HasSubstr("--max-spp allows 8 samples per pixel; --max-spp 32 uses more of the time\n"));
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--time-limit", "2weeks"}), 2,
                  "--time-limit takes a number from 0.001 to ");
 }

@@ -229,9 +229,9 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   const ProcessResult result =
       run({"render", "square.gltf", "--size", "61", "47", "--job", "job", "--pieces", "4", "-o", "cut.exr"});
   expect_done(result);
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; it is made again"));
-  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
-  EXPECT_THAT(result.err, HasSubstr("promin: note: the job continues: 1 of 4 pieces are there"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; promin makes it again"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; promin makes it again"));
+  EXPECT_THAT(result.err, HasSubstr("promin: note: the job continues: 1 of 4 pieces are complete"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now"));
   EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
 }
@@ -280,7 +280,7 @@ TEST_F(JobCliTest, WrongUseIsRefused) {
       {{"-o", "a.exr", "--job", "job", "--pieces", "48"}, "job.pieces.many 48 61x47"},
       {{"-o", "a.exr", "--job", "job", "--piece", "0/4"}, "usage.options.contradict --piece --output"},
       {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\" in \"4/4\""},
-      {{"--job", "job", "--piece", "4"}, "--piece takes I/N, as 0/4, not \"4\""},
+      {{"--job", "job", "--piece", "4"}, "--piece takes I/N, such as 0/4, not \"4\""},
       {{"-o", "a.exr", "--job", "job", "--time-limit", "1"}, "usage.options.contradict --job --time-limit"},
       {{"-o", "a.exr", "--job", "job", "--stats", "s.json"}, "usage.options.contradict --job --stats"},
       {{"-o", "a.exr", "--job", "job", "--exposure", "average"}, "usage.options.contradict --job --exposure average"}};

@@ -658,7 +658,7 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     gltf.json["textures"] = {{{"source", 0}}};
     return load(gltf).warnings;
   };
-  const std::string one = " is rough glass: only a sky is blurred through it, and objects look sharp";
+  const std::string one = " is rough glass, which blurs only the sky; objects behind it look sharp";
   EXPECT_THAT(warnings_of(json::object()), ElementsAre("material \"frosted\"" + one));
   EXPECT_THAT(warnings_of({{"name", nullptr}}), ElementsAre("material 0" + one));
   const json textured = {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}};
@@ -674,8 +674,8 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     several.json["meshes"][0]["primitives"].push_back(several.json["meshes"][0]["primitives"][0]);
   }
   for (int i = 0; i < 4; ++i) several.json["meshes"][0]["primitives"][i]["material"] = std::max(i, 1);
-  EXPECT_THAT(load(several).warnings, ElementsAre("material \"frosted\" and 2 others like it are rough glass: only a "
-                                                  "sky is blurred through it, and objects look sharp"))
+  EXPECT_THAT(load(several).warnings, ElementsAre("material \"frosted\" and 2 others like it are rough glass, which "
+                                                  "blurs only the sky; objects behind it look sharp"))
       << "nothing has the first material";
 }
 
@@ -1036,7 +1036,7 @@ TEST_F(GltfTest, MotionIsLeftOut) {
   gltf.json["skins"] = {{{"joints", {0}}}, {{"joints", {0}}}};
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   EXPECT_THAT(load(gltf).warnings,
-              ElementsAre("the scene stands still: animations are ignored, morph targets have their default weights"));
+              ElementsAre("the scene does not move: animations are ignored, morph targets have their default weights"));
 }
 
 TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {
@@ -1054,7 +1054,7 @@ TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {
   EXPECT_THAT(mesh_of(scene, 0).normals, ElementsAre(vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)));
   EXPECT_THAT(mesh_of(scene, 1).positions, ElementsAre(vec3(0), vec3(1, 0, 0), vec3(4, 1, 0)));
   EXPECT_EQ(mesh_of(scene, 2).positions, mesh_of(scene, 0).positions);
-  EXPECT_THAT(scene.warnings, ElementsAre("the scene stands still: morph targets have their default weights"));
+  EXPECT_THAT(scene.warnings, ElementsAre("the scene does not move: morph targets have their default weights"));
 }
 
 TEST_F(GltfTest, MorphTargetsWithoutWeightsNeedNoBytes) {

@@ -64,8 +64,9 @@ TEST_F(NffTest, NormalsAgainstTheWindingAreWarnedOf) {
   const std::string turned = "pp 3\n0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n";
   const std::string right = "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n";
   EXPECT_THAT(load(kMaterial + right).warnings, Each(Not(HasSubstr("against"))));
-  EXPECT_THAT(load(kMaterial + turned + right + turned).warnings,
-              Contains("2 triangles have vertex normals that point against their winding: the normals are reversed"));
+  EXPECT_THAT(
+      load(kMaterial + turned + right + turned).warnings,
+      Contains("2 triangles have vertex normals that point against their winding; promin reverses the normals"));
 }
 
 TEST_F(NffTest, LinesMeanNothing) {

@@ -358,9 +358,9 @@ TEST_F(ObjTest, GlassIsRead) {
 TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   std::vector<std::string> warnings;
   material("illum 4\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) and has a d of 1; it is drawn opaque"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is glass (illum 4) and has a d of 1; promin draws it opaque"));
   material("illum 7\nNi -1\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; 1.5 is used"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; promin uses 1.5"));
   material("map_Ns wood.png\ndisp wood.png\n", &warnings);
   EXPECT_THAT(warnings,
               ElementsAre("material \"m\": some of its texture maps are ignored, the first is map_Ns in m.mtl line 2"));
@@ -449,7 +449,7 @@ TEST_F(ObjTest, AnMtlOfAnotherFolderIsReadFromBesideTheScene) {
                            "file:///x/a.mtl", "\\\\server\\share\\a.mtl # x"}) {
     const LoadedScene scene = load(kSquare + "mtllib " + name + "\nusemtl red\nf 1 2 3\n");
     EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(1, 0, 0)) << name;
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr("are read from the scene's folder"))) << name;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("from the scene's folder"))) << name;
   }
   write("b.mtl", "newmtl blue\nKd 0 0 1\n");
   const LoadedScene two = load(kSquare + "mtllib /x/a.mtl /x/b.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
@@ -472,7 +472,8 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
   write("empty.mtl", "");
   EXPECT_THAT(warnings_of("mtllib empty.mtl"), ElementsAre(HasSubstr("\"empty.mtl\" is ignored: the file is empty")));
   std::filesystem::create_directories(folder_ / "folder.mtl");
-  EXPECT_THAT(warnings_of("mtllib folder.mtl"), ElementsAre(HasSubstr("a file is a folder (\"folder.mtl\")")));
+  EXPECT_THAT(warnings_of("mtllib folder.mtl"),
+              ElementsAre(HasSubstr("the path of a file is a folder (\"folder.mtl\")")));
 }
 
 TEST_F(ObjTest, AMissingMtlIsGrey) {
@@ -688,7 +689,7 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   }
   const LoadedScene beside = load_with("map_Kd C:\\x\\a.png\nmap_Ks /y/a.png\n");
   EXPECT_TRUE(beside.materials.at(0).phong().specular_texture.exists());
-  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from the scene's folder")));
+  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("from the scene's folder")));
   EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not relative")));
 }
 
@@ -807,7 +808,7 @@ TEST_F(ObjHeightsTest, APictureOfNormalsIsTakenForOne) {
   std::vector<std::string> warnings;
   const TextureImage normals = normals_of("map_Bump -bm 0.5 n.png\n", &warnings);
   EXPECT_EQ(normals.texels.at(1), 0xFFFA80A0U);
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map holds normals")));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map contains normals")));
   // Bright grey texels are vectors of length 1 too, and photographs are blue.
   write_picture("grey.png", {200, 200, 200, 201, 201, 201, 199, 199, 199, 202, 202, 202}, {4, 1});
   normals_of("bump grey.png\n", &warnings);
@@ -918,7 +919,7 @@ TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
   write_picture("m.png", {5, 0, 0, 6, 0, 0}, {2, 1});
   const LoadedScene scene = load_with("map_Pr r.png\nmap_Pm m.png\n");
   EXPECT_THAT(scene.warnings,
-              ElementsAre("images \"r.png\" and \"m.png\" differ in size; the smaller one is enlarged"));
+              ElementsAre("images \"r.png\" and \"m.png\" differ in size; promin enlarges the smaller one"));
   const auto& model = std::get<MetallicRoughness>(scene.materials.at(0).model);
   EXPECT_THAT(image_of(scene, model.metallic_roughness_texture).texels,
               ElementsAre(0xFF0501FFU, 0xFF0502FFU, 0xFF0603FFU, 0xFF0604FFU));

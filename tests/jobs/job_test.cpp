@@ -134,8 +134,8 @@ TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
   EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasProblem("job.piece.damaged"));
   EXPECT_THAT(find_missing(job), ElementsAre(0, 1, 2, 3, 5));
   EXPECT_THAT(run(job), ElementsAre(0, 1, 2, 3, 5));
-  EXPECT_THAT(bad_, ElementsAre("0 the piece is damaged", "1 the piece is cut short", "2 the file is empty",
-                                "3 the file holds another piece", "5 the piece is damaged"));
+  EXPECT_THAT(bad_, ElementsAre("0 the piece is damaged", "1 the piece is incomplete", "2 the file is empty",
+                                "3 the file contains another piece", "5 the piece is damaged"));
   EXPECT_EQ(read(job.file_of(0)), whole);
   EXPECT_THAT(find_missing(job), IsEmpty());
 }

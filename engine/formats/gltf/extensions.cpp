@@ -151,7 +151,7 @@ void warn_of_unknown(const Extension& extension, LoadReport& report) {
   } else if (extension.texture_count > 0) {
     report.warn(say_users(extension.texture_count, "texture") + rest + "an alternative image is used, or none");
   } else if (is_required) {
-    report.warn("the file requires " + name + ", which is unknown; the scene is shown without it");
+    report.warn("the file requires " + name + ", which is unknown; promin shows the scene without it");
   } else if (!name.starts_with("KHR_materials_") && !name.starts_with("KHR_texture_")) {
     report.warn("the extension " + name + " is ignored");
   }

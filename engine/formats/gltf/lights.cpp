@@ -97,7 +97,7 @@ std::optional<T> value_of(const json& object, const char* name) {
 /// The picture of a panorama. On nullopt the report holds the reason.
 std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const json& source, LoadReport& report) {
   if (source.contains("cubemap") && !source.contains("equirectangular")) {
-    report.warn("the sky is a cube map, but only equirectangular panoramas are drawn: the scene has no sky");
+    report.warn("the sky is a cube map, but promin draws only equirectangular panoramas; the scene has no sky");
     return std::nullopt;
   }
   const json& textures = elements_of(document.json, "textures");
@@ -105,7 +105,7 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   const auto texture = value_of<size_t>(source, "equirectangular");
   const auto image = texture ? value_of<size_t>(textures[*texture], "source") : std::nullopt;
   if (!image || !images.is_array() || *image >= images.size()) {
-    report.warn("the sky's panorama has no image of a known format: the scene has no sky");
+    report.warn("the sky's panorama has no image of a known format; the scene has no sky");
     return std::nullopt;
   }
   const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
@@ -205,7 +205,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
     }
   } else if (type != "plain") {
     report.warn("the sky is of type " + quote(type) +
-                ", but only plain skies, gradients and panoramas are drawn: the background is black");
+                ", but promin draws only plain skies, gradients and panoramas; the background is black");
   } else if (sky.contains("plain")) {
     color = vec3_of(sky["plain"], "color", dvec3(0.0));
   }

@@ -194,7 +194,7 @@ class SceneReader {
     const auto say = [&](const char* part) { parts += (parts.empty() ? ": " : ", ") + std::string(part); };
     if (!elements_of(document_.json, "animations").empty()) say("animations are ignored");
     if (std::ranges::any_of(document_.meshes, is_morphed)) say("morph targets have their default weights");
-    if (!parts.empty()) report_.warn("the scene stands still" + parts);
+    if (!parts.empty()) report_.warn("the scene does not move" + parts);
   }
 
   static constexpr uint32_t kNoMaterial = std::numeric_limits<uint32_t>::max();

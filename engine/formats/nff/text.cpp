@@ -223,7 +223,7 @@ class NffParser {
     constexpr auto kMostCorners = static_cast<int64_t>(kMaxPolygonCorners);
     if (!count || *count < 0 || *count > kMostCorners) {
       return refuse("nff.corners.count", quote(word) + " is not a number of corners",
-                    "give 3 to " + std::to_string(kMostCorners));
+                    "give a whole number from 3 to " + std::to_string(kMostCorners));
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {

@@ -70,7 +70,7 @@ dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Ca
   const dvec3 direction = eye ? point - *eye : point - center - dvec3(camera.eye);
   if (direction != dvec3(0.0)) return direction;
   throw UsageError(
-      {"camera.point.eye", "--look-at names the position of the eye", "", "give another point, or --direction"});
+      {"camera.point.eye", "--look-at is the position of the eye", "", "give another point, or --direction"});
 }
 
 /// Returns the user's direction; empty if none is given.

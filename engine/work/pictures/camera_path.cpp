@@ -207,7 +207,7 @@ PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
   const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
   if (count > static_cast<double>(kMaxCount)) {
     throw UsageError({"path.frames.many",
-                      fmt::format("a path of {:g} s has {:.0f} pictures at {:g} per second, more than {}",
+                      fmt::format("a path of {:g} s has {:.0f} pictures at {:g} per second, but the limit is {}",
                                   path_.frames.back().time_s, count, fps_, kMaxCount),
                       "", "lower --fps"});
   }

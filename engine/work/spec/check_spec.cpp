@@ -136,7 +136,8 @@ void check_target(const RenderSpec& options) {
   // Each repetition could reach another target, and so another picture.
   if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
   refuse_if("usage.options.contradict", error.space == ErrorSpace::kDisplay && averages,
-            "--error-in display and --exposure average contradict each other: the average is known only after tracing",
+            "--error-in display and --exposure average contradict each other, because the average is known only after "
+            "tracing",
             "give --exposure in stops");
   check_error_target(*error.error_target());
 }
@@ -147,10 +148,10 @@ void check_fixed_samples(const RenderSpec& options) {
   const bool is_debug = shades_for_debugging(options);
   const AovSet named = named_aovs(options);
   refuse_if("usage.options.contradict", (named.has_any(AovSource::kParts) || named.unlit) && is_debug,
-            "--shading and an --aov of light contradict each other: a debug shading computes no light",
+            "--shading and an --aov of light contradict each other, because a debug shading computes no light",
             "remove one of them");
   refuse_if("usage.options.contradict", options.aovs.error && is_debug,
-            "--shading and --aov error contradict each other: a debug shading has no error estimate",
+            "--shading and --aov error contradict each other, because a debug shading has no error estimate",
             "remove one of them");
   for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
                                        {error.max_samples.has_value(), "--max-spp"},
@@ -174,7 +175,7 @@ void check_job(const RenderSpec& options) {
                           {options.tracing.repeat_count > 1, "--repeat"}});
   if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
   refuse_if("usage.options.contradict", job.share && !options.pictures.empty(),
-            "--piece and --output contradict each other: with --piece no picture is written",
+            "--piece and --output contradict each other, because --piece writes no picture",
             "remove one of them; promin merge writes the picture when all pieces are made");
 }
 
@@ -182,10 +183,10 @@ void check_frames(const RenderSpec& options) {
   const bool averages = options.view.look.averages_exposure;
   refuse_if("usage.option.needs", options.skips_existing && options.pictures.empty(),
             "--skip-existing needs the names of the pictures", "give -o as well");
-  refuse_if(
-      "usage.options.contradict", options.skips_existing && averages,
-      "--skip-existing and --exposure average contradict each other: promin takes the average from the first frame",
-      "give --exposure in stops");
+  refuse_if("usage.options.contradict", options.skips_existing && averages,
+            "--skip-existing and --exposure average contradict each other, because promin takes the average from the "
+            "first frame",
+            "give --exposure in stops");
   refuse_if("usage.option.needs", options.frames && !options.path, "--frames needs a camera path",
             "give --path as well");
   refuse_if("usage.option.needs", options.fps && !options.path, "--fps needs a camera path", "give --path as well");
@@ -281,7 +282,7 @@ void check_job_options(const CastSpec& options) {
   refuse_beside("--job",
                 {{options.tracing.stats.has_value(), "--stats"}, {options.tracing.repeat_count > 1, "--repeat"}});
   refuse_if("usage.options.contradict", options.job.share && !options.outputs().empty(),
-            "--piece and --output contradict each other: with --piece no file is written",
+            "--piece and --output contradict each other, because --piece writes no file",
             "remove one of them; promin merge writes the file when all pieces are made");
 }
 

@@ -145,7 +145,7 @@ struct NameOf {
   Enum read(const Json& json) const {
     const auto known = names.subspan(hidden);
     const auto found = json.is_string() ? std::ranges::find(known, json.get<std::string>()) : known.end();
-    if (found == known.end()) refuse_value(fmt::format("{}", fmt::join(known, " or ")), json);
+    if (found == known.end()) refuse_value(list_choices(known), json);
     return static_cast<Enum>(static_cast<size_t>(found - known.begin()) + hidden);
   }
 };
