@@ -59,7 +59,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("\n".join([f"promin-farm: {first}", *rest]), file=sys.stderr)
         return exit_code_of(error)
     except KeyboardInterrupt:
-        print("promin-farm: stopped; finished pieces are kept, promin-farm resume continues", file=sys.stderr)
+        sentence = "the run stopped; finished pieces are kept, and promin-farm resume continues"
+        print(f"promin-farm: {sentence}", file=sys.stderr)
         return 1
     except BrokenPipeError:
         return 1
@@ -69,17 +70,17 @@ def _check_first(words: list[str]) -> None:
     """Raises UsageError where a scene or a job stands in place of the command."""
     first = Path(words[0]) if words else Path()
     if first.suffix.lower() in _SCENES:
-        raise jobs.UsageError(f"{first} is a scene, not a command; type: {_render_words(first)}")
+        raise jobs.UsageError(f"{first} is a scene, not a command; use: {_render_words(first)}")
     if (first / "job.json").is_file():
         raise jobs.UsageError(
-            f"{first} is a job's folder, not a command; type: promin-farm status {first}, or promin-farm resume {first}"
+            f"{first} is a job's folder, not a command; use: promin-farm status {first}, or promin-farm resume {first}"
         )
 
 
 def _check_folder(folder: str) -> None:
     """Raises UsageError for a scene."""
     if Path(folder).is_file():
-        cure = f"; to make a job of it, type: {_render_words(Path(folder))}"
+        cure = f"; to make a job of it, use: {_render_words(Path(folder))}"
         is_scene = Path(folder).suffix.lower() in _SCENES
         raise jobs.UsageError(f"{folder} is a file, not a job's folder{cure if is_scene else ''}")
 
@@ -179,7 +180,7 @@ def _add_run_options(command: argparse.ArgumentParser) -> None:
 def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
     for value, what, name in ((options.output, "output", "-o FILE"), (options.job, "folder for the job", "--job DIR")):
         if not value:
-            raise jobs.UsageError(f"there is no {what}; name one by {name}")
+            raise jobs.UsageError(f"there is no {what}; give one with {name}")
     if options.command == "cast":
         from promin_farm.rays import prepare_rays  # Loading NumPy takes a while.
 
@@ -233,7 +234,7 @@ def _work(options: argparse.Namespace) -> int:
     survey = take_survey(job)
     left = survey.total - len(survey.done)
     if tally.was_stopped and left:
-        print(f"promin-farm: stopped; promin-farm work {job.folder} continues", file=sys.stderr)
+        print(f"promin-farm: the run stopped; promin-farm work {job.folder} continues", file=sys.stderr)
         return 1
     if not options.quiet:
         print(f"{of_pieces(tally.done)} made; {_words_of_left(left, job)}")

@@ -137,7 +137,10 @@ def test_a_pose_is_that_of_promin_render(
 @pytest.mark.parametrize(
     "keywords, said",
     [
-        ({"look_at": (0, 0, 0), "direction": (0, 0, 1)}, "look_at and direction contradict each other; remove one of them"),
+        (
+            {"look_at": (0, 0, 0), "direction": (0, 0, 1)},
+            "look_at and direction contradict each other; remove one of them",
+        ),
         ({"from_": "left", "camera": "wide"}, "from_ and camera contradict each other; remove one of them"),
         ({"fit": 0.5, "camera": "wide"}, "fit and camera contradict each other; remove one of them"),
         ({"from_": "lfet"}, "from_ takes three-quarter, front, .*, not .lfet"),
