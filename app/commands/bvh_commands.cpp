@@ -49,7 +49,7 @@ void add_scene_row(OptionTable& table, BvhOptions& options) {
 }
 
 void add_file_row(OptionTable& table, BvhOptions& options) {
-  table.add_required("FILE.pbvh", "", "BVH file of promin-bvh build",
+  table.add_required("FILE.pbvh", "", "BVH file that promin-bvh build has written",
                      [&](const OptionValues& w) { options.file = w.text(); });
 }
 

@@ -54,7 +54,7 @@ Command add_merge_command(CLI::App& program) {
                               "#### in a name stands for the frame number. You may repeat this option",
                               [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
   table.add("--offsets", "OFFSETS.npy",
-            "For a job of promin cast --all: file to write the indices to at which the hits of each ray begin",
+            "For a job of promin cast --all: file for the indices at which the hits of each ray begin",
             [=](const OptionValues& w) { options->offsets = w.text(); });
   table.add_flag("--quiet", "Print only errors", options->is_quiet);
   return {&command, [options] { merge(*options); }};

@@ -34,8 +34,8 @@ void add_cast_options(CLI::App& command, CastSpec& options) {
                  "option needs --offsets",
                  options.is_all);
   table.add("--offsets", "OFFSETS.npy",
-            "With --all: file to write N + 1 uint64 numbers to. Number i is the index in HITS.npy of the first hit of "
-            "ray i. The last number is the number of hits",
+            "With --all: file for N + 1 uint64 numbers. Number i is the index of the first hit of ray i in HITS.npy. "
+            "The last number is the number of hits",
             [&](const OptionValues& w) { options.offsets = w.text(); });
   add_job_options(table, options.job,
                   fmt::format("With --job: number of pieces to divide the rays into, 1 to {}. Each piece is saved when "

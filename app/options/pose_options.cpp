@@ -46,7 +46,7 @@ void add_pose_options(OptionTable& table, PoseOptions& pose) {
               pose.from = static_cast<Framing>(place - framing_names().begin());
             });
   table.add("--fit", "X",
-            fmt::format("Fraction of the picture's longer side that the scene covers with --from, {} to 1 [{}]",
+            fmt::format("Fraction of the picture that the longer side of the scene covers with --from, {} to 1 [{}]",
                         kMinFit, kDefaultFit),
             [&](const OptionValues& w) { pose.fit = static_cast<float>(w.real(0, double{kMinFit}, 1.0)); });
   const auto add_turn = [&](const char* name, const char* help, double& turn) {

@@ -251,10 +251,10 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add(option_of(#NAME), PLACEHOLDER, HELP,                           \
             [&](const OptionValues& w) { view.NAME = read_number<TYPE>(w, MIN, MAX); });
 #include "work/spec/view_numbers.def"
-  table.add("--shading", "NAME",
-            fmt::format("Property that the picture shows, where full is the light: {} [full]",
-                        fmt::join(debug_view_names(), ", ")),
-            [&](const OptionValues& w) { view.debug_view = read_shading(w); });
+  table.add(
+      "--shading", "NAME",
+      fmt::format("Property that the picture shows: {}. full is the light [full]", fmt::join(debug_view_names(), ", ")),
+      [&](const OptionValues& w) { view.debug_view = read_shading(w); });
   table.add_flag("--no-shadows", "Do not trace shadow rays, so nothing casts a shadow", view.has_no_shadows);
   table.add("--lights-off", "INDICES", "Indices of lights to switch off, counted from 0 and separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
@@ -344,8 +344,8 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   add_scene_argument(table, options.tracing);
   table.add_repeated(
       "-o,--output", "FILE",
-      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit). - writes a PNG to the "
-      "standard output. You may repeat this option [the scene's name with .exr and .png, in the current folder]",
+      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit). The name - stands for a PNG "
+      "on the standard output. You may repeat this option [the scene's name with .exr and .png, in the current folder]",
       [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Replaces -o: print all rays of this pixel as JSON. 0 0 is the top left pixel",
             [&](const OptionValues& w) {

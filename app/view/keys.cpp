@@ -66,12 +66,12 @@ constexpr std::array kKeys = {
 
 constexpr std::array kPointer = {
     PointerBinding{"left drag", "turn the model"},
-    PointerBinding{"right drag", "move the picture (the middle button does this too)"},
+    PointerBinding{"right drag", "move the picture; the middle button does the same"},
     PointerBinding{"Shift-drag", "turn the light"},
     PointerBinding{"wheel", "move nearer or further away"},
     PointerBinding{"double click", "look at that point and orbit it"},
     PointerBinding{"left click", "explain the pixel: its rays, light sources and contributions"},
-    PointerBinding{"right click", "look around without holding a button; again to stop"},
+    PointerBinding{"right click", "look around without a button; a second right click ends this"},
 };
 
 }  // namespace

@@ -417,7 +417,7 @@ class Validation {
     const auto describe = [](const char* kind, uint32_t named, size_t count) {
       return [=] {
         return std::string("the ") + kind + " " + std::to_string(named) +
-               " does not exist, because the number of them is " + std::to_string(count);
+               " does not exist, because the scene has only " + std::to_string(count);
       };
     };
     const bool has_material = check("scene.reference.range", object.material < scene.materials.size(),

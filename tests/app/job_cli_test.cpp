@@ -251,10 +251,10 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   EXPECT_THAT(
       other_samples.err,
       HasSubstr(
-          "the folder belongs to another job: its --spp is not given or has its default value, and is \"2\" now"));
+          "the folder belongs to another job: its --spp is not given or has its default value, but is \"2\" now"));
   expect_done(render({"--job", "fine", "-o", "cut.exr", "--spp", "2"}));
   expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "8"}), 2,
-                 "its --spp is \"2\", and is not given or has its default value now");
+                 "its --spp is \"2\", but is not given or has its default value now");
   const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
   const auto in = [&](const char* space) {
     OptionValues words = refined;
@@ -265,7 +265,7 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   const ProcessResult other_space = in("display");
   EXPECT_EQ(other_space.exit_code, 2);
   EXPECT_THAT(other_space.err,
-              HasSubstr("its --error-in is not given or has its default value, and is \"display\" now"));
+              HasSubstr("its --error-in is not given or has its default value, but is \"display\" now"));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);

@@ -729,10 +729,11 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
   const LoadedScene scene = load(gltf);
   EXPECT_THAT(
       scene.warnings,
-      ElementsAre("image \"bumps\": a file does not exist (\"missing.png\"); materials are drawn without it: put it "
-                  "beside the scene",
-                  "image images[1]: a picture cannot be used: its format is unknown; materials are drawn without it: "
-                  "use another picture"));
+      ElementsAre(
+          "image \"bumps\": a file does not exist (\"missing.png\"); promin draws materials without it; put it "
+          "beside the scene",
+          "image images[1]: a picture cannot be used: its format is unknown; promin draws materials without it; "
+          "use another picture"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
   EXPECT_THAT(message_of([&] { load_scene(folder_ / "scene.gltf", {.is_strict = true}); }),
               testing::AllOf(HasSubstr("a file does not exist"), HasSubstr("format is unknown")));

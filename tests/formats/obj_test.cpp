@@ -660,7 +660,7 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
   const LoadedScene scene = load_with("map_Kd none.png\nmap_Ke broken.png\nmap_Ks ../b.png\nnorm empty.png\n");
   EXPECT_THAT(scene.warnings,
               testing::UnorderedElementsAre(
-                  testing::StartsWith("a file does not exist (\"none.png\"); materials are drawn without it"),
+                  testing::StartsWith("a file does not exist (\"none.png\"); promin draws materials without it"),
                   testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
                   testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); materials"),
                   testing::StartsWith("image \"empty.png\": the file is empty")));

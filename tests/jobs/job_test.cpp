@@ -157,15 +157,15 @@ TEST_F(JobTest, PiecesOfAnotherJobAreForeign) {
 TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   Job::create(job_folder_, make_manifest());
   const std::pair<void (*)(Manifest&), const char*> cases[] = {
-      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", and \"8\" now"},
-      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given or has its default value now"},
+      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", but \"8\" now"},
+      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", but is not given or has its default value now"},
       {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
-       "its --crop is not given or has its default value, and is \"0 0 1 1\" now"},
-      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", and \"2\" now"},
+       "its --crop is not given or has its default value, but is \"0 0 1 1\" now"},
+      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", but \"2\" now"},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
-      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
+      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", but \"b.gltf\" now"},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
-      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, and 4 now"},
+      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, but 4 now"},
       {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is called other now"},
       {[](Manifest& m) { m.kind = "rays"; }, "its kind is \"bytes\""}};
   for (const auto& [change, sentence] : cases) {

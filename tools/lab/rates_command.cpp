@@ -93,7 +93,7 @@ void check_options(const LabOptions& options) {
         {"usage.option.needs", "--rays goes with pictures, which --runs 0 leaves out", "", "give some runs"});
   }
   if (!std::filesystem::is_directory(*options.rays)) {
-    throw RunError({"folder.missing", "there is no such folder", options.rays->string(), "make it first"});
+    throw RunError({"folder.missing", "the folder does not exist", options.rays->string(), "create it first"});
   }
 }
 

@@ -76,7 +76,7 @@ void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_
   world::Scene scene = measure::open_scene(options.scenes.front());
   add_default_lights(scene);
   if (!fs::is_directory(folder))
-    throw RunError({"folder.missing", "there is no such folder", folder.string(), "make it first"});
+    throw RunError({"folder.missing", "the folder does not exist", folder.string(), "create it first"});
   const Session session(options);
   View view = view_of(scene, uvec2(session.side()));
   view.samples_per_pixel = samples;
