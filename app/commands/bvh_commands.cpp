@@ -152,7 +152,7 @@ void verify(const BvhOptions& options) {
   }
   if (faults.count > 0) {
     throw InputError({"bvh.tree.wrong",
-                      fmt::format("the tree is wrong in {} places, first: {}", faults.count, faults.first),
+                      fmt::format("the tree is wrong in {} places, and the first is: {}", faults.count, faults.first),
                       options.file.string(), "build it again with promin-bvh build"});
   }
   if (console.is_quiet()) return;

@@ -29,8 +29,8 @@ void check_driver(const jobs::Job& job, const std::string& driver) {
   const std::string of_pieces = find_driver(job);
   if (of_pieces.empty() || of_pieces == driver) return;
   throw UsageError({"job.device.other",
-                    fmt::format("the job's pieces were made on {}, and the chosen device is {}", of_pieces, driver),
-                    job.folder().string(), "choose the first one by --device, or name another folder"});
+                    fmt::format("the job's pieces were made on {}, but the chosen device is {}", of_pieces, driver),
+                    job.folder().string(), "select the first one with --device, or use another folder"});
 }
 
 /// Refuses a job of another build that gives other bits.

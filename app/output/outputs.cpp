@@ -32,7 +32,7 @@ void check_writable(const fs::path& file) {
   const bool is_new = access(file.c_str(), F_OK) != 0;
   if (!std::ofstream(probe.temporary()) || !(is_new || access(file.c_str(), W_OK) == 0)) {
     throw RunError({"file.write", "the output file cannot be written", file.string(),
-                    "check the permissions or name another folder"});
+                    "check the permissions or use another folder"});
   }
 }
 

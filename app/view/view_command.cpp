@@ -80,10 +80,10 @@ void check_window_options(const WindowOptions& options) {
   check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.replay) check_no_camera(options.view, "--replay");
   if (options.stays_open && !options.replay) {
-    throw UsageError({"usage.option.needs", "--keep-open has no replay to end", "", "give --replay as well"});
+    throw UsageError({"usage.option.needs", "--keep-open needs a flight to replay", "", "give --replay as well"});
   }
   if (options.fps && !options.replay) {
-    throw UsageError({"usage.option.needs", "--fps has no path to play", "", "give --replay as well"});
+    throw UsageError({"usage.option.needs", "--fps needs a camera path to replay", "", "give --replay as well"});
   }
   check_error_target(options.error.target_or(ErrorTarget{}.error));
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);

@@ -57,7 +57,7 @@ std::unique_ptr<PlannedJob> plan_job_of_kind(const std::string& kind, const std:
   }
   if (kind == kRayJob) return plan_job(read_hits(), folder, messages, std::move(rays));
   throw UsageError(
-      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+      {"job.command.unknown", fmt::format("the command \"{}\" cannot be a job", kind), "", "use render or cast"});
 }
 
 std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text, const fs::path& file,

@@ -191,8 +191,8 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
   if (bounds_of(scene).is_empty()) return "";  // what has read it says so
   const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
   return fmt::format(
-      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} in place of any direction looks at its "
-      "middle, and --from three-quarter in place of all other words of the camera shows all of it",
+      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} instead of a direction looks at its "
+      "middle, and --from three-quarter instead of all other options of the camera shows all of it",
       middle.x, middle.y, middle.z);
 }
 
@@ -204,7 +204,7 @@ std::string describe_small_model(const Scene& scene, const ViewOptions& options,
       covered_share(scene, view.camera, static_cast<float>(view.size.x) / static_cast<float>(view.size.y));
   if (share >= kSmall || bounds_of(scene).is_empty()) return "";
   return fmt::format(
-      "the file's camera shows the model on {:.0f} % of the picture's side; --from three-quarter frames it",
+      "the model covers only {:.0f} % of the picture's side in the file's camera; --from three-quarter frames it",
       100.0 * share);
 }
 

@@ -80,8 +80,9 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
   if (!options.camera && !options.pose.any()) return;
   throw UsageError(
       {"usage.options.contradict",
-       fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name), "",
-       "remove one of them"});
+       fmt::format("{} and options of the camera (--camera, --from, --eye, --look-at and others) contradict each other",
+                   name),
+       "", "remove one of them"});
 }
 
 namespace {
