@@ -114,7 +114,7 @@ def main():
     """Prints the table, or holds a file against it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", choices=("lobes", "sheens"))
-    parser.add_argument("--check", metavar="FILE", help="say where this file is another, with exit code 1")
+    parser.add_argument("--check", metavar="FILE", help="print where this file differs; then exit with code 1")
     arguments = parser.parse_args()
     made = lines({"lobes": lobe_shares, "sheens": sheen_shares}[arguments.table])
     if arguments.check is None:

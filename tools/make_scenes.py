@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the scenes in scenes/; run again, it writes the same bytes. With --sphereflake one sphereflake of any size,
-with --fine scenes of more detail than pixels."""
+"""Writes the scenes in scenes/. Each run writes the same bytes. With --sphereflake it writes one sphereflake of any
+size. With --fine it writes scenes that have more detail than pixels."""
 
 import argparse
 import pathlib
@@ -32,14 +32,14 @@ def write_all(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sphereflake", type=int, metavar="LEVEL", help="1 + 9 + ... + 9^LEVEL spheres (4: 7381)")
-    parser.add_argument("--fine", action="store_true", help="textures.gltf and wires.gltf, which need -o FOLDER")
-    parser.add_argument("--endless-ground", action="store_true", help="a plane under the sphereflake, no square")
+    parser.add_argument("--sphereflake", type=int, metavar="LEVEL", help="write 1 + 9 + ... + 9^LEVEL spheres")
+    parser.add_argument("--fine", action="store_true", help="write textures.gltf and wires.gltf; needs -o FOLDER")
+    parser.add_argument("--endless-ground", action="store_true", help="put a plane under the sphereflake, not a square")
     parser.add_argument(
         "-o",
         "--output",
         type=pathlib.Path,
-        help="with --sphereflake the .gltf file, otherwise the folder (default: scenes/ of this repository)",
+        help="folder to write, or .gltf file with --sphereflake (default: scenes/ of this repository)",
     )
     arguments = parser.parse_args()
     if arguments.fine:

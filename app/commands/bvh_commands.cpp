@@ -49,7 +49,7 @@ void add_scene_row(OptionTable& table, BvhOptions& options) {
 }
 
 void add_file_row(OptionTable& table, BvhOptions& options) {
-  table.add_required("FILE.pbvh", "", "BVH file of promin-bvh build",
+  table.add_required("FILE.pbvh", "", "BVH file that promin-bvh build has written",
                      [&](const OptionValues& w) { options.file = w.text(); });
 }
 
@@ -72,7 +72,8 @@ Scene load(const BvhOptions& options, const Console& console) {
 
 void build(const BvhOptions& options) {
   if (lower_case_ending(options.file) != ".pbvh") {
-    throw UsageError({"output.ending", "the output's ending \"" + options.file.extension().string() + "\" is unknown",
+    throw UsageError({"output.ending",
+                      "the output's extension \"" + options.file.extension().string() + "\" is unknown",
                       options.file.string(), "use .pbvh"});
   }
   check_outputs({options.scene}, {options.file}, std::nullopt);
@@ -151,7 +152,7 @@ void verify(const BvhOptions& options) {
   }
   if (faults.count > 0) {
     throw InputError({"bvh.tree.wrong",
-                      fmt::format("the tree is wrong in {} places, first: {}", faults.count, faults.first),
+                      fmt::format("the tree is wrong in {} places, and the first is: {}", faults.count, faults.first),
                       options.file.string(), "build it again with promin-bvh build"});
   }
   if (console.is_quiet()) return;

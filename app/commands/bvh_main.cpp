@@ -5,8 +5,8 @@
 
 int main(int argc, char** argv) {
   using namespace promin::app;
-  return run_program(
-      "promin-bvh",
-      "Builds, describes and checks files of bounding volume hierarchies (BVHs), for promin's option --bvh.",
-      {add_build_command, add_bvh_info_command, add_verify_command}, argc, argv);
+  return run_program("promin-bvh",
+                     "Builds, describes and checks files of bounding volume hierarchies (BVHs). The option --bvh of "
+                     "promin reads them.",
+                     {add_build_command, add_bvh_info_command, add_verify_command}, argc, argv);
 }

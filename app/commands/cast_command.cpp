@@ -65,7 +65,7 @@ struct RayChunks {
 void warn_of_idle_rays(const RayChunks& chunks, const Console& console) {
   if (chunks.idle_count == 0) return;
   console.warn(
-      fmt::format("{} of {} cannot hit anything, the first of them is number {}: a ray needs a direction that is not "
+      fmt::format("{} of {} cannot hit anything; the first of them is number {}; a ray needs a direction that is not "
                   "0, tmin < tmax and no NaN",
                   chunks.idle_count, count_of(chunks.reader.count(), "ray"), chunks.first_idle));
 }
@@ -252,7 +252,7 @@ void cast(const CastSpec& options, bool prints_spec) {
 }  // namespace
 
 Command add_cast_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "cast", "Cast rays from a file at a scene and write their hits");
+  CLI::App& command = add_command(program, "cast", "Cast rays from a file into a scene and write their hits");
   const auto options = std::make_shared<CastSpec>();
   const auto prints_spec = std::make_shared<bool>(false);
   add_spec_option(command, *options);

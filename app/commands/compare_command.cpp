@@ -49,7 +49,7 @@ struct CompareOptions {
 PictureEncoding common_encoding(const CompareOptions& options) {
   const PictureEncoding encoding = encoding_of(options.first);
   if (encoding == encoding_of(options.second)) return encoding;
-  throw InputError({"picture.pair.spaces", "one picture holds linear light, the other holds sRGB values",
+  throw InputError({"picture.pair.spaces", "one picture contains linear light, but the other contains sRGB values",
                     fmt::format("{} and {}", options.first.string(), options.second.string()),
                     "give two .exr or two .png files"});
 }
@@ -160,7 +160,8 @@ void warn_of_idle_limit(const CompareOptions& options, PictureEncoding encoding)
   const std::string meant =
       *options.fail <= kMostCode ? fmt::format("; {0:g} of 255 is --fail {0:g}/255", *options.fail) : "";
   Console(Verbosity::kNormal)
-      .warn(fmt::format("--fail {:g} never fails: the values of these files are 0 to 1{}", *options.fail, meant));
+      .warn(fmt::format("--fail {:g} never fails, because the values of these files are from 0 to 1{}", *options.fail,
+                        meant));
 }
 
 /// Throws DifferenceError if more pixels differ than allowed. `in` names the channel.
@@ -213,31 +214,32 @@ Command add_compare_command(CLI::App& program) {
   CLI::App& command = add_command(program, "compare", "Measure how much two pictures differ");
   const auto options = std::make_shared<CompareOptions>();
   OptionTable table(command);
-  table.add_required("FIRST", "", "A picture: .exr of linear light, .png and others of sRGB",
+  table.add_required("FIRST", "", "A picture: .exr with linear light, .png or another format with sRGB",
                      [=](const OptionValues& words) { options->first = words.text(); });
-  table.add_required(
-      "SECOND", "",
-      "A second picture of the same size and channels; all channels are compared, in an EXR those of all parts",
-      [=](const OptionValues& words) { options->second = words.text(); });
+  table.add_required("SECOND", "",
+                     "A second picture with the same size and channels. All channels are compared, also those in "
+                     "further parts of an EXR",
+                     [=](const OptionValues& words) { options->second = words.text(); });
   table.add("-o,--output", "FILE",
-            "Write a picture of the differences: a .png shows how visible they are (FLIP), from black to white; an "
-            ".exr holds the absolute differences and FLIP as a channel",
+            "Write a picture of the differences. A .png shows how visible they are (FLIP), from black to white. An "
+            ".exr holds the absolute differences, and FLIP as a channel",
             [=](const OptionValues& words) { options->difference = words.text(); });
-  table.add("--fail", "X",
-            "Exit with code 5 if any pixel differs by more than X; values of a PNG are 0 to 1, so X may be 2/255",
-            [=](const OptionValues& words) {
-              const std::optional<double> quotient = words.fraction();
-              options->fail = quotient ? *quotient : words.real(0, 0.0, kMostDifference);
-            });
-  table.add("--fail-percent", "P", "With --fail: percentage of pixels that may differ by more [0]",
+  table.add(
+      "--fail", "X",
+      "Exit with code 5 if any pixel differs by more than X. The values of a PNG are from 0 to 1, so X may be 2/255",
+      [=](const OptionValues& words) {
+        const std::optional<double> quotient = words.fraction();
+        options->fail = quotient ? *quotient : words.real(0, 0.0, kMostDifference);
+      });
+  table.add("--fail-percent", "P", "With --fail: percentage of pixels that may differ by more than X [0]",
             [=](const OptionValues& words) { options->fail_percent = words.real(0, 0.0, 100.0); });
   table.add("--pixels-per-degree", "N",
-            fmt::format("Pixels per degree of the viewer's field of view, for FLIP [{:.4g}: a screen 3840 pixels wide, "
-                        "seen from a distance of its width]",
+            fmt::format("Pixels per degree of the viewer's field of view, for FLIP [{:.4g}, for a screen of 3840 "
+                        "pixels that is seen from a distance of its width]",
                         options->pixels_per_degree),
             [=](const OptionValues& words) { options->pixels_per_degree = words.real(0, 1.0, 1000.0); });
   table.add_flag("--json", "Print JSON", options->prints_json);
-  table.add_flag("--quiet", "Print no figures", options->is_quiet);
+  table.add_flag("--quiet", "Print only errors", options->is_quiet);
   add_examples(command, {{"promin compare before.png after.png", "prints how much they differ"},
                          {"promin compare before.png after.png -o where.png", "shows where they differ"},
                          {"promin compare before.png after.png --fail 2/255 --fail-percent 0.1",

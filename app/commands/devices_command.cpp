@@ -81,9 +81,9 @@ void print_devices(bool is_json) {
 }  // namespace
 
 Command add_devices_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "devices", "List the Vulkan devices and mark the default");
+  CLI::App& command = add_command(program, "devices", "List the Vulkan devices and mark the default device");
   const auto is_json = std::make_shared<bool>(false);
-  OptionTable(command).add_flag("--json", "Print JSON, including the UUIDs that --device takes", *is_json);
+  OptionTable(command).add_flag("--json", "Print JSON, including the UUIDs that --device accepts", *is_json);
   return {&command, [is_json] { print_devices(*is_json); }};
 }
 

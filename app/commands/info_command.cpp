@@ -174,8 +174,9 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
   const std::optional<Problem> halved = warn_of(fit_images(scene.images, scene.textures, kDefaultTextureBytes));
   if (halved) scene.warnings.push_back(message_of(*halved));
   if (scene.cameras.empty() || default_size(scene.cameras.front())) return;
-  scene.warnings.push_back(fmt::format("the camera's aspect ratio of {} gives no sensible width; give --size",
-                                       scene.cameras.front().aspect_ratio));
+  scene.warnings.push_back(
+      fmt::format("the camera's aspect ratio of {} is too extreme to compute the width of the picture; give --size",
+                  scene.cameras.front().aspect_ratio));
 }
 
 /// A scene as it would be rendered, with added lights.
@@ -273,7 +274,8 @@ void print_info(const InfoOptions& options) {
 }  // namespace
 
 Command add_info_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "info", "Print the contents of a scene and which parts of it are modelled");
+  CLI::App& command =
+      add_command(program, "info", "Print the contents of a scene and say which of them promin renders");
   const auto options = std::make_shared<InfoOptions>();
   OptionTable table(command);
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",
@@ -283,7 +285,7 @@ Command add_info_command(CLI::App& program) {
   add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
   table.add_flag("--json", "Print JSON (docs/usage.md, \"Scenes as JSON\")", options->is_json);
-  table.add_flag("--no-texels", "Read only the sizes of images: faster, but damaged images are not found",
+  table.add_flag("--no-texels", "Read only the sizes of images. This is faster but does not find damaged images",
                  options->skips_texels);
   return {&command, [options] { print_info(*options); }};
 }

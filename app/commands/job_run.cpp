@@ -29,8 +29,8 @@ void check_driver(const jobs::Job& job, const std::string& driver) {
   const std::string of_pieces = find_driver(job);
   if (of_pieces.empty() || of_pieces == driver) return;
   throw UsageError({"job.device.other",
-                    fmt::format("the job's pieces were made on {}, and the chosen device is {}", of_pieces, driver),
-                    job.folder().string(), "choose the first one by --device, or name another folder"});
+                    fmt::format("the job's pieces were made on {}, but the chosen device is {}", of_pieces, driver),
+                    job.folder().string(), "select the first one with --device, or use another folder"});
 }
 
 /// Refuses a job of another build that gives other bits.
@@ -48,7 +48,7 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
   if (missing.empty()) return 0;
   const size_t all = job.piece_count();
   if (share.is_all() && missing.size() < all) {
-    console.note(fmt::format("the job continues: {} of {} pieces are there", all - missing.size(), all));
+    console.note(fmt::format("the job continues: {} of {} pieces are complete", all - missing.size(), all));
   }
   // A signal ends the work after the current piece is written, and the program at the end of this function.
   const DeferredSignals while_working;
@@ -79,7 +79,7 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
       return false;
     }
     if (!next.why.empty()) {
-      console.warn(fmt::format("{}: {}; it is made again", job.file_of(next.number).string(), next.why));
+      console.warn(fmt::format("{}: {}; promin makes it again", job.file_of(next.number).string(), next.why));
     }
     at_hand = next;
     return true;

@@ -12,7 +12,8 @@
 int main(int argc, char** argv) {
   using namespace promin::app;
   return run_program(
-      "promin", "Renders glTF, OBJ, PLY, STL and NFF scenes to pictures, and casts rays at them; on any Vulkan device.",
+      "promin",
+      "Renders pictures of glTF, OBJ, PLY, STL and NFF scenes and casts rays into them. It runs on any Vulkan device.",
       {add_render_command, add_merge_command, add_cast_command, add_compare_command, add_info_command,
        add_thumbnail_command, add_contact_sheet_command, add_devices_command},
       argc, argv);

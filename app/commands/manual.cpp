@@ -120,10 +120,10 @@ std::string make_man(const CLI::App& program) {
   page +=
       ".SH EXIT STATUS\n"
       ".TP\n0\nDone.\n"
-      ".TP\n1\nFailed while running: input or output, memory, a lost device.\n"
-      ".TP\n2\nWrong use of the command line.\n"
+      ".TP\n1\nA failure at run time, such as input or output, memory, or a lost device.\n"
+      ".TP\n2\nThe command line is wrong.\n"
       ".TP\n3\nA bad scene, ray or BVH file, or picture.\n"
-      ".TP\n4\nNo usable Vulkan device; for the window also no display.\n"
+      ".TP\n4\nThere is no usable Vulkan device, or no display for the window.\n"
       ".TP\n5\nPictures differ by more than was allowed.\n"
       ".SH ENVIRONMENT\n"
       ".TP\n.B PROMIN_VALIDATION\nRuns under the Vulkan validation layers: core or sync.\n"

@@ -32,8 +32,8 @@ void merge(const MergeOptions& options) {
   if (options.offsets) files.push_back(*options.offsets);
   const jobs::Job job = jobs::Job::open(options.folder);
   if (options.offsets && job.manifest().kind == kPictureJob) {
-    throw UsageError({"job.offsets.none", "--offsets needs a job of rays, and this job is one of pictures",
-                      job.folder().string(), "leave --offsets out"});
+    throw UsageError({"job.offsets.none", "--offsets needs a job of rays, but this is a job of pictures",
+                      job.folder().string(), "remove --offsets"});
   }
   check_job_files(job, files);
   check_outputs({}, files, {});
@@ -44,17 +44,17 @@ void merge(const MergeOptions& options) {
 }  // namespace
 
 Command add_merge_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "merge", "Put the pieces of a job together and write its files");
+  CLI::App& command = add_command(program, "merge", "Combine the pieces of a job and write its files");
   const auto options = std::make_shared<MergeOptions>();
   OptionTable table(command);
-  table.add_required("DIR", "", "Folder of promin render --job or promin cast --job",
+  table.add_required("DIR", "", "Folder that promin render --job or promin cast --job has created",
                      [=](const OptionValues& w) { options->folder = w.text(); });
   table.add_required_repeated("-o,--output", "FILE",
-                              "File to write, repeatable: .exr (linear float) or .png (sRGB, 8 bit) for pictures, with "
-                              "#### for the number of a frame; .npy for rays",
+                              "File to write: .exr (linear float) or .png (sRGB, 8 bit) for pictures, .npy for hits. "
+                              "#### in a name stands for the frame number. You may repeat this option",
                               [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
   table.add("--offsets", "OFFSETS.npy",
-            "For a job of promin cast --all: the file of the indices where the hits of each ray begin",
+            "For a job of promin cast --all: file for the indices at which the hits of each ray begin",
             [=](const OptionValues& w) { options->offsets = w.text(); });
   table.add_flag("--quiet", "Print only errors", options->is_quiet);
   return {&command, [options] { merge(*options); }};

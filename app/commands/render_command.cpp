@@ -85,20 +85,21 @@ void tell_reached(const RunStats& stats, double limit_s, double taken_s, const C
   if (taken_s > kLateShare * limit_s) {
     const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
     console.note(fmt::format("the picture took {:.1f} s, longer than the limit of {:g} s{}", taken_s, limit_s,
-                             is_least ? ": even one sample a pixel takes longer" : ""));
+                             is_least ? ": even one sample per pixel takes longer" : ""));
   }
   const uint32_t samples = stats.view->samples_per_pixel;
   if (!stats.view->error_target && samples < kDefaultSamples) {
     const double sample_s = 1e-3 * stats.median_trace_ms() / samples;
-    console.note(fmt::format("the time sufficed for {} of the usual {} samples a pixel, which take about {:.0f} s",
-                             samples, kDefaultSamples, taken_s + (kDefaultSamples - samples) * sample_s));
+    console.note(
+        fmt::format("the time was enough for {} of the default {} samples per pixel, which take about {:.0f} s",
+                    samples, kDefaultSamples, taken_s + (kDefaultSamples - samples) * sample_s));
   }
   const bool can_refine = !stats.errors.empty() && stats.errors.back().unmet_pixels > 0 &&
                           stats.view->error_target->max_samples < kMaxRefinedSamples;
   if (taken_s < kEarlyShare * limit_s && can_refine) {
     const uint32_t most = stats.view->error_target->max_samples;
     console.note(
-        fmt::format("the picture ended before the limit, because --max-spp allows {} samples a pixel; "
+        fmt::format("the picture was complete before the limit, because --max-spp allows {} samples per pixel; "
                     "--max-spp {} uses more of the time",
                     most, std::min(4 * most, kMaxRefinedSamples)));
   }
@@ -340,7 +341,7 @@ void check_default_names(const std::vector<std::filesystem::path>& pictures, con
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
   if (found == pictures.end()) return;
   throw UsageError({"output.foreign", found->string() + " exists already and promin did not make it from " + scene, "",
-                    "name the file to write by -o"});
+                    "give the file to write with -o"});
 }
 
 /// Throws UsageError if several pictures would be written to the standard output.
@@ -348,7 +349,7 @@ void check_standard_output(const RenderSpec& options) {
   const auto count = std::count(options.pictures.begin(), options.pictures.end(), StandardOutput::kName);
   if (count == 0) return;
   const auto refuse = [](const std::string& what) {
-    throw UsageError({"output.standard.taken", what, "", "name a file"});
+    throw UsageError({"output.standard.taken", what, "", "give a file"});
   };
   if (count > 1) refuse("-o - is given twice");
   if (options.path) refuse("-o - takes one picture, not the frames of --path");

@@ -139,9 +139,10 @@ uvec2 picture_size(const SheetOptions& options) {
 
 void check_sheet_size(const uvec2& size) {
   if (size.x <= kMaxSide && size.y <= kMaxSide) return;
-  throw UsageError({"sheet.size",
-                    fmt::format("the sheet would have {}x{} pixels, more than {} on a side", size.x, size.y, kMaxSide),
-                    "", "give a smaller --size or other --columns"});
+  throw UsageError(
+      {"sheet.size",
+       fmt::format("the sheet would have {}x{} pixels, but a side can have at most {}", size.x, size.y, kMaxSide), "",
+       "give a smaller --size or other --columns"});
 }
 
 void make_sheet(const SheetOptions& options) {
@@ -183,15 +184,15 @@ void make_sheet(const SheetOptions& options) {
 }  // namespace
 
 Command add_thumbnail_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "thumbnail", "Write a thumbnail of a scene, as file managers show it");
+  CLI::App& command = add_command(program, "thumbnail", "Write a thumbnail of a scene, such as file managers show");
   const auto options = std::make_shared<RenderSpec>();
   options->view.size = uvec2(kThumbnailSide);
   options->view.frames_scene = true;
   OptionTable table(command);
   add_scene_argument(table, options->tracing);
-  table.add_required("OUTPUT", "", "Picture to write; a name without an ending gives a PNG",
+  table.add_required("OUTPUT", "", "Picture to write. If the name has no extension, it is a PNG",
                      [=](const OptionValues& w) { options->pictures = {w.text()}; });
-  table.add("SIZE", "", fmt::format("Pixels on a side, 1 to {} [{}]", kMaxThumbnailSide, kThumbnailSide),
+  table.add("SIZE", "", fmt::format("Width and height in pixels, 1 to {} [{}]", kMaxThumbnailSide, kThumbnailSide),
             [=](const OptionValues& w) { options->view.size = uvec2(w.whole(0, 1, kMaxThumbnailSide)); });
   return {&command, [options] { make_thumbnail(*options); }};
 }
@@ -206,14 +207,14 @@ Command add_contact_sheet_command(CLI::App& program) {
                               [=](const OptionValues& w) { options->scenes.assign(w.all().begin(), w.all().end()); });
   table.add_required("-o,--output", "FILE", "Picture to write: .png, .jpg, .webp or .tif",
                      [=](const OptionValues& w) { options->each.pictures = {w.text()}; });
-  table.add("--columns", "N", "Number of pictures per row [the number that makes the sheet about square]",
+  table.add("--columns", "N", "Number of pictures per row [the sheet is approximately square]",
             [=](const OptionValues& w) { options->columns = w.whole(0, 1, kMaxColumns); });
   add_sample_options(table, options->each, fmt::to_string(kDefaultSamples));
   add_view_options(table, options->each.view);
   command.get_option("--size")->description(
       fmt::format("Size of each picture in pixels; 640 alone is a width [{}x{}]", kSheetPicture.x, kSheetPicture.y));
   add_tracing_options(table, options->each.tracing);
-  add_examples(command, {{"promin contact-sheet *.glb -o sheet.png", "shows all models of the folder"},
+  add_examples(command, {{"promin contact-sheet *.glb -o sheet.png", "shows all models in the folder"},
                          {"promin contact-sheet a.glb b.obj -o sheet.png --columns 2 --size 640x480",
                           "shows two larger models side by side"}});
   return {&command, [options] { make_sheet(*options); }};

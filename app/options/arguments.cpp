@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options/arguments.h"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -249,7 +249,7 @@ dvec3 OptionValues::vector(double max) const {
 
 const std::string& OptionValues::choice(std::span<const std::string_view> choices) const {
   if (std::find(choices.begin(), choices.end(), text()) == choices.end()) {
-    refuse(fmt::format("{} takes {}, not \"{}\"", option_, fmt::join(choices, " or "), text()),
+    refuse(fmt::format("{} takes {}, not \"{}\"", option_, list_choices(choices), text()),
            nearest_name(text(), choices));
   }
   return text();

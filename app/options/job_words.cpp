@@ -33,7 +33,7 @@ constexpr SaidElsewhere kSaidElsewhere[] = {{"--output", kMergeSays},
 void check_asks_for_work(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word != "-h" && word != "--help" && word != "--version") continue;
-    throw UsageError({"job.argument.wrong", word + " cannot run as a job", "", "leave it out"});
+    throw UsageError({"job.argument.wrong", word + " cannot be part of a job", "", "remove it"});
   }
 }
 
@@ -43,7 +43,7 @@ void check_is_kept(const CLI::App& command) {
     const auto* const found = std::ranges::find(kSaidElsewhere, option, &SaidElsewhere::option);
     if (found == std::end(kSaidElsewhere)) continue;
     throw UsageError({"job.argument.wrong", option + " is not an argument of a job", "",
-                      "leave it out; " + std::string(found->where)});
+                      "remove it, because " + std::string(found->where)});
   }
 }
 

@@ -13,7 +13,7 @@ void add_strict_option(OptionTable& table, LoadOptions& options) {
 
 void add_root_option(OptionTable& table, LoadOptions& options) {
   table.add("--root", "DIR",
-            "Allow the scene to refer to any file below this folder; links are resolved first [the scene's own folder]",
+            "Allow the scene to name any file below this folder. Links are resolved first [the scene's own folder]",
             [&](const OptionValues& w) {
               if (w.text().empty()) w.refuse("--root takes a folder, not \"\"");
               options.root = w.text();
@@ -22,7 +22,8 @@ void add_root_option(OptionTable& table, LoadOptions& options) {
 
 void add_variant_option(OptionTable& table, LoadOptions& options) {
   table.add("--variant", "NAME",
-            "Use this variant of the scene's materials; `promin info` lists the variants [the file's own materials]",
+            "Use this variant of the scene's materials. `promin info` lists the variants [the materials that the file "
+            "assigns]",
             [&](const OptionValues& w) {
               if (w.text().empty()) w.refuse("--variant takes the name of a variant, not \"\"");
               options.material_variant = w.text();

@@ -27,7 +27,7 @@ dvec3 read_up(const OptionValues& words) {
 /// Adds rows that name the replacement of a former option.
 void add_former_options(OptionTable& table) {
   table.add_hidden("--look", [](const OptionValues& w) {
-    w.refuse("there is no option --look: --look-at X Y Z takes a point to look at, --direction X Y Z a direction");
+    w.refuse("there is no option --look; use --look-at X Y Z for a point, or --direction X Y Z for a direction");
   });
   table.add_hidden("--framing", [](const OptionValues& w) {
     const bool is_known = std::ranges::find(framing_names(), w.text()) != framing_names().end();
@@ -39,37 +39,43 @@ void add_former_options(OptionTable& table) {
 
 void add_pose_options(OptionTable& table, PoseOptions& pose) {
   table.add("--from", fmt::format("{}", fmt::join(framing_names(), "|")),
-            "View the whole scene from this side, even if it has cameras [the scene's camera; without one "
-            "three-quarter, or inside for a scene that surrounds the viewer]",
+            "Show the whole scene from this side and ignore its cameras [the scene's first camera; if it has none, "
+            "three-quarter, or inside if the scene is a room]",
             [&](const OptionValues& w) {
               const auto place = std::ranges::find(framing_names(), w.choice(framing_names()));
               pose.from = static_cast<Framing>(place - framing_names().begin());
             });
-  table.add(
-      "--fit", "X",
-      fmt::format("Part of the picture that the scene covers in a view of --from, {} to 1 [{}]", kMinFit, kDefaultFit),
-      [&](const OptionValues& w) { pose.fit = static_cast<float>(w.real(0, double{kMinFit}, 1.0)); });
+  table.add("--fit", "X",
+            fmt::format("Fraction of the picture that the longer side of the scene covers with --from, {} to 1 [{}]",
+                        kMinFit, kDefaultFit),
+            [&](const OptionValues& w) { pose.fit = static_cast<float>(w.real(0, double{kMinFit}, 1.0)); });
   const auto add_turn = [&](const char* name, const char* help, double& turn) {
     table.add(name, "DEG", help, [&turn](const OptionValues& w) { turn = w.real(0, -kMaxTurnDeg, kMaxTurnDeg); });
   };
-  add_turn("--azimuth", "Orbit the camera around the scene to the right, in degrees [0]", pose.orbit.azimuth_deg);
-  add_turn("--elevation", "Then orbit the camera upwards, in degrees [0]", pose.orbit.elevation_deg);
-  add_turn("--roll", "Then turn the picture clockwise, in degrees [0]", pose.orbit.roll_deg);
-  table.add("--zoom", "X", "Magnify the picture around its middle [1]",
+  add_turn("--azimuth", "Move the camera around the scene to the right by this angle in degrees [0]",
+           pose.orbit.azimuth_deg);
+  add_turn("--elevation", "Then move the camera upwards around the scene by this angle in degrees [0]",
+           pose.orbit.elevation_deg);
+  add_turn("--roll", "Then turn the picture clockwise by this angle in degrees [0]", pose.orbit.roll_deg);
+  table.add("--zoom", "X", "Magnify the picture around its middle by this factor [1]",
             [&](const OptionValues& w) { pose.zoom = w.real(0, kMinZoom, kMaxZoom); });
-  table.add("--eye", "X Y Z", "Position of the eye, in place of the camera's",
+  table.add("--eye", "X Y Z", "Position of the eye; replaces that of the camera",
             [&](const OptionValues& w) { pose.eye = w.vector(kMaxCoordinate); });
-  table.add("--look-at", "X Y Z", "Point to look at [with --eye, in a scene without a camera: the middle of the scene]",
-            [&](const OptionValues& w) { pose.look_at = w.vector(kMaxCoordinate); });
-  table.add("--direction", "X Y Z", "Direction of view, in place of the camera's",
+  table.add(
+      "--look-at", "X Y Z",
+      "Point to look at [the camera's direction; with --eye in a scene without a camera, the middle of the scene]",
+      [&](const OptionValues& w) { pose.look_at = w.vector(kMaxCoordinate); });
+  table.add("--direction", "X Y Z", "Direction of view; replaces that of the camera",
             [&](const OptionValues& w) { pose.direction = w.vector(kMaxCoordinate); });
   table.add("--up", fmt::format("X Y Z|{}", fmt::join(kAxes, "|")),
-            "Direction that points up: in the scene for a view of --from, else in the picture [y; the camera's]",
+            "Direction that points up. With --from it is the upward direction of the scene [y]. Otherwise it is the "
+            "upward direction of the picture [the camera's]",
             [&](const OptionValues& w) { pose.up = read_up(w); });
-  table.add("--fov", "DEG", "Vertical field of view in degrees, in place of the camera's",
+  table.add("--fov", "DEG", "Vertical field of view in degrees; replaces that of the camera",
             [&](const OptionValues& w) { pose.fov_deg = w.real(0, kMinFovDeg, kMaxFovDeg); });
   table.add("--near", "T",
-            "Distance from the eye in scene units up to which nothing is drawn, in place of the camera's",
+            "Distance of the near plane from the eye in scene units; replaces that of the camera. Geometry in front of "
+            "it is not drawn",
             [&](const OptionValues& w) { pose.near = w.real(0, 0.0, kMaxCoordinate); });
   add_former_options(table);
 }

@@ -7,12 +7,14 @@
 namespace promin::app {
 
 void arrange_help(CLI::App& program, CLI::App& render) {
-  add_examples(program, {{"promin model.glb", "writes model.png, and model.exr with linear light"},
-                         {"promin model.glb -o poster.jpg --size 4k", "writes one picture of 3840x2160 pixels"},
-                         {"promin model.glb -o cut.png --alpha", "leaves the background out"},
-                         {"promin model.glb -o layers.exr --aov depth,normal", "adds distances and normals"},
-                         {"promin compare before.png after.png", "prints how much two pictures differ"},
-                         {"promin info model.glb", "lists the contents of a file: cameras, lights, materials"}});
+  add_examples(
+      program,
+      {{"promin model.glb", "writes model.png, and model.exr with linear light"},
+       {"promin model.glb -o poster.jpg --size 4k", "writes one picture of 3840x2160 pixels"},
+       {"promin model.glb -o cut.png --alpha", "makes the background transparent"},
+       {"promin model.glb -o layers.exr --aov depth,normal", "writes distances and normals as additional channels"},
+       {"promin compare before.png after.png", "prints how much two pictures differ"},
+       {"promin info model.glb", "lists the contents of a file, such as cameras, lights and materials"}});
   group_options(
       render,
       {{"Output", {"output", "size", "crop", "alpha", "aov", "depth", "half", "compression", "explain"}},
@@ -30,9 +32,9 @@ void arrange_help(CLI::App& program, CLI::App& render) {
   add_examples(
       render,
       {{"promin render model.glb -o picture.png --size hd --spp 16", "takes 16 samples per pixel at 1280x720"},
-       {"promin render model.glb -o best.png --time-limit 20", "makes the best picture that takes about 20 seconds"},
+       {"promin render model.glb -o best.png --time-limit 20", "renders the best picture that takes about 20 seconds"},
        {"promin render model.glb -o big.exr --job work",
-        "saves its work; the same command continues it after an interruption"}});
+        "saves its work, so the same command continues it after an interruption"}});
 }
 
 }  // namespace promin::app

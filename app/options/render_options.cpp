@@ -70,7 +70,7 @@ PixelWindow read_window(const OptionValues& words) {
   const PixelWindow window = {{words.whole(0, 0, kMaxSide), words.whole(1, 0, kMaxSide)},
                               {words.whole(2, 0, kMaxSide), words.whole(3, 0, kMaxSide)}};
   if (window.lo.x >= window.hi.x || window.lo.y >= window.hi.y) {
-    words.refuse("--crop is empty: it takes X0 < X1 and Y0 < Y1");
+    words.refuse("--crop contains no pixels, because it needs X0 < X1 and Y0 < Y1");
   }
   return window;
 }
@@ -94,8 +94,8 @@ uvec2 read_size(const OptionValues& words) {
   const size_t by = text.find_first_of("xX,*");
   const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
   if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
-    words.refuse(fmt::format("--size takes a size as 640x480, a width or {}, not \"{}\"",
-                             fmt::join(size_names(), " or "), words.text()),
+    words.refuse(fmt::format("--size takes a size such as 640x480, a width, {}, not \"{}\"", list_choices(size_names()),
+                             words.text()),
                  nearest_name(text, size_names()));
   }
   const std::string height = by == std::string::npos ? "" : text.substr(by + 1);
@@ -151,7 +151,7 @@ FrameRange read_frames(const OptionValues& words) {
   const size_t dash = text.find('-');
   const OptionValues ends = words.with({text.substr(0, dash), text.substr(dash == std::string::npos ? 0 : dash + 1)});
   const FrameRange range = {ends.whole(0, 0, kMaxFrame), ends.whole(1, 0, kMaxFrame)};
-  if (range.first > range.last) words.refuse("--frames is empty: it takes A-B with A <= B");
+  if (range.first > range.last) words.refuse("--frames contains no frame, because A-B needs A <= B");
   return range;
 }
 
@@ -190,56 +190,59 @@ Number read_number(const OptionValues& words, Number min, Number max) {
 void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
-            "Light to add to a scene that has none or too little [studio; classic scenes: headlight]",
+            "Light that is added if the scene has no light or no sky [studio; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
   table.add("--background", fmt::format("R G B|COLOR|{}", kEnvironment),
-            "Background colour as it is displayed: white, '#336699' or three numbers from 0 to 1. linear:R,G,B is "
-            "linear light, which exposure and tone mapping change. environment shows the surroundings that light the "
-            "scene [the scene's own background, else a grey gradient; classic scenes: the scene's own]",
+            "Colour of the background in the picture: white, '#336699' or three numbers from 0 to 1. linear:R,G,B is "
+            "linear light, which exposure and tone mapping change. environment shows the sky that lights the scene "
+            "[the background of the file; if it has none, a grey gradient, or black for classic scenes]",
             [&](const OptionValues& w) { look.background = read_background(w); });
-  table.add("--exposure", fmt::format("EV|{}|{}", kAuto, kAverage),
-            "Exposure of PNG files and the window in stops; +1 doubles the brightness. auto is computed from the "
-            "scene's lights, average from the picture itself, on a path from its first one [auto; classic scenes: 0]",
-            [&](const OptionValues& w) {
-              look.exposure_ev.reset();
-              look.averages_exposure = w.text() == kAverage;
-              if (w.text() == kAuto || w.text() == kAverage) return;
-              constexpr std::array kWords = {kAuto, kAverage};
-              look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv, kWords));
-            });
-  table.add("--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
-            "How PNG files and the window compress light that is too bright to display [neutral; classic scenes: none]",
-            [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
-  table.add_flag("--dither", "Add noise of less than one 8-bit step to PNG files and the window, which hides banding",
-                 look.dithers);
   table.add(
-      "--texture-memory", "MIB",
-      fmt::format(
-          "Device memory for textures in MiB, 1 to {}; the largest textures are halved until all of them fit [{}]",
-          kMaxTextureMib, look.texture_memory_mib),
-      [&](const OptionValues& w) { look.texture_memory_mib = w.whole(0, 1, kMaxTextureMib); });
+      "--exposure", fmt::format("EV|{}|{}", kAuto, kAverage),
+      "Exposure of PNG files and the window in stops. +1 doubles the brightness. auto computes it from the scene's "
+      "lights, average from the picture itself or from the first picture of a path [auto; classic scenes: 0]",
+      [&](const OptionValues& w) {
+        look.exposure_ev.reset();
+        look.averages_exposure = w.text() == kAverage;
+        if (w.text() == kAuto || w.text() == kAverage) return;
+        constexpr std::array kWords = {kAuto, kAverage};
+        look.exposure_ev = static_cast<float>(w.real(0, -kMaxExposureEv, kMaxExposureEv, kWords));
+      });
+  table.add(
+      "--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
+      "Curve that compresses light that is too bright for PNG files and the window [neutral; classic scenes: none]",
+      [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
+  table.add_flag(
+      "--dither",
+      "Add noise of less than one 8-bit step to PNG files and the window. It hides bands in smooth gradients",
+      look.dithers);
+  table.add("--texture-memory", "MIB",
+            fmt::format("Device memory for textures in MiB, 1 to {}. The sizes of the largest textures are halved "
+                        "until all of them fit [{}]",
+                        kMaxTextureMib, look.texture_memory_mib),
+            [&](const OptionValues& w) { look.texture_memory_mib = w.whole(0, 1, kMaxTextureMib); });
 }
 
 }  // namespace
 
 void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
-  table.add(
-      "--environment", "FILE",
-      "Equirectangular panorama that surrounds the scene, .hdr or .exr; its middle lies at -Z [the scene's own sky]",
-      [&](const OptionValues& w) { options.panorama = w.text(); });
-  table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, in degrees [0]",
+  table.add("--environment", "FILE",
+            "Equirectangular panorama that surrounds the scene, .hdr or .exr. Its middle is in the direction -Z [the "
+            "scene's own sky]",
+            [&](const OptionValues& w) { options.panorama = w.text(); });
+  table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, by this angle in degrees [0]",
             [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
   table.add("--environment-intensity", "X", "Multiply the sky's radiance by this factor [1]",
             [&](const OptionValues& w) { options.intensity = w.real(0, 0.0, kMaxIntensity); });
   table.add("--light-rotation", "DEG",
-            "Turn the sky and directional lights about +Y, from +Z towards +X, in degrees [0]",
+            "Turn the sky and directional lights about +Y, from +Z towards +X, by this angle in degrees [0]",
             [&](const OptionValues& w) { options.light_rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
 }
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--size", fmt::format("WxH|{}", fmt::join(size_names(), "|")),
-            "Picture size in pixels; 640 alone is a width, and the height follows from the camera's aspect ratio [the "
-            "size that the scene file requests, else height 720]",
+            "Size of the picture in pixels. 640 alone is a width; the height then follows from the camera's aspect "
+            "ratio [the size in the scene file; if it has none, a height of 720]",
             [&](const OptionValues& w) { view.size = read_size(w); });
   table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
             "Filter that weights samples by their distance from the pixel's centre [box]",
@@ -248,13 +251,15 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add(option_of(#NAME), PLACEHOLDER, HELP,                           \
             [&](const OptionValues& w) { view.NAME = read_number<TYPE>(w, MIN, MAX); });
 #include "work/spec/view_numbers.def"
-  table.add("--shading", "NAME", fmt::format("What the picture shows: {} [full]", fmt::join(debug_view_names(), ", ")),
-            [&](const OptionValues& w) { view.debug_view = read_shading(w); });
-  table.add_flag("--no-shadows", "Trace no shadow rays: nothing casts a shadow", view.has_no_shadows);
-  table.add("--lights-off", "INDICES", "Lights to switch off: their indices from 0, separated by commas",
+  table.add(
+      "--shading", "NAME",
+      fmt::format("Property that the picture shows: {}. full is the light [full]", fmt::join(debug_view_names(), ", ")),
+      [&](const OptionValues& w) { view.debug_view = read_shading(w); });
+  table.add_flag("--no-shadows", "Do not trace shadow rays, so nothing casts a shadow", view.has_no_shadows);
+  table.add("--lights-off", "INDICES", "Indices of lights to switch off, counted from 0 and separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
   add_look_options(table, view.look);
-  table.add("--camera", "NAME|INDEX", "Camera of the scene: its name or its index from 0 [0]",
+  table.add("--camera", "NAME|INDEX", "Name of a camera of the scene, or its index, counted from 0 [0]",
             [&](const OptionValues& w) { view.camera = w.text(); });
   add_pose_options(table, view.pose);
   add_environment_options(table, view.environment);
@@ -262,8 +267,8 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
 
 void add_fps_option(OptionTable& table, std::optional<double>& fps) {
   table.add("--fps", "N|stored",
-            fmt::format("Pictures per second of the path, {} to {}; stored renders exactly the frames that are stored "
-                        "[the path's own fps, else stored]",
+            fmt::format("Pictures per second of the path, {} to {}. stored renders exactly the frames in the file [the "
+                        "fps in the file; if it has none, stored]",
                         PathPictures::kMinFps, PathPictures::kMaxFps),
             [&](const OptionValues& w) {
               constexpr std::array<std::string_view, 1> kWords = {"stored"};
@@ -292,8 +297,8 @@ double read_seconds(const OptionValues& words) {
 
 void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
   table.add("--time-limit", "SECONDS",
-            "In place of --spp: make the best picture that can be finished in this time, given as 20, 20s or 2min, and "
-            "print the options that make it again",
+            "Replaces --spp: render the best picture that can be finished in this time, given as 20, 20s or 2min, and "
+            "print the options that reproduce it",
             [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
 }
 
@@ -307,17 +312,18 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
   };
   table.add("--target-error", "E", std::string(target_help),
             [&](const OptionValues& w) { error.target = read_error(w); });
-  table.add("--min-spp", "N",
-            fmt::format("With --target-error: smallest number of samples per pixel, a power of two from {} [{}; for a "
-                        "--target-error of 1/{:g} or more {}]",
-                        kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError, kMinRefinedSamples),
-            [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
+  table.add(
+      "--min-spp", "N",
+      fmt::format("With --target-error: smallest number of samples per pixel, a power of two from {0} [{1}; {0} if "
+                  "--target-error is 1/{2:g} or more]",
+                  kMinRefinedSamples, ErrorTarget{}.min_samples, 1.0F / kCoarseError),
+      [&, read_power](const OptionValues& w) { error.min_samples = read_power(w, "--min-spp"); });
   table.add("--max-spp", "N",
             fmt::format("With --target-error: largest number of samples per pixel, a power of two up to {} [{}]",
                         kMaxRefinedSamples, ErrorTarget{}.max_samples),
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
   table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
-            "With --target-error: measure the error in linear light or as displayed [linear]",
+            "With --target-error: measure the error in linear light or in the displayed picture [linear]",
             [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
 }
 
@@ -325,8 +331,8 @@ void add_sample_options(OptionTable& table, RenderSpec& options, std::string_vie
   table.add("-s,--spp", "N", fmt::format("Samples per pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
             [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
-            fmt::format("In place of --spp: {}, {} or {} samples per pixel, or as many as it takes until displayed "
-                        "colours are off by at most one 8-bit step [normal]",
+            fmt::format("Replaces --spp: {}, {} or {} samples per pixel. best adds samples until the error of "
+                        "displayed colours is at most one 8-bit step [normal]",
                         1, kDefaultSamples, kHighSamples),
             [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
 }
@@ -338,57 +344,58 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   add_scene_argument(table, options.tracing);
   table.add_repeated(
       "-o,--output", "FILE",
-      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit), or - for a PNG on "
-      "the standard output; repeatable [the scene's name with .exr and .png, here]",
+      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit). The name - stands for a PNG "
+      "on the standard output. You may repeat this option [the scene's name with .exr and .png, in the current folder]",
       [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
-  table.add("--explain", "X Y", "In place of -o: print all rays of this pixel as JSON; 0 0 is the top left pixel",
+  table.add("--explain", "X Y", "Replaces -o: print all rays of this pixel as JSON. 0 0 is the top left pixel",
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
   add_sample_options(table, options, fmt::format("{}, with --explain 1", kDefaultSamples));
   add_error_options(
       table, options.error,
-      fmt::format("In place of --spp: take samples until each pixel is off by at most E, {} to 1; white is 1",
-                  least_error()));
+      fmt::format(
+          "Replaces --spp: add samples until the estimated error of each pixel is at most E, {} to 1. White is 1",
+          least_error()));
   add_time_limit_option(table, options.error);
   add_variant_option(table, options.tracing.load);
   add_view_options(table, view);
-  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels with X0 <= x < X1 and Y0 <= y < Y1; row 0 is at the top",
+  table.add("--crop", "X0 Y0 X1 Y1", "Render only the pixels with X0 <= x < X1 and Y0 <= y < Y1. Row 0 is at the top",
             [&](const OptionValues& w) { view.crop = read_window(w); });
 
   table.add("--path", "FILE.json",
-            "Render the frames of a camera path; -o names a file with ####, which stands for the frame number",
+            "Render the frames of a camera path. #### in the name of -o stands for the frame number",
             [&](const OptionValues& w) { options.path = w.text(); });
-  table.add("--frames", "A-B", "With --path: render only frames A to B, both included; the first frame is 0 [all]",
+  table.add("--frames", "A-B", "With --path: render only frames A to B, including B. The first frame is 0 [all]",
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
-  table.add_flag("--skip-existing", "With --path: skip frames whose pictures exist already", options.skips_existing);
+  table.add_flag("--skip-existing", "With --path: skip frames if their pictures exist already", options.skips_existing);
 
-  add_job_options(
-      table, options.job,
-      fmt::format(
-          "With --job: number of bands of rows that each picture is divided into, 1 to {}; each band is saved when it "
-          "is done, so a kill loses at most one [at least {} pieces in all; on a path at least one per frame]",
-          kMaxSide, kUsualPieces),
-      kMaxSide);
+  add_job_options(table, options.job,
+                  fmt::format("With --job: number of bands of rows to divide each picture into, 1 to {}. Each band is "
+                              "saved when it is complete, so at most one is lost if the program is killed [at least {} "
+                              "pieces in all; for a path at least one per frame]",
+                              kMaxSide, kUsualPieces),
+                  kMaxSide);
   table.add(
       "--tiles", "C R",
-      "With --job, in place of --pieces: number of columns and rows of tiles that each picture is divided into",
+      "With --job, replaces --pieces: number of columns and rows of tiles to divide each picture into",
       [&](const OptionValues& w) { options.job.tiles = uvec2(w.whole(0, 1, kMaxSide), w.whole(1, 1, kMaxSide)); });
   table.add("--aov", "NAMES",
-            fmt::format("Further channels of an EXR, separated by commas, from {},{}", fmt::join(aov_names(), ","),
+            fmt::format("Additional channels of an EXR, separated by commas: {},{}", fmt::join(aov_names(), ","),
                         kCryptomatte),
             [&](const OptionValues& w) {
               const bool has_alpha = options.aovs.alpha;
               options.aovs = read_aovs(w);
               options.aovs.alpha |= has_alpha;
             });
-  table.add_flag("--alpha",
-                 "Write an alpha channel, the part of each pixel that the scene covers, and leave the background out",
-                 options.aovs.alpha);
+  table.add_flag(
+      "--alpha",
+      "Write an alpha channel, the fraction of each pixel that the scene covers, and make the background transparent",
+      options.aovs.alpha);
   table.add("--depth", fmt::format("{}", fmt::join(depth_kind_names(), "|")),
-            "What --aov depth measures: ray is the distance from the eye, plane the distance along the direction of "
-            "view [ray]",
+            "Distance that --aov depth writes. ray is the distance from the eye, plane the distance along the "
+            "direction of view [ray]",
             [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, depth_kind_names()); });
   table.add_flag(
       "--half",
@@ -400,7 +407,8 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
               options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
             });
   table.add("--features", "scene|all",
-            "Features to compile into the kernels: those that the scene uses, or all, for measurements [scene]",
+            "Features to compile into the kernels: the features that the scene uses, or all features, for measurements "
+            "[scene]",
             [&](const OptionValues& w) { options.has_all_features = w.choice(kFeatureChoices) == "all"; });
   add_tracing_options(table, options.tracing);
   add_measuring_options(table, options.tracing);

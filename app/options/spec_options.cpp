@@ -24,19 +24,18 @@ bool gives(const CastSpec& spec, const std::string& argument) {
 /// Options are set in the order of their rows, so the others change what this one reads.
 template <typename Spec>
 void add_option(CLI::App& command, Spec& spec) {
-  OptionTable(command).add(
-      "--spec", "FILE.json",
-      "Read the options from a file that --print-spec has written, - for the standard input; further options override "
-      "it, and files in it are relative to its folder",
-      [&](const OptionValues& w) {
-        spec = read_spec<Spec>(w.text());
-        for (CLI::Option* option : command.get_options()) {
-          if (option->get_required() && gives(spec, option->get_name())) option->required(false);
-          if (option->count() > 0 && !option->get_lnames().empty()) {
-            clear_rivals(spec, "--" + option->get_lnames().back());
-          }
-        }
-      });
+  OptionTable(command).add("--spec", "FILE.json",
+                           "Read the options from a file that --print-spec has written, or from the standard input if "
+                           "it is -. Further options override the file. Paths in the file are relative to its folder",
+                           [&](const OptionValues& w) {
+                             spec = read_spec<Spec>(w.text());
+                             for (CLI::Option* option : command.get_options()) {
+                               if (option->get_required() && gives(spec, option->get_name())) option->required(false);
+                               if (option->count() > 0 && !option->get_lnames().empty()) {
+                                 clear_rivals(spec, "--" + option->get_lnames().back());
+                               }
+                             }
+                           });
 }
 
 }  // namespace
@@ -51,7 +50,8 @@ void add_spec_option(CLI::App& command, CastSpec& spec) {
 
 void add_print_spec_option(CLI::App& command, bool& prints_spec) {
   OptionTable(command).add_flag(
-      "--print-spec", "Print all options that describe the result as JSON for --spec, with absolute paths, and exit",
+      "--print-spec",
+      "Print all options that describe the result as JSON, with absolute paths, and exit. --spec reads this output",
       prints_spec);
 }
 

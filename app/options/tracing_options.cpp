@@ -24,10 +24,11 @@ void add_scene_argument(OptionTable& table, TracingOptions& options) {
 void add_device_option(OptionTable& table, std::optional<std::string>& device) {
   table.add(
       "--device", "NAME|INDEX",
-      "Vulkan device: a part of its name, its index, or uuid: with its UUID, as `promin devices --json` prints it",
+      "Vulkan device: a part of its name, its index, or uuid: followed by its UUID. `promin devices --json` "
+      "prints them",
       [&](const OptionValues& w) {
         if (w.text().empty())
-          w.refuse("--device takes a part of a device's name, its index or uuid: and its UUID, not \"\"");
+          w.refuse("--device takes a part of a device's name, its index, or uuid: followed by its UUID, not \"\"");
         device = w.text();
       });
 }
@@ -35,7 +36,7 @@ void add_device_option(OptionTable& table, std::optional<std::string>& device) {
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   add_device_option(table, options.device);
   table.add("--threads", "N",
-            fmt::format("Number of threads on the host and in a CPU device, 1 to {} [one per core]", kMaxThreads),
+            fmt::format("Number of threads of the program and of a CPU device, 1 to {} [one per core]", kMaxThreads),
             [&](const OptionValues& w) { options.threads = w.whole(0, 1, kMaxThreads); });
   table.add("--builder", "NAME",
             fmt::format("BVH builder: {} [{}]", fmt::join(builder_names(), ", "), RendererOptions{}.builder),

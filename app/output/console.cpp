@@ -26,7 +26,8 @@ double cpu_seconds() {
 
 Verbosity verbosity_of(bool is_quiet, bool is_verbose) {
   if (is_quiet && is_verbose) {
-    throw UsageError({"usage.options.contradict", "--quiet and --verbose contradict each other", "", "leave one out"});
+    throw UsageError(
+        {"usage.options.contradict", "--quiet and --verbose contradict each other", "", "remove one of them"});
   }
   if (is_quiet) return Verbosity::kQuiet;
   return is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;

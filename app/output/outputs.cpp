@@ -32,7 +32,7 @@ void check_writable(const fs::path& file) {
   const bool is_new = access(file.c_str(), F_OK) != 0;
   if (!std::ofstream(probe.temporary()) || !(is_new || access(file.c_str(), W_OK) == 0)) {
     throw RunError({"file.write", "the output file cannot be written", file.string(),
-                    "check the permissions or name another folder"});
+                    "check the permissions or use another folder"});
   }
 }
 
@@ -78,7 +78,7 @@ void check_overwrites(const std::vector<fs::path>& inputs, const std::vector<fs:
   for (const fs::path& input : inputs) read.insert(resolve(input));
   const auto found = std::ranges::find_if(files, [&](const fs::path& file) { return read.contains(resolve(file)); });
   if (found == files.end()) return;
-  throw UsageError({"output.input", "the output would overwrite an input", found->string(), "name another file"});
+  throw UsageError({"output.input", "the output would overwrite an input", found->string(), "use another file"});
 }
 
 void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs,
@@ -88,7 +88,7 @@ void check_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::pa
   std::set<fs::path> written;
   for (const fs::path& file : files) {
     if (!written.insert(resolve(file)).second) {
-      throw UsageError({"output.twice", "the same output file is named twice", file.string(), "name different files"});
+      throw UsageError({"output.twice", "the same output file is named twice", file.string(), "use different files"});
     }
   }
   const DeferredSignals while_probing;

@@ -77,7 +77,7 @@ Problem explain(const std::system_error& error) {
   std::error_code no_folder;
   static_cast<void>(std::filesystem::current_path(no_folder));
   if (no_folder == std::errc::no_such_file_or_directory) {
-    return {"folder.lost", "the current folder no longer exists", "", "change to a folder that exists"};
+    return {"folder.lost", "the current folder no longer exists", "", "change to an existing folder"};
   }
   if (error.code() == std::errc::resource_unavailable_try_again) return explain_no_threads();
   const auto* file_error = dynamic_cast<const std::filesystem::filesystem_error*>(&error);

@@ -26,28 +26,28 @@ constexpr Press debug_view(int number) {
 
 // A row without a text is described by the row above it.
 constexpr std::array kKeys = {
-    KeyBinding{GLFW_KEY_W, "W, S", "fly forward and backward; when orbiting, move nearer and away", Hold::kAhead},
+    KeyBinding{GLFW_KEY_W, "W, S", "fly forward and backward; in an orbit, move nearer and away", Hold::kAhead},
     KeyBinding{GLFW_KEY_S, "", "", Hold::kBack},
-    KeyBinding{GLFW_KEY_A, "A, D", "left and right", Hold::kLeft},
+    KeyBinding{GLFW_KEY_A, "A, D", "fly left and right", Hold::kLeft},
     KeyBinding{GLFW_KEY_D, "", "", Hold::kRight},
-    KeyBinding{GLFW_KEY_E, "E, Q", "up and down", Hold::kUp},
+    KeyBinding{GLFW_KEY_E, "E, Q", "fly up and down", Hold::kUp},
     KeyBinding{GLFW_KEY_Q, "", "", Hold::kDown},
     KeyBinding{GLFW_KEY_Z, "Z, X", "roll anticlockwise and clockwise", Hold::kRollLeft},
     KeyBinding{GLFW_KEY_X, "", "", Hold::kRollRight},
-    KeyBinding{GLFW_KEY_LEFT_SHIFT, "Shift, Ctrl", "four times as fast, a quarter as fast", Hold::kFast},
+    KeyBinding{GLFW_KEY_LEFT_SHIFT, "Shift, Ctrl", "fly four times as fast, or a quarter as fast", Hold::kFast},
     KeyBinding{GLFW_KEY_RIGHT_SHIFT, "", "", Hold::kFast},
     KeyBinding{GLFW_KEY_LEFT_CONTROL, "", "", Hold::kSlow},
     KeyBinding{GLFW_KEY_RIGHT_CONTROL, "", "", Hold::kSlow},
     KeyBinding{GLFW_KEY_O, "O", "orbit the point in the middle, or return to flying", {}, Press::kOrbit},
     KeyBinding{GLFW_KEY_R, "R", "reset the camera", {}, Press::kReset},
     KeyBinding{GLFW_KEY_F, "F", "show the whole model", {}, Press::kFrame},
-    KeyBinding{GLFW_KEY_1, "1, 3, 7", "view from the front, the right, the top", {}, Press::kFront},
+    KeyBinding{GLFW_KEY_1, "1, 3, 7", "view from the front, the right or the top", {}, Press::kFront},
     KeyBinding{GLFW_KEY_3, "", "", {}, Press::kRight},
     KeyBinding{GLFW_KEY_7, "", "", {}, Press::kTop},
     KeyBinding{GLFW_KEY_KP_1, "", "", {}, Press::kFront},
     KeyBinding{GLFW_KEY_KP_3, "", "", {}, Press::kRight},
     KeyBinding{GLFW_KEY_KP_7, "", "", {}, Press::kTop},
-    KeyBinding{GLFW_KEY_PERIOD, ". and ,", "next or previous camera of the scene", {}, Press::kNextCamera},
+    KeyBinding{GLFW_KEY_PERIOD, ". and ,", "select the next or previous camera of the scene", {}, Press::kNextCamera},
     KeyBinding{GLFW_KEY_COMMA, "", "", {}, Press::kPreviousCamera},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
     KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
@@ -58,7 +58,7 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_P, "P", "pause refinement or replay", {}, Press::kPause},
     KeyBinding{GLFW_KEY_C, "C", "print the command that renders this view", {}, Press::kPrintCommand},
     KeyBinding{GLFW_KEY_F12, "F12", "write promin-NNNN.exr and .png", {}, Press::kScreenshot},
-    KeyBinding{GLFW_KEY_F11, "F11", "full screen", {}, Press::kFullscreen},
+    KeyBinding{GLFW_KEY_F11, "F11", "toggle full screen", {}, Press::kFullscreen},
     KeyBinding{GLFW_KEY_TAB, "Tab", "hide or show the panel", {}, Press::kOverlay},
     KeyBinding{GLFW_KEY_H, "H", "show this help", {}, Press::kHelp},
     KeyBinding{GLFW_KEY_ESCAPE, "Esc", "quit", {}, Press::kQuit},
@@ -66,12 +66,12 @@ constexpr std::array kKeys = {
 
 constexpr std::array kPointer = {
     PointerBinding{"left drag", "turn the model"},
-    PointerBinding{"right drag", "move the picture (the middle button does this too)"},
+    PointerBinding{"right drag", "move the picture; the middle button does the same"},
     PointerBinding{"Shift-drag", "turn the light"},
     PointerBinding{"wheel", "move nearer or further away"},
     PointerBinding{"double click", "look at that point and orbit it"},
     PointerBinding{"left click", "explain the pixel: its rays, light sources and contributions"},
-    PointerBinding{"right click", "look around without holding a button; again to stop"},
+    PointerBinding{"right click", "look around without a button; a second right click ends this"},
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
   using namespace promin::app;
-  return run_program("promin-view", "Shows a scene in a window, ray traced while you fly through it. H lists the keys.",
+  return run_program("promin-view",
+                     "Shows a ray-traced scene in a window and lets you move through it. The key H lists all keys.",
                      {add_view_command}, argc, argv);
 }

@@ -49,27 +49,28 @@ void add_window_options(CLI::App& program, WindowOptions& options) {
   add_variant_option(table, options.tracing.load);
   add_view_options(table, options.view);
   add_error_options(table, options.error,
-                    fmt::format("A picture at rest takes samples until each pixel is off by at most E, {} to 1, "
-                                "where 1 is white [{:g}]",
+                    fmt::format("While the view does not change, add samples until the estimated error of each pixel "
+                                "is at most E, {} to 1. White is 1 [{:g}]",
                                 least_error(), ErrorTarget{}.error));
   table.add("--target-ms", "T",
-            fmt::format("Time of a frame to keep to while moving, {} to {} [a GPU: the display's; a CPU device: {}]",
+            fmt::format("Target time of a frame in milliseconds while the view moves, {} to {} [on a GPU the display's "
+                        "refresh interval, on a CPU device {}]",
                         kMinTargetMs, kMaxTargetMs, ViewerStart::kCpuTargetMs),
             [&](const OptionValues& w) { options.target_ms = w.real(0, kMinTargetMs, kMaxTargetMs); });
   table.add("--scale", "S",
-            fmt::format("Pixels of a moving picture for one of the window on a side, {} to 1 [as the target allows]",
+            fmt::format("Ratio of a moving picture's sides to those of the window, {} to 1 [chosen for --target-ms]",
                         kMinScale),
             [&](const OptionValues& w) { options.scale = w.real(0, kMinScale, 1.0); });
   table.add("--present-mode", "MODE",
-            fmt::format("How frames go to the display: {}; fifo where it has no other [fifo]",
+            fmt::format("Vulkan present mode: {}. fifo is used if the display does not support the mode [fifo]",
                         fmt::join(present_mode_names(), ", ")),
             [&](const OptionValues& w) { options.present_mode = w.choice(present_mode_names()); });
-  table.add("--record", "FILE.json", "Write the camera's flight, a camera path, when the window closes",
+  table.add("--record", "FILE.json", "Write the camera's flight as a camera path when the window closes",
             [&](const OptionValues& w) { options.record = w.text(); });
-  table.add("--replay", "FILE.json", "Play a camera path, print what its frames took, and close",
+  table.add("--replay", "FILE.json", "Play a camera path, print the times of its frames, and close the window",
             [&](const OptionValues& w) { options.replay = w.text(); });
   add_fps_option(table, options.fps);
-  table.add_flag("--keep-open", "After --replay let the user fly on", options.stays_open);
+  table.add_flag("--keep-open", "Keep the window open after --replay", options.stays_open);
   add_tracing_options(table, options.tracing);
 }
 
@@ -79,10 +80,10 @@ void check_window_options(const WindowOptions& options) {
   check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.replay) check_no_camera(options.view, "--replay");
   if (options.stays_open && !options.replay) {
-    throw UsageError({"usage.option.needs", "--keep-open has no replay to end", "", "give --replay as well"});
+    throw UsageError({"usage.option.needs", "--keep-open needs a flight to replay", "", "give --replay as well"});
   }
   if (options.fps && !options.replay) {
-    throw UsageError({"usage.option.needs", "--fps has no path to play", "", "give --replay as well"});
+    throw UsageError({"usage.option.needs", "--fps needs a camera path to replay", "", "give --replay as well"});
   }
   check_error_target(options.error.target_or(ErrorTarget{}.error));
   std::vector<std::filesystem::path> inputs = input_files(options.tracing);

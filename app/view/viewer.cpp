@@ -64,8 +64,8 @@ Viewer::Viewer(Window& window, std::shared_ptr<const gpu::Device> device, const 
       display_(*device_, swapchain_),
       frames_(device_, swapchain_) {
   if (start_.present_mode && *start_.present_mode != swapchain_.present_mode()) {
-    console_.warn(
-        fmt::format("the window has no present mode {}; {} is used", *start_.present_mode, swapchain_.present_mode()));
+    console_.warn(fmt::format("the display does not support the present mode {}; promin uses {}", *start_.present_mode,
+                              swapchain_.present_mode()));
   }
   switches_.scene = start_.choice;
   switches_.scale = start_.scale;

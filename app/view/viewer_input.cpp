@@ -167,10 +167,11 @@ View Viewer::view_of_middle() const {
 void Viewer::print_command() {
   const View view = reproducible_view();
   if (!can_describe(described_scene(view), view)) {
-    return report_failure(fmt::format(
-        "no command of promin render renders this view: no option sets the half height {:g} of an orthographic camera, "
-        "and no camera of the scene has it; record the flight and use promin render --path",
-        view.camera.ymag));
+    return report_failure(
+        fmt::format("no command of promin render renders this view, because no option sets the half height {:g} of an "
+                    "orthographic camera, "
+                    "and no camera of the scene has it; record the flight and use promin render --path",
+                    view.camera.ymag));
   }
   fmt::print("{}\n", describe_command(described_scene(view), view));
   std::fflush(stdout);

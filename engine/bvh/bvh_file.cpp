@@ -115,8 +115,8 @@ uint64_t hash_file(Header header, std::span<const std::byte> nodes, std::span<co
 
 Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
   if (std::memcmp(bytes.data(), kMagic.data(), std::min(bytes.size(), kMagic.size())) != 0) {
-    throw InputError({"bvh.file.kind", "the file is not a BVH file", file.string(),
-                      "name a file that promin-bvh build has written"});
+    throw InputError(
+        {"bvh.file.kind", "the file is not a BVH file", file.string(), "use a file that promin-bvh build has written"});
   }
   if (bytes.size() < sizeof(Header)) refuse("bvh.file.short", file, "the BVH file ends within its header");
   Header header;
@@ -266,7 +266,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   const auto nodes = bytes.subspan(sizeof(Header), node_bytes);
   const auto references = bytes.subspan(sizeof(Header) + node_bytes);
   if (hash_file(header, nodes, references) != header.checksum) {
-    refuse("bvh.file.damaged", file, "the BVH file is damaged: its checksum does not match");
+    refuse("bvh.file.damaged", file, "the BVH file is damaged, because its checksum does not match its contents");
   }
   // Both are aligned: the mapping begins at a page, the nodes 128 bytes behind.
   tree_.nodes = {reinterpret_cast<const Node*>(nodes.data()), header.node_count};
@@ -290,7 +290,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
 
 void BvhFile::check_scene(uint64_t geometry_hash, size_t bounded_count) const {
   if (geometry_hash != tree_.geometry_hash || bounded_count != tree_.primitive_count) {
-    refuse("bvh.file.stale", file_, "the BVH file is stale: it was built from other geometry than the scene's");
+    refuse("bvh.file.stale", file_, "the BVH file does not belong to this scene, because its geometry differs");
   }
 }
 

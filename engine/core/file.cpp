@@ -35,8 +35,7 @@ void refuse_lost_folder(const fs::path& file) {
   if (file.is_absolute()) return;
   static_cast<void>(fs::current_path(error));
   if (error != std::errc::no_such_file_or_directory) return;
-  throw RunError(
-      {"folder.lost", "the current folder no longer exists", file.string(), "change to a folder that exists"});
+  throw RunError({"folder.lost", "the current folder no longer exists", file.string(), "change to an existing folder"});
 }
 
 fs::file_status find_input(const fs::path& file) {
@@ -63,11 +62,11 @@ std::optional<FileStamp> stamp_of(const fs::path& file) {
 std::vector<std::byte> read_file(const fs::path& file, uint64_t most_bytes) {
   const fs::file_status status = find_input(file);
   if (fs::is_directory(status))
-    throw InputError({"file.folder", "this is a folder, not a file", file.string(), "name a file in it"});
+    throw InputError({"file.folder", "this is a folder, not a file", file.string(), "give a file in it"});
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   if (!stream) throw InputError({"file.open", "the file cannot be opened", file.string(), "check its permissions"});
   const std::streamoff size = stream.tellg();
-  if (size < 0) throw InputError({"file.kind", "the file cannot be read", file.string(), "name a regular file"});
+  if (size < 0) throw InputError({"file.kind", "the file cannot be read", file.string(), "use a regular file"});
   if (size == 0) throw InputError({"file.empty", "the file is empty", file.string(), "export it again"});
   std::vector<std::byte> bytes(std::min(static_cast<uint64_t>(size), most_bytes));
   stream.seekg(0);
@@ -183,11 +182,11 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
                     "create " + folder.string()});
   }
   if (fs::is_directory(target_, error)) {
-    throw RunError({"output.kind", "the output file is a folder", target_.string(), "name a file"});
+    throw RunError({"output.kind", "the output file is a folder", target_.string(), "give a file"});
   }
   // For the root user rename() would even replace a device by a file.
   if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
-    throw RunError({"output.kind", "the output file is a device or a pipe", target_.string(), "name a file"});
+    throw RunError({"output.kind", "the output file is a device or a pipe", target_.string(), "give a file"});
   }
   for (int writer = 1; temporary_.empty() || !live_files().add(temporary_); ++writer) {
     temporary_ = name_temporary(folder, target_, writer);

@@ -15,7 +15,7 @@ namespace promin {
 MappedFile::MappedFile(const std::filesystem::path& file) {
   // The status is read before the file is opened, because opening a pipe would wait for a writer.
   if (!std::filesystem::is_regular_file(find_input(file))) {
-    throw InputError({"file.kind", "the file is not a regular file", file.string(), "name a regular file"});
+    throw InputError({"file.kind", "the file is not a regular file", file.string(), "use a regular file"});
   }
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};

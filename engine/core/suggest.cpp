@@ -56,4 +56,13 @@ std::string suggest_name(std::string_view typed, std::span<const std::string_vie
   return text;
 }
 
+std::string list_choices(std::span<const std::string_view> names) {
+  std::string list;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list.append(i + 1 == names.size() ? " or " : ", ");
+    list.append(names[i]);
+  }
+  return list;
+}
+
 }  // namespace promin

@@ -15,4 +15,7 @@ std::string_view nearest_name(std::string_view typed, std::span<const std::strin
 /// The cure for an unknown name: `did you mean "sah"? Known: sah, median`, or `known: sah, median` where none is near.
 std::string suggest_name(std::string_view typed, std::span<const std::string_view> known);
 
+/// Lists the names for a sentence: "sah, median or spatial".
+std::string list_choices(std::span<const std::string_view> names);
+
 }  // namespace promin

@@ -249,7 +249,7 @@ void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const
                    const char* cure, Setting setting) {
   if (count <= most) return;
   throw RunError({"scene.size.limit", who + (" " + std::to_string(count)) + " " + what, scene.file.string(),
-                  "use fewer: promin holds at most " + std::to_string(most) + cure, setting});
+                  "use fewer, because promin supports at most " + std::to_string(most) + cure, setting});
 }
 
 }  // namespace promin

@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::string_view kUnpack = "unpack it and name the scene's file";
+constexpr std::string_view kUnpack = "unpack it and give the scene's file";
 constexpr std::string_view kBlender = "open it in Blender and export glTF";
 constexpr std::string_view kCad = "open it in FreeCAD and export glTF or STL";
 constexpr std::string_view kPoints = "make a mesh of its points (by CloudCompare, say) and export PLY";

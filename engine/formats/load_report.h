@@ -33,7 +33,7 @@ struct Fault {
   std::string place = {};
   /// The cure for the author of the file.
   std::string cure = {};
-  /// The repair that the loader makes, as a sentence: "the face is left out".
+  /// The repair that the loader makes, as a sentence: "promin omits the face".
   std::string repair = {};
 };
 
@@ -67,7 +67,7 @@ class LoadReport {
   /// refuse it.
   void warn(const Fault& fault);
   /// Warns once for all faults of a kind, with the place of the first and the number of the others: "line 12: a face
-  /// has fewer than 3 corners, and 11 more; the face is left out". A strict report refuses each fault.
+  /// has fewer than 3 corners, and 11 more; promin omits the face". A strict report refuses each fault.
   void repair(const Fault& fault);
 
   /// Records that a visible part of the scene cannot be drawn.

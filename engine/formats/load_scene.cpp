@@ -53,7 +53,8 @@ void warn_of_tiny_meshes(const VertexBounds& bounds, Scene& scene) {
     if (primitive_count(scene, object) == 0) continue;
     const bool is_mesh = std::holds_alternative<Mesh>(scene.geometries[object.geometry]);
     if (!is_mesh || max_component(bounds.of_objects[i].extent()) >= kSmallestMesh) continue;
-    scene.warnings.push_back("object " + std::to_string(i) + " is smaller than 1e-18: fp32 cannot show its triangles");
+    scene.warnings.push_back("object " + std::to_string(i) +
+                             " is smaller than 1e-18, so fp32 cannot represent its triangles");
   }
 }
 
@@ -71,8 +72,8 @@ void warn_of_turned_normals(Scene& scene) {
   if (count == 0) return;
   scene.warnings.push_back(
       std::to_string(count) +
-      (count == 1 ? " triangle has vertex normals that point against its winding: the normals are reversed"
-                  : " triangles have vertex normals that point against their winding: the normals are reversed"));
+      (count == 1 ? " triangle has vertex normals that point against its winding; promin reverses the normals"
+                  : " triangles have vertex normals that point against their winding; promin reverses the normals"));
 }
 
 std::vector<bool> find_shown_materials(const Scene& scene) {
@@ -117,7 +118,7 @@ void warn_of_rough_glass(Scene& scene) {
   const std::string other = count == 1 ? "" : " and " + count_of(count - 1, "other") + " like it";
   scene.warnings.push_back("material " + (name.empty() ? std::to_string(first) : quote(name)) + other +
                            (count == 1 ? " is" : " are") +
-                           " rough glass: only a sky is blurred through it, and objects look sharp");
+                           " rough glass, which blurs only the sky; objects behind it look sharp");
 }
 
 /// Warns of geometry outside the view of a camera that frames the scene.
@@ -153,7 +154,7 @@ const SceneFormat* find_by_ending(const std::filesystem::path& file) {
 std::string name_endings() {
   std::string known;
   for (const SceneFormat& format : kFormats) known.append(known.empty() ? "" : ", ").append(format.ending);
-  return "a file that ends in " + known;
+  return "a file with one of the extensions " + known;
 }
 
 /// Throws InputError where this is a folder; it names the first scenes in it.
@@ -169,7 +170,7 @@ void refuse_folder(const std::filesystem::path& file) {
   std::string names;
   for (const std::string& name : scenes) names.append(names.empty() ? "it holds " : " and ").append(name);
   throw InputError({"file.folder", "the scene is a folder, not a file", file.string(),
-                    names.empty() ? "name " + name_endings() : names + "; name a file"});
+                    names.empty() ? "name " + name_endings() : names + "; give a file"});
 }
 
 const SceneFormat& find_format(const std::filesystem::path& file) {
@@ -179,8 +180,8 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
   const std::string what = "the scene format " + quote(ending) + " is unknown";
   const FileKind kind = find_file_kind(file);
   if (kind.name.empty() && is_writable_format(file)) {
-    throw InputError(
-        {"scene.file.picture", "a " + ending + " is a picture, not a scene", file.string(), "name " + name_endings()});
+    throw InputError({"scene.file.picture", "a " + ending + " file is a picture, not a scene", file.string(),
+                      "use " + name_endings()});
   }
   if (kind.name.empty()) throw InputError({"scene.file.format", what, file.string(), "use " + name_endings()});
   throw InputError({"scene.file.ending", what + ", and the file is " + kind.name, file.string(), kind.cure});
@@ -211,7 +212,7 @@ void check_root(const std::filesystem::path& root) {
   std::error_code error;
   if (root.empty() || is_directory(root, error)) return;
   throw UsageError(
-      {"scene.root.folder", "the root of a scene's files is not a folder", root.string(), "name a folder"});
+      {"scene.root.folder", "the path of --root is not a folder", root.string(), "give an existing folder"});
 }
 
 Scene load_by_format(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
@@ -219,12 +220,12 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   check_root(options.root);
   if (!options.material_variant.empty() && !format.has_variants) {
     throw UsageError({"scene.variant.unknown",
-                      "files that end in " + std::string(format.ending) + " have no material variants", file.string(),
-                      "leave the variant out"});
+                      "files with the extension " + std::string(format.ending) + " have no material variants",
+                      file.string(), "remove the variant"});
   }
   // Reading a pipe could wait forever.
   if (!is_regular_file(find_input(file))) {
-    throw InputError({"file.kind", "the scene is not a regular file", file.string(), "name the scene's file"});
+    throw InputError({"file.kind", "the scene is not a regular file", file.string(), "give the scene's file"});
   }
   try {
     Scene scene = format.load(options, report);

@@ -74,7 +74,7 @@ std::string decode(PictureSource& source) {
 void report_problem(const PictureSource& source, LoadReport& report) {
   Fault fault = *source.problem;
   if (!fault.value.starts_with(source.title)) fault.place = "image " + source.title;
-  fault.repair = "materials are drawn without it" + (fault.cure.empty() ? "" : ": " + fault.cure);
+  fault.repair = "promin draws materials without it" + (fault.cure.empty() ? "" : "; " + fault.cure);
   source.is_file_at_fault ? report.repair(fault) : report.warn(fault);
 }
 

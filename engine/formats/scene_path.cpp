@@ -73,16 +73,16 @@ std::string suggest_path(const fs::path& folder, const fs::path& missing) {
 }
 
 constexpr const char* kStayInside =
-    "keep the file in the scene's folder, or name a folder that holds it as the root (--root DIR)";
+    "move the file to the scene's folder, or use --root DIR to allow a folder that contains it";
 
 /// Returns the reason why a name cannot be the path of a scene's file; empty if it can.
 std::string find_fault(const std::string& name, const fs::path& path, const fs::path& folder, const fs::path& root) {
-  if (has_scheme(name)) return "a file's name is not a relative path";
-  if (path.is_absolute() && root.empty()) return "a file's name is an absolute path";
+  if (has_scheme(name)) return "the path of a file is not relative";
+  if (path.is_absolute() && root.empty()) return "the path of a file is absolute";
   const fs::path file = folder / path;
   if (lies_in(folder, file) || (!root.empty() && lies_in(root, file))) return "";
   const bool is_through_link = !path.is_absolute() && *path.begin() != fs::path("..");
-  return std::string("a file's name leaves the scene's folder") + (root.empty() ? "" : " and the root") +
+  return std::string("the path of a file leads out of the scene's folder") + (root.empty() ? "" : " and the root") +
          (is_through_link ? " through a link" : "");
 }
 
@@ -95,9 +95,9 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
     report.refuse({.code = code, .what = what, .value = quote(name) + hint, .place = place, .cure = cure});
     return std::nullopt;
   };
-  if (name.empty()) return refuse("scene.name.wrong", "a file name is empty", "name a file");
+  if (name.empty()) return refuse("scene.name.wrong", "a file name is empty", "give the name of a file");
   if (name.find('\0') != std::string::npos)
-    return refuse("scene.name.wrong", "a file name holds a zero byte", "name a file");
+    return refuse("scene.name.wrong", "a file name contains a zero byte", "give the name of a file");
 
   const fs::path path = path_of(name);
   const fs::path folder = report.file().has_parent_path() ? report.file().parent_path() : fs::path(".");
@@ -109,9 +109,9 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
   std::error_code error;
   report.add_source(file);
   const fs::file_status status = fs::status(file, error);
-  if (fs::is_directory(status)) return refuse("file.folder", "a file is a folder", "name a file");
+  if (fs::is_directory(status)) return refuse("file.folder", "the path of a file is a folder", "give a file");
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return refuse("file.kind", "a file is not a regular file", "name a file");
+    return refuse("file.kind", "a file is not a regular file", "give a file");
   if (!fs::exists(status)) {
     if (must_exist)
       return refuse("file.missing", "a file does not exist", "put it beside the scene", suggest_path(folder, path));

@@ -37,7 +37,7 @@ Image read_image_bytes(std::span<const std::byte> file, const std::string& name,
   const PictureFormat* format = find_picture_format(file);
   if (format == nullptr) {
     throw InputError(
-        {"picture.format", "the picture has an unknown format", name, "name a picture such as .exr or .png"});
+        {"picture.format", "the picture has an unknown format", name, "use a picture such as .exr or .png"});
   }
   const auto open = [&](const PicturesPlugin& plugin, auto... results) {
     return plugin.open_bytes(file.data(), file.size(), format->name, results...);

@@ -32,7 +32,7 @@ Image OpenedPicture::read(const uvec2& most) {
     throw InputError(
         {"picture.large",
          "the picture is too large (" + std::to_string(info_.width) + "x" + std::to_string(info_.height) + " pixels)",
-         name_, "use one of at most " + std::to_string(most.x) + "x" + std::to_string(most.y)});
+         name_, "use a picture of at most " + std::to_string(most.x) + "x" + std::to_string(most.y) + " pixels"});
   }
   check_flat(info_.is_flat != 0, info_.width, info_.height);
   if (info_.first_rgb_channel < 0) {
@@ -69,7 +69,7 @@ void OpenedPicture::check_flat(bool is_flat, uint64_t width, uint64_t height) co
     throw InputError({"picture.flat", "the picture is not two-dimensional", name_, "use a two-dimensional picture"});
   if (width * height <= kMaxReadPixels) return;
   throw InputError({"picture.large", "the picture is too large (" + std::to_string(width * height) + " pixels)", name_,
-                    "use one of at most " + std::to_string(kMaxReadPixels) + " pixels"});
+                    "use a picture of at most " + std::to_string(kMaxReadPixels) + " pixels"});
 }
 
 }  // namespace promin

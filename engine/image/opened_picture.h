@@ -24,7 +24,7 @@ class OpenedPicture {
     reader_ = {opened, plugin_.close};
     if (is_open) return;
     throw InputError({"picture.format", std::string("the picture cannot be read (") + message_.text + ")", name_,
-                      "name a picture such as .exr or .png"});
+                      "use a picture such as .exr or .png"});
   }
 
   explicit OpenedPicture(const std::filesystem::path& file);

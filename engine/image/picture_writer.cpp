@@ -134,7 +134,7 @@ void check_rows(const Image& image, std::span<const Channel> channels) {
     check("picture.size", channel.values.size() == pixel_count,
           "the channel " + channel.name + " has " + std::to_string(channel.values.size()) + " values for " +
               std::to_string(pixel_count) + " pixels",
-          "give one for each pixel");
+          "give one value for each pixel");
   }
 }
 
@@ -252,7 +252,7 @@ class PictureWriter::Impl {
 
 PictureWriter::PictureWriter(const fs::path& file, const PictureHeader& header) {
   if (!is_writable_format(file)) {
-    throw UsageError({"output.ending", "the output's ending \"" + file.extension().string() + "\" is unknown",
+    throw UsageError({"output.ending", "the output's extension \"" + file.extension().string() + "\" is unknown",
                       file.string(), kUseKnownEnding});
   }
   check_header(header);

@@ -80,7 +80,7 @@ std::string text_of(const Manifest& manifest) {
 /// The manifest of a folder that has one. Throws InputError.
 Manifest read_manifest(const fs::path& folder) {
   const fs::path file = manifest_file(folder);
-  const char* cure = "name another folder, or remove this one";
+  const char* cure = "use another folder, or remove this one";
   const InputError damaged(
       {"job.manifest.damaged", "the file is not the manifest of a job, or it is damaged", file.string(), cure});
   std::error_code none;
@@ -124,24 +124,24 @@ std::string find_difference(const Manifest& there, const Manifest& wanted) {
   };
   for (const auto& [name, value] : wanted.options) {
     const std::optional<std::string> other = value_of(there, name);
-    if (!other) return fmt::format("its {} {}, and is {} now", name, kLeftOut, shown(value));
-    if (*other != value) return fmt::format("its {} is {}, and {} now", name, shown(*other), shown(value));
+    if (!other) return fmt::format("its {} {}, but is {} now", name, kLeftOut, shown(value));
+    if (*other != value) return fmt::format("its {} is {}, but {} now", name, shown(*other), shown(value));
   }
   for (const auto& [name, value] : there.options) {
-    if (!value_of(wanted, name)) return fmt::format("its {} is {}, and {} now", name, shown(value), kLeftOut);
+    if (!value_of(wanted, name)) return fmt::format("its {} is {}, but {} now", name, shown(value), kLeftOut);
   }
   for (size_t i = 0; i < std::max(there.files.size(), wanted.files.size()); ++i) {
     if (i >= there.files.size()) return fmt::format("it lacks the file {}", shown(wanted.files[i].name));
     if (i >= wanted.files.size()) return fmt::format("it has the file {} as well", shown(there.files[i].name));
     if (there.files[i].name != wanted.files[i].name) {
-      return fmt::format("its file is {}, and {} now", shown(there.files[i].name), shown(wanted.files[i].name));
+      return fmt::format("its file is {}, but {} now", shown(there.files[i].name), shown(wanted.files[i].name));
     }
     if (there.files[i].sha256 != wanted.files[i].sha256) {
       return fmt::format("the file {} has changed since", shown(wanted.files[i].name));
     }
   }
   if (there.pieces.size() != wanted.pieces.size()) {
-    return fmt::format("it has {} pieces, and {} now", there.pieces.size(), wanted.pieces.size());
+    return fmt::format("it has {} pieces, but {} now", there.pieces.size(), wanted.pieces.size());
   }
   const auto [own, other] = std::ranges::mismatch(there.pieces, wanted.pieces);
   return fmt::format("its piece {} is called {} now", *own, *other);
@@ -215,14 +215,14 @@ Reading read_piece(const fs::path& file, const std::string& job, const std::stri
   }
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::optional<Header> header = read_header(text);
-  if (!header) return Problem{"job.piece.cut", "the file is not a piece of a job, or it is cut short", "", ""};
+  if (!header) return Problem{"job.piece.cut", "the file is not a piece of a job, or it is incomplete", "", ""};
   const auto word = [&](const char* key) { return header->json.value(key, std::string()); };
   try {
     if (word("job") != job) return Problem{"job.piece.other", "the piece belongs to another job", "", ""};
-    if (word("piece") != name) return Problem{"job.piece.other", "the file holds another piece", "", ""};
+    if (word("piece") != name) return Problem{"job.piece.other", "the file contains another piece", "", ""};
     Content content{word("description"), {bytes.begin() + static_cast<std::ptrdiff_t>(header->begin), bytes.end()}};
     if (content.bytes.size() != header->json.value("size_bytes", uint64_t{0}))
-      return Problem{"job.piece.cut", "the piece is cut short", "", ""};
+      return Problem{"job.piece.cut", "the piece is incomplete", "", ""};
     if (word("description_sha256") != sha256_of(content.description))
       return Problem{"job.piece.damaged", "the piece is damaged", "", ""};
     if (word("sha256") != hash_of(content.bytes)) return Problem{"job.piece.damaged", "the piece is damaged", "", ""};
@@ -286,7 +286,7 @@ InputFile describe_input(const fs::path& file) {
   const std::string path = fs::absolute(file).string();
   if (to_utf8(path) != path) {
     throw InputError({"file.name", "the name of the file or of its folder is not UTF-8, so a job cannot record it",
-                      file.string(), "rename it"});
+                      file.string(), "rename the file or the folder"});
   }
   const std::string hash = sha256_of_file(file);
   return {file.filename().string(), fs::file_size(file), hash};
@@ -302,7 +302,7 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
   // Others may create the same job at the same time; they write the same bytes.
   if (has_strangers(folder) && !fs::exists(manifest_file(folder), error)) {
     throw UsageError(
-        {"job.folder.used", "the folder has files but no job", folder.string(), "name a new or an empty folder"});
+        {"job.folder.used", "the folder has files but no job", folder.string(), "use a new or an empty folder"});
   }
   if (!fs::exists(manifest_file(folder), error)) {
     write_text_file(manifest_file(folder), text_of(manifest));
@@ -320,11 +320,11 @@ Job Job::open(const fs::path& folder) {
   if (!fs::is_directory(folder, error)) {
     refuse_lost_folder(folder);
     throw InputError(
-        {"job.folder.missing", "there is no such folder", folder.string(), "name the folder that was given to --job"});
+        {"job.folder.missing", "the folder does not exist", folder.string(), "give the folder that --job created"});
   }
   if (!fs::exists(manifest_file(folder), error)) {
     throw InputError(
-        {"job.missing", "there is no job in the folder", folder.string(), "name the folder that was given to --job"});
+        {"job.missing", "there is no job in the folder", folder.string(), "give the folder that --job created"});
   }
   return {folder, read_manifest(folder)};
 }
@@ -332,7 +332,7 @@ Job Job::open(const fs::path& folder) {
 void Job::check_same(const Manifest& manifest) const {
   if (text_of(manifest_) == text_of(manifest)) return;
   throw UsageError({"job.other", "the folder belongs to another job: " + find_difference(manifest_, manifest),
-                    folder_.string(), "name another folder, or repeat that job's options and files"});
+                    folder_.string(), "use another folder, or the same options and files as that job"});
 }
 
 fs::path Job::ledger_file() const {
@@ -477,11 +477,12 @@ std::optional<size_t> check_build(const Job& job, const Maker& maker,
                                   const std::function<Content(size_t piece)>& make) {
   const std::optional<size_t> piece = find_piece_of_other_build(job, maker);
   if (!piece || make(*piece).bytes == job.read(*piece).bytes) return piece;
-  throw UsageError({"job.build",
-                    fmt::format("the job's pieces were made by another build of promin, and this build makes piece {} "
-                                "with other bits",
-                                job.manifest().pieces[*piece]),
-                    job.folder().string(), "continue with the first build, or name another folder"});
+  throw UsageError(
+      {"job.build",
+       fmt::format(
+           "the job's pieces were made by another build of promin, and this build computes other bits for piece {}",
+           job.manifest().pieces[*piece]),
+       job.folder().string(), "continue with the first build, or use another folder"});
 }
 
 std::vector<size_t> find_missing(const Job& job, const Share& share) {

@@ -101,7 +101,7 @@ class Job {
   size_t piece_count() const { return manifest_.pieces.size(); }
   std::filesystem::path file_of(size_t piece) const;
 
-  /// Reads the whole piece and returns its state. `why` receives the fault of a bad piece: "the piece is cut short".
+  /// Reads the whole piece and returns its state. `why` receives the fault of a bad piece: "the piece is incomplete".
   PieceState state_of(size_t piece, std::string* why = nullptr) const;
   /// Reads a piece. Throws InputError if it is missing or bad.
   Content read(size_t piece) const;
@@ -145,7 +145,7 @@ struct NextPiece {
   /// The number of pieces of the share to make before it, and in total.
   size_t before = 0;
   size_t total = 0;
-  /// The fault of an existing bad piece: "the piece is cut short".
+  /// The fault of an existing bad piece: "the piece is incomplete".
   std::string why;
 };
 

@@ -30,7 +30,7 @@ constexpr std::string_view kMagic = "\x93NUMPY";
 /// No array of numbers has a larger header.
 constexpr uint32_t kMaxHeaderBytes = 1U << 16;
 constexpr const char* kCure =
-    "save it by numpy.save(file, numpy.ascontiguousarray(rays, '<f4')), or '<f8', with rays of shape (N, 8)";
+    "save it with numpy.save(file, numpy.ascontiguousarray(rays, '<f4')), or '<f8', with rays of shape (N, 8)";
 
 /// The entries of a Python dictionary of literals with string keys, which is what a .npy header holds, each value as
 /// written. nullopt if the text is no such dictionary.
@@ -159,7 +159,7 @@ constexpr std::string_view kHitType =
 
 RayReader::RayReader(const fs::path& file) : file_(file) {
   if (!fs::is_regular_file(find_input(file)))
-    throw InputError({"file.kind", "the file is not a regular file", file.string(), "name a .npy file"});
+    throw InputError({"file.kind", "the file is not a regular file", file.string(), "use a .npy file"});
   std::error_code error;
   const uint64_t file_bytes = fs::file_size(file, error);
   stream_.open(file, std::ios::binary);
@@ -189,8 +189,9 @@ RayReader::RayReader(const fs::path& file) : file_(file) {
   const uint64_t data_bytes = file_bytes - (8 + static_cast<uint64_t>(length_bytes) + header_bytes);
   if (data_bytes % ray_bytes_ != 0 || data_bytes / ray_bytes_ != count_) {
     throw InputError({"rays.short",
-                      "the header declares " + std::to_string(count_) + " rays, but the file holds " +
-                          std::to_string(data_bytes) + " bytes of rays, " + std::to_string(ray_bytes_) + " each",
+                      "the header declares " + std::to_string(count_) + " rays, but the file contains " +
+                          std::to_string(data_bytes) + " bytes of rays, with " + std::to_string(ray_bytes_) +
+                          " bytes per ray",
                       file.string(), "write the file again with NumPy"});
   }
 }

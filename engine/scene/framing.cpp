@@ -98,13 +98,14 @@ dvec3 normalize_up(const vec3& up) {
 
 void check_aspect_ratio(float aspect_ratio) {
   if (aspect_ratio > 0.0F && std::isfinite(aspect_ratio)) return;
-  throw UsageError(
-      {"framing.aspect", "the aspect ratio is not positive and finite", "framing", "give width over height"});
+  throw UsageError({"framing.aspect", "the aspect ratio is not positive and finite", "framing",
+                    "give the width divided by the height"});
 }
 
 void check_fit(float fit) {
   if (fit >= kMinFit && fit <= 1.0F) return;
-  throw UsageError({"framing.fit", "the part of the picture to cover is out of range", "framing", "give 0.05 to 1"});
+  throw UsageError(
+      {"framing.fit", "the fraction of the picture to cover is out of range", "framing", "give 0.05 to 1"});
 }
 
 /// The axes of a camera's picture, orthonormal.

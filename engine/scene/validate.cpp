@@ -206,11 +206,8 @@ class Validation {
           "make it smaller");
       check(
           "scene.image.texels", image.texels.size() == uint64_t{image.size.x} * image.size.y,
-          [&] {
-            return "there are " + std::to_string(image.texels.size()) +
-                   " texels, a number that does not match the size";
-          },
-          place + ".texels", "give one texel for each pixel, or none");
+          [&] { return "the number of texels (" + std::to_string(image.texels.size()) + ") does not match the size"; },
+          place + ".texels", "give one texel for each pixel, or no texels");
     }
     for (size_t i = 0; i < scene.textures.size(); ++i) {
       const Texture& texture = scene.textures[i];
@@ -259,8 +256,8 @@ class Validation {
       const bool are_angles = light.inner_cone_angle >= 0.0F && light.inner_cone_angle < light.outer_cone_angle &&
                               light.outer_cone_angle <= 1.5707964F;
       check("scene.light.cone", light.kind != LightKind::kSpot || are_angles,
-            "the cone's angles are out of range, or the inner one is not the smaller", place + ".outer_cone_angle",
-            "use 0 <= inner < outer <= pi/2");
+            "the cone's angles are out of range, or the inner angle is not less than the outer angle",
+            place + ".outer_cone_angle", "use 0 <= inner < outer <= pi/2");
     }
   }
 
@@ -342,8 +339,7 @@ class Validation {
     const bool is_basis = std::abs(glm::length(camera.look) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::length(camera.up) - 1.0F) <= kBasisTolerance &&
                           std::abs(glm::dot(camera.look, camera.up)) <= kBasisTolerance;
-    check("scene.camera.basis", is_basis, "look and up are not orthonormal", place,
-          "make them unit vectors at right angles");
+    check("scene.camera.basis", is_basis, "look and up are not orthonormal", place, "use perpendicular unit vectors");
     check("scene.choice.unknown",
           camera.projection == Projection::kPerspective || camera.projection == Projection::kOrthographic,
           "the projection is not a value of Projection", place + ".projection", "use one of its values");
@@ -377,7 +373,7 @@ class Validation {
     if (view.error_target) check_error_target(view);
     if (!view.crop) return;
     check("view.crop.empty", view.crop->lo.x < view.crop->hi.x && view.crop->lo.y < view.crop->hi.y,
-          "the crop is empty", "view.crop", "use a window of pixels with lo < hi");
+          "the crop contains no pixels", "view.crop", "use lo < hi");
     check("view.crop.outside", view.crop->hi.x <= view.size.x && view.crop->hi.y <= view.size.y,
           "the crop extends beyond the picture", "view.crop", "use a crop inside the picture");
   }
@@ -405,7 +401,7 @@ class Validation {
             "use one of its values");
     }
     check("view.target.debug", view.mode.debug_view == DebugView::kNone, "a debug view has no error estimate",
-          "view.error_target", "leave the error target out, or render full shading");
+          "view.error_target", "remove the error target or the debug view");
   }
 
   void check_geometry(const Scene& scene, size_t index) {
@@ -420,8 +416,8 @@ class Validation {
     const Place place("objects", index);
     const auto describe = [](const char* kind, uint32_t named, size_t count) {
       return [=] {
-        return std::string("the ") + kind + " " + std::to_string(named) + " is out of range, there are " +
-               std::to_string(count);
+        return std::string("the ") + kind + " " + std::to_string(named) +
+               " does not exist, because the scene has only " + std::to_string(count);
       };
     };
     const bool has_material = check("scene.reference.range", object.material < scene.materials.size(),
@@ -507,8 +503,7 @@ class Validation {
         "a vertex coordinate is not finite or beyond 1e15", place + ".positions", "use a larger unit of length");
     check_each(
         "scene.normal.range", mesh.normals, [](const vec3& n) { return is_finite(n) && n != vec3(0.0F); },
-        "a normal has no length or is not finite", place + ".normals",
-        "leave the normals out, or give each a direction");
+        "a normal has length 0 or is not finite", place + ".normals", "remove the normals, or give each a direction");
     check_each(
         "scene.color.range", mesh.colors, [](const vec4& c) { return is_color(vec3(c)) && std::isfinite(c.a); },
         "a vertex colour is negative, beyond 1e15 or not a number", place + ".colors", "use numbers from 0 to 1e15");
@@ -519,12 +514,13 @@ class Validation {
     check_each(
         "scene.tangent.range", mesh.tangents,
         [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },
-        "a tangent has no length, is not finite or has a side that is neither 1 nor -1", place + ".tangents",
-        "leave the tangents out, or give each a direction and a side");
+        "a tangent has length 0, is not finite, or has a handedness that is neither 1 nor -1", place + ".tangents",
+        "remove the tangents, or give each a direction and a handedness");
     check_each(
         "scene.reference.range", mesh.triangles,
         [&](const uvec3& t) { return t.x < vertices && t.y < vertices && t.z < vertices; },
-        "a corner's index is out of range of the positions", place + ".triangles", "use indices of existing positions");
+        "the index of a corner exceeds the number of positions", place + ".triangles",
+        "use indices of existing positions");
     check_each(
         "scene.reference.range", mesh.triangle_materials,
         [&](uint32_t material) { return material < scene.materials.size(); }, "a material is out of range",
@@ -532,8 +528,8 @@ class Validation {
     const auto check_count = [&](size_t count, size_t wanted, const char* array, const char* one) {
       check(
           "scene.array.count", count == 0 || count == wanted,
-          [&] { return "there are " + std::to_string(count) + " where there are " + std::to_string(wanted) + one; },
-          place + array, "give none, or one for each");
+          [&] { return "there are " + std::to_string(count) + " values for " + std::to_string(wanted) + one; },
+          place + array, "give one value for each, or no values");
     };
     check_count(mesh.normals.size(), vertices, ".normals", " positions");
     check_count(mesh.colors.size(), vertices, ".colors", " positions");

@@ -198,7 +198,7 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
     if (fewer == words) {
       throw RunError({"textures.memory.short",
                       "the scene's " + std::to_string(images.size()) + " images need more than " + to_mib(most_bytes) +
-                          " even as single texels",
+                          " even with one texel each",
                       "", kCure, Setting::kTextureMemory});
     }
     fit.bytes -= sizeof(uint32_t) * (words - fewer);

@@ -26,21 +26,21 @@ def test_wrong_use_is_refused_in_one_line(farm: Farm) -> None:
     base = ("render", farm.scene, "--job", farm.job)
     out = ("-o", farm.out)
     for words, sentence in (
-        (base, "name one by -o FILE"),
-        (("render", farm.scene, *out), "there is no folder for the job; name one by --job DIR"),
-        (("my model.glb",), "type: promin-farm render 'my model.glb' -o 'my model.png' --job 'my model.job'"),
+        (base, "give one with -o FILE"),
+        (("render", farm.scene, *out), "there is no folder for the job; give one with --job DIR"),
+        (("my model.glb",), "use: promin-farm render 'my model.glb' -o 'my model.png' --job 'my model.job'"),
         (("resume", farm.scene), f"{farm.scene} is a file, not a job's folder"),
         ((*base, "-o", "out.jpg"), f"an output is none of .exr, .png, {farm.root}/out.jpg"),
         ((*base, *out, "--nonsense"), "--nonsense is not known"),
         ((*base, *out, "--workers", "0"), "give 1 or more"),
         ((*base, *out, "--scheduler", "sge"), "give tcp://HOST:PORT, slurm, pbs, lsf"),
         ((*base, *out, "--scheduler", "slurm", "--device", "A"), "set PROMIN_DEVICE"),
-        ((*base, *out, "--scheduler", "tcp://a:1", "--workers", "2"), "it has its own"),
-        ((*base, *out, "--scheduler", "slurm", "--queue-config", "nothing.toml"), "no settings can be read"),
+        ((*base, *out, "--scheduler", "tcp://a:1", "--workers", "2"), "the cluster has its own workers"),
+        ((*base, *out, "--scheduler", "slurm", "--queue-config", "nothing.toml"), "the settings cannot be read"),
         ((*base, *out, "--queue-config", "queue.toml"), "--queue-config needs a queue"),
         ((*base, *out, "--scheduler", "tcp://a:1", "--queue-config", "queue.toml"), "give --scheduler slurm, pbs, lsf"),
         (("resume", farm.job, "--nonsense"), "--nonsense is not known"),
-        (("audit", farm.job, "--share", "200%"), "give a share, as 1% or 0.01"),
+        (("audit", farm.job, "--share", "200%"), "give a fraction such as 1% or 0.01"),
     ):
         said = farm.run(*words, code=2)
         assert sentence in said and said.startswith("promin-farm: ") and said.count("\n") == 1, said
@@ -49,10 +49,10 @@ def test_wrong_use_is_refused_in_one_line(farm: Farm) -> None:
 def test_a_scene_or_a_job_in_a_wrong_place_is_answered_with_the_command(farm: Farm) -> None:
     farm.write_scene(3)
     job = farm.create()
-    assert f"is a job's folder, not a command; type: promin-farm status {job.folder}" in farm.run(farm.job, code=2)
+    assert f"is a job's folder, not a command; use: promin-farm status {job.folder}" in farm.run(farm.job, code=2)
     (farm.root / "a.OBJ").touch()
     said = farm.run("resume", "a.OBJ", code=2)
-    assert "a.OBJ is a file, not a job's folder; to make a job of it, type: promin-farm render a.OBJ -o a.png" in said
+    assert "a.OBJ is a file, not a job's folder; to make a job of it, use: promin-farm render a.OBJ -o a.png" in said
     assert "a.OBJ is a scene, not a command" in farm.run("a.OBJ", "-o", "b.png", code=2)
 
 
@@ -282,7 +282,7 @@ def test_wrong_settings_of_a_queue_are_refused(farm: Farm) -> None:
     pytest.importorskip("dask_jobqueue")
     farm.write_scene(3)
     config = farm.root / "queue.toml"
-    for text, sentence in (('walltime = "soon"', "give HH:MM:SS"), ("nonsense = 1", "not those of dask-jobqueue")):
+    for text, sentence in (('walltime = "soon"', "give HH:MM:SS"), ("nonsense = 1", "not settings of dask-jobqueue")):
         config.write_text(text + "\n")
         said = farm.render("--scheduler", "slurm", "--queue-config", config, code=2)
         assert sentence in said and "promin-farm: " in said, said
@@ -306,7 +306,7 @@ def test_rays_of_zarr_are_those_of_numpy(tmp_path: Path, monkeypatch: pytest.Mon
         np.save(expected, rays)
         assert copy.read_bytes() == expected.read_bytes()
     array[5, 5] = 7
-    with pytest.raises(jobs.InputError, match="the rays have changed since the job was begun"):
+    with pytest.raises(jobs.InputError, match="the rays have changed since the start of the job"):
         module.prepare_rays(words, tmp_path / "job")
     zarr.open_array(str(tmp_path / "flat.zarr"), mode="w", shape=(8,), chunks=(8,), dtype="float32")
     with pytest.raises(jobs.InputError, match="rays are N x 8 float32"):

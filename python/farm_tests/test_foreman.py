@@ -161,7 +161,7 @@ def test_a_piece_that_fails_is_tried_three_times_and_the_last_reason_told(farm: 
     crew.answer = answer
     tally, watch = run(farm, crew)
     assert len(tries) == 3 and tally.failed[3].reason == "reason 3" and tally.done == 19
-    assert any("is given up after 3 failures, the last: reason 3" in sentence for sentence in watch.said)
+    assert any("failed permanently after 3 failures, the last: reason 3" in sentence for sentence in watch.said)
 
 
 def test_where_everything_fails_not_everything_is_tried(farm: Farm) -> None:
@@ -194,7 +194,7 @@ def test_a_worker_without_a_device_idles_and_the_others_make_all(farm: Farm) -> 
     proof = crew.proof
     crew.proof = lambda name: {"idle": "there is no Vulkan device", "exit_code": 4} if name == "a" else proof(name)
     tally, watch = run(farm, crew)
-    assert tally.done == 10 and crew.most["a"] == 1 and "a takes no pieces: there is no Vulkan device" in watch.said
+    assert tally.done == 10 and crew.most["a"] == 1 and "a makes no pieces: there is no Vulkan device" in watch.said
 
 
 def test_where_all_refuse_the_run_ends_with_what_they_say(farm: Farm) -> None:

@@ -59,7 +59,7 @@ def to_numbers(value: object, what: str) -> NDArray[Any]:
             return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
     except (TypeError, ValueError, OverflowError) as error:
         raise UsageError(f"{what} are not an array of numbers ({error})") from None
-    raise UsageError(f"{what} are of {array.dtype}, not real numbers")
+    raise UsageError(f"{what} have the type {array.dtype}, not real numbers")
 
 
 def to_vectors(value: object, what: str, width: int = 3) -> NDArray[Any]:
@@ -181,7 +181,7 @@ def positions(rays: RaysLike, hits: NDArray[Any]) -> Float64s:
     try:
         return np.asarray(origins + t[..., None] * directions, np.float64)
     except ValueError:
-        raise UsageError(f"hits of the shape {hits.shape} do not suit the rays") from None
+        raise UsageError(f"hits of the shape {hits.shape} do not match the rays") from None
 
 
 def check_hits(hits: object) -> NDArray[Any]:

@@ -158,8 +158,8 @@ class Caster:
         if doubtful:
             verb = "is" if doubtful == 1 else "are"
             warnings.warn(
-                f"{doubtful} of {is_odd.size} points {verb} on the surface, or the surface is not closed: rays both "
-                "ways disagree; such points count as outside",
+                f"{doubtful} of {is_odd.size} points {verb} on the surface, or the surface is not closed: the rays in "
+                "both directions disagree; such points count as outside",
                 stacklevel=2,
             )
         return np.asarray(is_odd & agrees)

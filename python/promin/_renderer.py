@@ -349,7 +349,9 @@ class Renderer:
 
     def _check_background(self, aovs: tuple[str, ...]) -> None:
         if self._has_background and "alpha" in aovs:
-            raise UsageError("background and the AOV \"alpha\", which leaves it out, contradict each other; leave one out")
+            raise UsageError(
+                'background and the AOV "alpha", which removes it, contradict each other; remove one of them'
+            )
 
     def _describe_view(self, view: View) -> tuple[dict[str, Any], Display]:
         """The view for the native module, and how its picture is shown."""

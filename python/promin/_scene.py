@@ -468,7 +468,7 @@ class Scene:
             if self._base is None:
                 file = Path(self._file.path)
                 if _hash(file) != self._file.sha256:
-                    raise InputError(f"{file}: the scene's file has changed since it was pickled; load it again")
+                    raise InputError(f"{file}: the file has changed since the scene was pickled; load it again")
                 self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
             return self._base
 

@@ -120,7 +120,7 @@ def change_view(view: View, given: Mapping[str, Any]) -> View:
     if "quality" in changes:
         beside = [name for name in _NUMBERS_OF_SAMPLES if name in changes]
         if beside:
-            raise UsageError(f"quality and {beside[0]} contradict each other; leave one out")
+            raise UsageError(f"quality and {beside[0]} contradict each other; remove one of them")
         changes = {**{name: getattr(View, name) for name in _NUMBERS_OF_SAMPLES}, **changes}
     elif any(name in changes for name in _NUMBERS_OF_SAMPLES):
         changes["quality"] = None
@@ -156,7 +156,7 @@ def settle_quality(view: View) -> View:
         return view
     for name in _NUMBERS_OF_SAMPLES:
         if getattr(view, name) != getattr(View, name):
-            raise UsageError(f"quality and {name} contradict each other; leave one out")
+            raise UsageError(f"quality and {name} contradict each other; remove one of them")
     fields = _promin.read_quality(str(view.quality) or "-", str(view.debug_view) or "-")
     if fields["target_error"] is None:
         fields["error_in"] = view.error_in
@@ -194,7 +194,7 @@ def size_of(view: View) -> tuple[int, ...]:
         sides = _integers(view.size, 2, "size")
         least = min(sides)
     if least < 1:
-        raise UsageError(f"size is {view.size!r:.80}; give pixels, 1 or more each way")
+        raise UsageError(f"size is {view.size!r:.80}; give the width and height in pixels, from 1")
     return sides
 
 
@@ -239,7 +239,8 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
     size = _promin.choose_size(camera, size_of(view))
     if size is None:
         raise UsageError(
-            f"the camera's aspect_ratio of {camera['aspect_ratio']!r:.80} gives no sensible width; give size"
+            f"the camera's aspect_ratio of {camera['aspect_ratio']!r:.80} is too extreme to compute the width of the "
+            "picture; give size"
         )
     crop = None if view.crop is None else _integers(view.crop, 4, "crop")
     width = _promin.default_width(str(view.filter)) if view.filter_width is None else view.filter_width
@@ -273,7 +274,7 @@ def check_shading(view: View, aovs: tuple[str, ...]) -> None:
         if name in aovs:
             raise UsageError(
                 f'aovs with "{name}" and debug_view="{view.debug_view}" contradict each other: a debug view has no '
-                f"{lacks}; leave one out"
+                f"{lacks}; remove one of them"
             )
 
 
@@ -286,7 +287,8 @@ def _check_samples(view: View) -> None:
         name = "time_limit" if view.target_error is None else "target_error"
         if isinstance(view.spp, (int, np.integer)) and view.spp not in (1, View.spp):
             raise UsageError(
-                f"{name} and spp={view.spp} contradict each other; leave one out; min_spp and max_spp limit the samples"
+                f"{name} and spp={view.spp} contradict each other; remove one of them; min_spp and max_spp limit the "
+                "samples"
             )
         return
     for name in ("min_spp", "max_spp", "error_in"):

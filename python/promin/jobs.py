@@ -281,13 +281,13 @@ class Job:
         return spec
 
     def state(self, number: int) -> Literal["done", "missing", "bad"]:
-        """Reads and hashes a piece on the disk and returns its state: "done", "missing", or "bad" if it is cut short,
+        """Reads and hashes a piece on the disk and returns its state: "done", "missing", or "bad" if it is incomplete,
         damaged or belongs to another job."""
         state: Any = self._native.state_of(number)[0]
         return state  # type: ignore[no-any-return]
 
     def why(self, number: int) -> str:
-        """Returns the fault of a bad piece, e.g. "the piece is cut short"; empty if there is none."""
+        """Returns the fault of a bad piece, e.g. "the piece is incomplete"; empty if there is none."""
         return self._native.state_of(number)[1]
 
     def sha256(self, number: int) -> str:

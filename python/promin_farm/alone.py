@@ -100,7 +100,7 @@ def find_share(words: str | None) -> tuple[int, int]:
     index, _, count = words.partition("/")
     if index.isdigit() and count.isdigit() and int(index) < int(count):
         return int(index), int(count)
-    raise jobs.UsageError(f"--array-task is {words!r}; give I/N with I from 0 to N - 1, as 0/8")
+    raise jobs.UsageError(f"--array-task is {words!r}; give I/N with I from 0 to N - 1, such as 0/8")
 
 
 def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch, signals: Signals) -> Tally:

@@ -66,7 +66,7 @@ def parse_share(words: str) -> float:
     except ValueError:
         share = math.nan
     if not 0.0 < share <= 1.0:
-        raise jobs.UsageError(f"--share is {words!r}; give a share, as 1% or 0.01")
+        raise jobs.UsageError(f"--share is {words!r}; give a fraction such as 1% or 0.01")
     return share
 
 

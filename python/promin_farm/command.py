@@ -31,7 +31,8 @@ _EPILOG = """Examples:
   promin-farm render model.glb -o model.png --job job
   promin-farm resume job
 
-Exit codes: 0 done; 1 failed while running, or pieces were given up; 2 wrong use; 3 bad input; 4 no device.
+Exit codes: 0 done; 1 a failure at run time, or pieces that failed permanently; 2 wrong command line;
+3 bad input; 4 no device.
 docs/farm.md explains how to run on one machine, on several, and in queues."""
 _SCENES = (".glb", ".gltf", ".nff", ".obj", ".ply", ".stl")
 
@@ -58,7 +59,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("\n".join([f"promin-farm: {first}", *rest]), file=sys.stderr)
         return exit_code_of(error)
     except KeyboardInterrupt:
-        print("promin-farm: stopped; finished pieces are kept, promin-farm resume continues", file=sys.stderr)
+        sentence = "the run stopped; finished pieces are kept, and promin-farm resume continues"
+        print(f"promin-farm: {sentence}", file=sys.stderr)
         return 1
     except BrokenPipeError:
         return 1
@@ -68,17 +70,17 @@ def _check_first(words: list[str]) -> None:
     """Raises UsageError where a scene or a job stands in place of the command."""
     first = Path(words[0]) if words else Path()
     if first.suffix.lower() in _SCENES:
-        raise jobs.UsageError(f"{first} is a scene, not a command; type: {_render_words(first)}")
+        raise jobs.UsageError(f"{first} is a scene, not a command; use: {_render_words(first)}")
     if (first / "job.json").is_file():
         raise jobs.UsageError(
-            f"{first} is a job's folder, not a command; type: promin-farm status {first}, or promin-farm resume {first}"
+            f"{first} is a job's folder, not a command; use: promin-farm status {first}, or promin-farm resume {first}"
         )
 
 
 def _check_folder(folder: str) -> None:
     """Raises UsageError for a scene."""
     if Path(folder).is_file():
-        cure = f"; to make a job of it, type: {_render_words(Path(folder))}"
+        cure = f"; to make a job of it, use: {_render_words(Path(folder))}"
         is_scene = Path(folder).suffix.lower() in _SCENES
         raise jobs.UsageError(f"{folder} is a file, not a job's folder{cure if is_scene else ''}")
 
@@ -102,28 +104,28 @@ def _make_parser() -> argparse.ArgumentParser:
         return commands.add_parser(name, help=words, description=words, usage=usage, allow_abbrev=False)
 
     render = add(
-        "render", "Make pictures", "promin-farm render SCENE -o OUT --job DIR [options] [options of promin render]"
+        "render", "Render pictures", "promin-farm render SCENE -o OUT --job DIR [options] [options of promin render]"
     )
     cast = add(
         "cast",
-        "Cast rays",
+        "Cast rays and write their hits",
         "promin-farm cast SCENE RAYS.npy|RAYS.zarr -o HITS --job DIR [options] [options of promin cast]",
     )
     for command in (render, cast):
-        command.add_argument("--job", metavar="DIR", help="the job's folder, which all workers must see")
+        command.add_argument("--job", metavar="DIR", help="the job's folder, which all workers must be able to access")
         command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="file to write")
         command.add_argument(
             "--prepare", action="store_true", help="only make the job's folder; promin-farm work makes the pieces"
         )
-    cast.add_argument("--offsets", metavar="FILE", help="file for the offsets of --all, as promin cast takes it")
-    resume = add("resume", "Make the missing pieces of a job, then its files")
+    cast.add_argument("--offsets", metavar="FILE", help="file for the offsets of --all, as for promin cast")
+    resume = add("resume", "Make the missing pieces of a job, then write its files")
     resume.add_argument(
         "-o",
         "--output",
         metavar="FILE",
         action="append",
         default=[],
-        help="file to write in place of those that the job names",
+        help="file to write instead of the files that the job names",
     )
     for command in (render, cast, resume):
         _add_run_options(command)
@@ -131,48 +133,54 @@ def _make_parser() -> argparse.ArgumentParser:
     alone.add_argument(
         "--array-task",
         metavar="I/N",
-        help="make every N-th piece, beginning with I (from 0), then missing ones [the task's number in a Slurm array]",
+        help="make every N-th piece, beginning with piece I, then missing pieces [the task's number in a Slurm array]",
     )
     status = add("status", "Show the progress of a job")
     status.add_argument("--json", action="store_true", help="print JSON")
     status.add_argument("--page", action="store_true", help="also write the job's page, DIR/index.html")
-    verify = add("verify", "Read and hash every piece of a job")
-    check = add("audit", "Make a sample of a job's pieces again and compare")
-    check.add_argument("--share", metavar="P", default="1%", help="share of the pieces to make, as 5%% or 0.05 [1%%]")
+    verify = add("verify", "Check every piece of a job by its hash")
+    check = add("audit", "Make a sample of a job's pieces again and compare the results")
+    check.add_argument(
+        "--share", metavar="P", default="1%", help="fraction of the pieces to make, such as 5%% or 0.05 [1%%]"
+    )
     check.add_argument("--seed", metavar="N", type=int, default=0, help="number that selects the sample [0]")
     for command in (resume, alone, status, verify, check):
         command.add_argument("folder", metavar="DIR", help="the job's folder")
     for command in (alone, check):
-        command.add_argument("--device", metavar="NAME|INDEX", help="device to use, as promin render takes it")
+        command.add_argument("--device", metavar="NAME|INDEX", help="device to use, as for promin render")
     for command in (alone, verify, check):
-        command.add_argument("--quiet", action="store_true", help="print nothing but errors")
+        command.add_argument("--quiet", action="store_true", help="print only errors")
     return parser
 
 
 def _add_run_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
-    add("--workers", metavar="N", type=int, help="number of processes, or of jobs of a queue [one for each device]")
+    add("--workers", metavar="N", type=int, help="number of processes, or of jobs in a queue [one per device]")
     add(
         "--device",
         metavar="NAME|INDEX|uuid:…",
         action="append",
         default=[],
-        help="device of this machine to use; repeatable, and each device gets workers of its own",
+        help="device of this machine to use. You may repeat this option; each device then gets separate workers",
     )
     add("--scheduler", metavar="tcp://…|slurm|pbs|lsf", help="a Dask scheduler, or the queue that starts workers")
-    add("--queue-config", metavar="FILE.toml", help="settings of the queue's jobs, as dask-jobqueue takes them")
+    add(
+        "--queue-config",
+        metavar="FILE.toml",
+        help="settings of the jobs in the queue, in the form that dask-jobqueue accepts",
+    )
     add(
         "--allow-mixed",
         action="store_true",
-        help="let devices share the work whose results differ in bits; each frame comes from one kind",
+        help="allow devices whose results differ in bits to share the work; each frame comes from one kind of device",
     )
-    add("--quiet", action="store_true", help="print nothing but errors")
+    add("--quiet", action="store_true", help="print only errors")
 
 
 def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
     for value, what, name in ((options.output, "output", "-o FILE"), (options.job, "folder for the job", "--job DIR")):
         if not value:
-            raise jobs.UsageError(f"there is no {what}; name one by {name}")
+            raise jobs.UsageError(f"there is no {what}; give one with {name}")
     if options.command == "cast":
         from promin_farm.rays import prepare_rays  # Loading NumPy takes a while.
 
@@ -226,7 +234,7 @@ def _work(options: argparse.Namespace) -> int:
     survey = take_survey(job)
     left = survey.total - len(survey.done)
     if tally.was_stopped and left:
-        print(f"promin-farm: stopped; promin-farm work {job.folder} continues", file=sys.stderr)
+        print(f"promin-farm: the run stopped; promin-farm work {job.folder} continues", file=sys.stderr)
         return 1
     if not options.quiet:
         print(f"{of_pieces(tally.done)} made; {_words_of_left(left, job)}")

@@ -36,7 +36,7 @@ def need(module: str, package: str) -> Any:
     except ImportError as error:
         raise jobs.UsageError(
             f"{package} is not installed ({error}), in this Python; run: pip install 'promin[farm]', or use "
-            "promin-farm work, which does without"
+            "promin-farm work, which does not need it"
         ) from error
 
 
@@ -74,8 +74,8 @@ class DaskCrew:
             self._members = set(self._client.nthreads())
         except Exception as error:
             raise jobs.RunError(
-                f"the scheduler has gone ({type(error).__name__}: {error}), {self._folder}; the pieces that are made "
-                "are kept, and promin-farm resume continues"
+                f"the connection to the scheduler is lost ({type(error).__name__}: {error}), {self._folder}; "
+                "finished pieces are kept, and promin-farm resume continues"
             ) from error
         return self._members
 
@@ -141,7 +141,9 @@ def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]
     try:
         client = stack.enter_context(distributed.Client(address, timeout=_CONNECT_S))
     except (OSError, ValueError) as error:
-        raise jobs.RunError(f"no scheduler answers ({error}), {address}; start it with: dask scheduler") from error
+        raise jobs.RunError(
+            f"the scheduler does not respond ({error}), {address}; start it with: dask scheduler"
+        ) from error
     return DaskCrew(client, job, _PATIENCE_S), f"{of_workers(len(client.nthreads()))} of {address}"
 
 

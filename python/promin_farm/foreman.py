@@ -218,7 +218,7 @@ class Foreman:
     def _give_up(self, number: int) -> None:
         tries = self._tries[number]
         self._tally.failed[number] = tries
-        self._watch.say(f"{self._job.pieces[number].name} is given up after {tries.describe()}")
+        self._watch.say(f"{self._job.pieces[number].name} failed permanently after {tries.describe()}")
 
     def _send_pieces(self) -> None:
         typical_ms = median(self._recent_ms) if self._recent_ms else 0.0
@@ -287,7 +287,7 @@ class Foreman:
         else:
             member.state = "idle" if "idle" in answer else "refused"
             self._last_refusal = (str(answer.get("idle") or answer.get("refused")), int(answer.get("exit_code", 1)))
-            self._watch.say(f"{name} takes no pieces: {self._last_refusal[0]}")
+            self._watch.say(f"{name} makes no pieces: {self._last_refusal[0]}")
 
     def _take_receipt(self, number: int, receipt: dict[str, object]) -> None:
         self._failed_in_a_row.clear()

@@ -144,7 +144,7 @@ class LocalCrew:
         try:
             return _Process(self._folder, seat, self._ended)
         except OSError as error:
-            raise jobs.RunError(f"no worker can be started ({error.strerror}), on this machine; try again") from error
+            raise jobs.RunError(f"a worker cannot be started ({error.strerror}), on this machine; try again") from error
 
     def members(self) -> set[str]:
         for place, process in enumerate(self._processes):

@@ -54,7 +54,7 @@ def make_cluster(queue: str, config: dict[str, Any]) -> Any:
         return getattr(jobqueue, QUEUES[queue])(**settings)
     except Exception as error:  # The type of the exception depends on the fault.
         raise jobs.UsageError(
-            f"the queue's settings are not those of dask-jobqueue ({error}), in --queue-config"
+            f"the settings of the queue are not settings of dask-jobqueue ({error}), in --queue-config"
         ) from error
 
 
@@ -66,7 +66,7 @@ def read_config(file: str | None) -> dict[str, Any]:
     try:
         values: dict[str, Any] = tomllib.loads(Path(file).read_text())
     except (OSError, ValueError) as error:
-        raise jobs.UsageError(f"no settings can be read ({error}), {file}; see docs/farm.md") from error
+        raise jobs.UsageError(f"the settings cannot be read ({error}), {file}; see docs/farm.md") from error
     return values
 
 

@@ -31,10 +31,12 @@ def _copy(source: Path, target: Path) -> Path:
         array = zarr.open_array(str(source), mode="r")
     except Exception as error:
         raise jobs.InputError(
-            f"no array of zarr can be opened ({error}), {source}; name one of N x 8 float32"
+            f"the zarr array cannot be opened ({error}), {source}; give an array of N x 8 float32 numbers"
         ) from error
     if array.ndim != 2 or array.shape[1] != 8 or array.dtype != np.float32:
-        raise jobs.InputError(f"the array is {array.dtype} {array.shape}, {source}; rays are N x 8 float32")
+        raise jobs.InputError(
+            f"the array is {array.dtype} {array.shape}, {source}; give an array of N x 8 float32 numbers"
+        )
     # Whole chunks at a time, because a chunk can only be unpacked as a whole.
     step = max(1, _ROWS // array.chunks[0]) * array.chunks[0]
     parts = [slice(begin, begin + step) for begin in range(0, array.shape[0], step)]
@@ -44,7 +46,7 @@ def _copy(source: Path, target: Path) -> Path:
         except (OSError, ValueError, EOFError) as error:
             raise jobs.InputError(f"the copy of the rays is damaged ({error}), {target}; remove it") from error
         if there.shape != array.shape or not all(there[part].tobytes() == array[part].tobytes() for part in parts):
-            raise jobs.InputError(f"the rays have changed since the job was begun, {source}; take another folder")
+            raise jobs.InputError(f"the rays have changed since the start of the job, {source}; use another folder")
         return target
     temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:

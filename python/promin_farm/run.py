@@ -66,7 +66,7 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
             print(f"{pieces}: {', '.join(settings.outputs)}")
         else:
             verb = "is" if len(job.pieces) == 1 else "are"
-            print(f"{pieces} {verb} in {job.folder}; name the files to write by -o")
+            print(f"{pieces} {verb} in {job.folder}; give the files to write with -o")
     return 0
 
 
@@ -75,9 +75,11 @@ def check_outputs(job: jobs.Job, outputs: list[str]) -> None:
     job.check_outputs(outputs)
     for output in outputs:
         if outputs.count(output) > 1:
-            raise jobs.UsageError(f"the same output file is named twice, {output}; name different files")
+            raise jobs.UsageError(f"the same output file is named twice, {output}; use different files")
         if not os.access(Path(output).parent, os.W_OK):
-            raise jobs.RunError(f"cannot write to the folder, {Path(output).parent}; make it, or check permissions")
+            raise jobs.RunError(
+                f"cannot write to the folder, {Path(output).parent}; create it, or check its permissions"
+            )
 
 
 def _check(options: Options) -> None:
@@ -98,7 +100,9 @@ def _check(options: Options) -> None:
             f"give --scheduler {', '.join(QUEUES)}"
         )
     if scheduler and "://" in scheduler and options.workers:
-        raise jobs.UsageError("--workers does not apply to a running cluster; it has its own")
+        raise jobs.UsageError(
+            "--workers does not apply to a running cluster, because the cluster has its own workers; remove it"
+        )
 
 
 def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int], assembly: Assembly) -> int | None:
@@ -118,8 +122,8 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
         watch.say(f"{len(missing)} of {of_pieces(len(job.pieces))} to make, by {words}")
         if len(job.pieces) < workers:
             watch.say(
-                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some get no work; --pieces cuts a "
-                "job in another folder into more"
+                f"{of_pieces(len(job.pieces))} for {of_workers(workers)}: some workers get no work; --pieces divides a "
+                "job in another folder into more pieces"
             )
         foreman = Foreman(
             job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon, leave=signals.end_now
@@ -150,10 +154,10 @@ def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew,
 def _conclude(job: jobs.Job, tally: Tally) -> int | None:
     again = f"promin-farm resume {job.folder}"
     if tally.reason:
-        print(f"promin-farm: {tally.reason}; {of_pieces(tally.done)} made, {again} continues", file=sys.stderr)
+        print(f"promin-farm: {tally.reason}; {of_pieces(tally.done)} were made, and {again} continues", file=sys.stderr)
         return tally.exit_code
     if tally.was_stopped:
-        print(f"promin-farm: stopped after {of_pieces(tally.done)}; {again} continues", file=sys.stderr)
+        print(f"promin-farm: the run stopped after {of_pieces(tally.done)}; {again} continues", file=sys.stderr)
         return 1
     if tally.failed:
         named = [f"{job.pieces[number].name} ({tries.reason})" for number, tries in sorted(tally.failed.items())]

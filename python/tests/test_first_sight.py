@@ -137,10 +137,13 @@ def test_a_pose_is_that_of_promin_render(
 @pytest.mark.parametrize(
     "keywords, said",
     [
-        ({"look_at": (0, 0, 0), "direction": (0, 0, 1)}, "look_at and direction contradict each other; leave one out"),
-        ({"from_": "left", "camera": "wide"}, "from_ and camera contradict each other; leave one out"),
-        ({"fit": 0.5, "camera": "wide"}, "fit and camera contradict each other; leave one out"),
-        ({"from_": "lfet"}, "from_ takes three-quarter or front or .*, not .lfet"),
+        (
+            {"look_at": (0, 0, 0), "direction": (0, 0, 1)},
+            "look_at and direction contradict each other; remove one of them",
+        ),
+        ({"from_": "left", "camera": "wide"}, "from_ and camera contradict each other; remove one of them"),
+        ({"fit": 0.5, "camera": "wide"}, "fit and camera contradict each other; remove one of them"),
+        ({"from_": "lfet"}, "from_ takes three-quarter, front, .*, not .lfet"),
         ({"azimuth": "left"}, "azimuth takes a number from -3600 to 3600, not .left"),
         ({"azimuth": (1, 2, 3)}, r"azimuth is \(1, 2, 3\); give a number"),
         ({"eye": (1, 2)}, r"eye is \(1, 2\); give three numbers"),

@@ -407,10 +407,10 @@ def test_what_is_bad_is_told_and_made_anew(scene: Path, tmp_path: Path) -> None:
     files[3].write_bytes(whole[1])
     assert [job.state(number) for number in range(4)] == ["bad"] * 4
     assert [job.why(number) for number in range(4)] == [
-        "the piece is cut short",
+        "the piece is incomplete",
         "the file is empty",
         "the piece is damaged",
-        "the file holds another piece",
+        "the file contains another piece",
     ]
     with fails(promin.RunError, "job.pieces.missing", "4 of 4"):
         job.merge([tmp_path / "none.png"])
@@ -433,7 +433,7 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         "rays": str(rays),
         "pieces": 2,
     }
-    for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, and 1 now")):
+    for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, but 1 now")):
         with fails(promin.UsageError, "job.other", what):
             jobs.create("cast", other, tmp_path / "job")
     changed = make_rays(1000)

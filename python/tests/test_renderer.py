@@ -407,7 +407,7 @@ def test_a_camera_may_ask_for_a_size(box: promin.Scene) -> None:
         camera = dataclasses.replace(renderer.camera(), **options)
         assert renderer.render(camera=camera).size == size
         assert renderer.render(camera=camera, size=(8, 8)).size == (8, 8)
-    with pytest.raises(promin.UsageError, match="aspect_ratio of 1000000.0 gives no sensible width; give size"):
+    with pytest.raises(promin.UsageError, match="aspect_ratio of 1000000.0 is too extreme .*; give size"):
         renderer.render(camera=promin.Camera(aspect_ratio=1e6))
 
 

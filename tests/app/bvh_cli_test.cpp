@@ -188,7 +188,7 @@ TEST_F(BvhCliTest, VerifyFindsABoxThatIsTooSmall) {
   EXPECT_EQ(run_bvh({"info", "a.pbvh"}).exit_code, 0);
   expect_bvh_failure(
       {"verify", "square.gltf", "a.pbvh"}, 3,
-      "a.pbvh: the tree is wrong in 2 places, first: primitive 0 of object 0 extends outside the box of its "
+      "a.pbvh: the tree is wrong in 2 places, and the first is: primitive 0 of object 0 extends outside the box of its "
       "leaf or of a node above it; build it again with promin-bvh build");
 }
 

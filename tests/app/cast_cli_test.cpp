@@ -129,9 +129,8 @@ TEST_F(CastTest, RaysThatCannotHitAreCounted) {
   const ProcessResult result = run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err,
-            "promin: warning: 5 of 9 rays cannot hit anything, the first of them is number 3: a ray needs a direction "
-            "that is not 0, "
-            "tmin < tmax and no NaN\n");
+            "promin: warning: 5 of 9 rays cannot hit anything; the first of them is number 3; a ray needs a direction "
+            "that is not 0, tmin < tmax and no NaN\n");
   const std::vector<Hit> hits = read_hits("hits.npy");
   for (size_t i = 3; i < 8; ++i) EXPECT_EQ(hits[i].object, -1) << i;
   EXPECT_EQ(hits[8].object, 0);
@@ -276,7 +275,7 @@ TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.csv"}), 2, "output.ending .npy");
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "rays.npy"}), 2, "output.input");
   expect_failure(run({"cast", "square.gltf", "-o", "hits.npy"}), 2, "RAYS.npy");
-  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "a.npy", "-o", "b.npy"}), 2, "takes one file");
+  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "a.npy", "-o", "b.npy"}), 2, "takes only one file");
   expect_failure(run({"cast", "square.gltf", "none.npy", "-o", "hits.npy"}), 3, "none.npy");
   expect_failure(run({"cast", "square.gltf", "square.gltf", "-o", "hits.npy"}), 3, "rays.kind");
   expect_failure(run({"cast", "none.obj", "rays.npy", "-o", "hits.npy"}), 3, "none.obj");

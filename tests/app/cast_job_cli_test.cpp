@@ -62,7 +62,7 @@ TEST_F(CastJobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
       }
     }
   }
-  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the job's results are written to two files"));
+  EXPECT_THAT(run({"merge", "job", "-o", "merged.npy"}).err, HasSubstr("the results of this job need two files"));
   expect_done(run({"merge", "job", "-o", "merged.npy", "--offsets", "merged_offsets.npy"}));
   EXPECT_TRUE(read("merged.npy") == read("whole.npy") && read("merged_offsets.npy") == read("whole_offsets.npy"));
 }
@@ -112,17 +112,17 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
   EXPECT_THAT(run({"merge", "job", "-o", "cut.npy"}).err, HasSubstr("3 of 4 pieces are missing or bad"));
   const ProcessResult result =
       run({"cast", "square.gltf", "rays.npy", "--job", "job", "--pieces", "4", "-o", "cut.npy"});
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
-  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; promin makes it again"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; promin makes it again"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now: cut.npy"));
   EXPECT_TRUE(read("cut.npy") == read("whole.npy"));
 
   expect_failure(
       cast({"--job", "job", "--pieces", "4", "--any", "-o", "cut.npy"}), 2,
-      "the folder belongs to another job: its --any is not given or has its default value, and is \"given\" now");
-  expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2, "it has 4 pieces, and 3 now");
+      "the folder belongs to another job: its --any is not given or has its default value, but is \"given\" now");
+  expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2, "it has 4 pieces, but 3 now");
   write_rays("rays.npy", make_rays(999));
-  expect_failure(cast(words), 2, "its rays is \"1000\", and \"999\" now");
+  expect_failure(cast(words), 2, "its rays is \"1000\", but \"999\" now");
   std::vector<Ray> rays = make_rays(1000);
   rays[17].tmin = 0.5F;
   write_rays("rays.npy", rays);

@@ -181,12 +181,13 @@ TEST_F(CliTest, BadScenesAreRefused) {
 }
 
 TEST_F(CliTest, AFolderNamesItsScenes) {
-  const std::string named = "it holds square.gltf and triangle.obj; name a file";
+  const std::string named = "it holds square.gltf and triangle.obj; give a file";
   for (const char* place : {".", "./"}) {
     expect_failure(run({place}), 3, std::string(place) + ": the scene is a folder, not a file; " + named);
   }
   fs::create_directory(folder() / "models");
-  expect_failure(run({"models"}), 3, "models: the scene is a folder, not a file; name a file that ends in");
+  expect_failure(run({"models"}), 3,
+                 "models: the scene is a folder, not a file; use a file with one of the extensions");
   expect_failure(run({"info", "."}), 3, named);
   EXPECT_THAT(files(), testing::ElementsAre("models"));
 }
@@ -436,7 +437,7 @@ TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
   text.insert(text.rfind('}'), R"(, "materials": [{"normalTexture": {"index": 0}}], "textures": [{"source": 0}],
       "images": [{"uri": "../pictures/none.png"}])");
   write("models/square.gltf", text);
-  EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leaves the scene's folder"));
+  EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leads out of the scene's folder"));
   EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a file does not exist"));
   expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "scene.root.folder none:");
   expect_failure(run({"info", "models/square.gltf", "--strict"}), 3, "--root DIR");
@@ -476,8 +477,9 @@ TEST_F(CliTest, InfoWarnsOfTexels) {
 
 TEST_F(CliTest, InfoWarnsOfCamerasWithoutASensibleSize) {
   write("narrow.gltf", square_with("\"yfov\"", "\"aspectRatio\": 1e-6, \"yfov\""));
-  EXPECT_THAT(run({"info", "narrow.gltf"}).out,
-              HasSubstr("the camera's aspect ratio of 1e-06 gives no sensible width; give --size"));
+  EXPECT_THAT(
+      run({"info", "narrow.gltf"}).out,
+      HasSubstr("the camera's aspect ratio of 1e-06 is too extreme to compute the width of the picture; give --size"));
 }
 
 /// What `promin info --json` says of a scene.
@@ -642,7 +644,7 @@ TEST_F(CliTest, ATimeLimitHasUnitsAndNamesWhatGivesThePictureAgain) {
     OptionValues command = picture;
     command.insert(command.end(), {"-o", "a.exr", "--time-limit", time});
     const ProcessResult result = run(command);
-    EXPECT_THAT(result.err, HasSubstr(" s, longer than the limit of 0.001 s: even one sample a pixel takes longer"));
+    EXPECT_THAT(result.err, HasSubstr(" s, longer than the limit of 0.001 s: even one sample per pixel takes longer"));
     EXPECT_THAT(result.err, HasSubstr("the same picture again: --spp 1\n"));
     EXPECT_THAT(result.out, StartsWith("16x9, 1 spp, "));
   }
@@ -652,7 +654,7 @@ TEST_F(CliTest, ATimeLimitHasUnitsAndNamesWhatGivesThePictureAgain) {
   command.insert(command.end(), {"-o", "a.exr", "--time-limit", "2min"});
   const std::string notes = run(command).err;
   EXPECT_THAT(notes, HasSubstr("the same picture again: --target-error 1.5258789e-05 "));
-  EXPECT_THAT(notes, HasSubstr("--max-spp allows 8 samples a pixel; --max-spp 32 uses more of the time\n"));
+  EXPECT_THAT(notes, HasSubstr("--max-spp allows 8 samples per pixel; --max-spp 32 uses more of the time\n"));
   expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--time-limit", "2weeks"}), 2,
                  "--time-limit takes a number from 0.001 to ");
 }
@@ -803,7 +805,7 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
     expect_failure(
         run({"render", "square.gltf", "--size", "7", "7"}), 2,
         name +
-            std::string(" exists already and promin did not make it from square.gltf; name the file to write by -o"));
+            std::string(" exists already and promin did not make it from square.gltf; give the file to write with -o"));
     EXPECT_EQ(read(name), other);
     write(name, "my notes");
     expect_failure(run({"render", "square.gltf"}), 2, "exists already and promin did not make it");

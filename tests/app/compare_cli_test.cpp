@@ -77,9 +77,10 @@ TEST_F(CompareCliTest, LimitsOfCodesAreFractions) {
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "2.99/8"}).exit_code, 5);
   const ProcessResult whole = compare({"a.png", "b.png", "--fail", "2"});
   EXPECT_EQ(whole.exit_code, 0);
-  EXPECT_THAT(whole.err,
-              HasSubstr("promin: warning: --fail 2 never fails: the values of these files are 0 to 1; 2 of 255 "
-                        "is --fail 2/255"));
+  EXPECT_THAT(
+      whole.err,
+      HasSubstr("promin: warning: --fail 2 never fails, because the values of these files are from 0 to 1; 2 of 255 "
+                "is --fail 2/255"));
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "2"}).err, "") << "light has no most";
   EXPECT_EQ(compare({"a.png", "a.png", "--fail", "2/255"}).err, "");
   expect_failure(compare({"a.png", "b.png", "--fail", "2/0"}), 2, "not \"0\" in \"2/0\"");

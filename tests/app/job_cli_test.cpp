@@ -105,7 +105,7 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   EXPECT_THAT(one_file.err, HasSubstr("promin: one.exr: several frames would be written to one file"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "one.exr"));
   EXPECT_THAT(run({"merge", "job", "-o", "cut.##.exr", "--offsets", "o.npy"}).err,
-              HasSubstr("job: --offsets needs a job of rays, and this job is one of pictures; leave --offsets out"));
+              HasSubstr("job: --offsets needs a job of rays, but this is a job of pictures; remove --offsets"));
   for (const char* number : {"00", "01"}) {
     EXPECT_TRUE(read(std::string("cut.") + number + ".exr") == read(std::string("whole.") + number + ".exr"));
   }
@@ -229,9 +229,9 @@ TEST_F(JobCliTest, WhatIsBadIsMadeAnew) {
   const ProcessResult result =
       run({"render", "square.gltf", "--size", "61", "47", "--job", "job", "--pieces", "4", "-o", "cut.exr"});
   expect_done(result);
-  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is cut short; it is made again"));
-  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; it is made again"));
-  EXPECT_THAT(result.err, HasSubstr("promin: note: the job continues: 1 of 4 pieces are there"));
+  EXPECT_THAT(result.err, HasSubstr(files[0].filename().string() + ": the piece is incomplete; promin makes it again"));
+  EXPECT_THAT(result.err, HasSubstr(files[2].filename().string() + ": the piece is damaged; promin makes it again"));
+  EXPECT_THAT(result.err, HasSubstr("promin: note: the job continues: 1 of 4 pieces are complete"));
   EXPECT_THAT(result.out, HasSubstr("made 3 of 4 pieces now"));
   EXPECT_TRUE(read("cut.exr") == read("whole.exr"));
 }
@@ -251,10 +251,10 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   EXPECT_THAT(
       other_samples.err,
       HasSubstr(
-          "the folder belongs to another job: its --spp is not given or has its default value, and is \"2\" now"));
+          "the folder belongs to another job: its --spp is not given or has its default value, but is \"2\" now"));
   expect_done(render({"--job", "fine", "-o", "cut.exr", "--spp", "2"}));
   expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "8"}), 2,
-                 "its --spp is \"2\", and is not given or has its default value now");
+                 "its --spp is \"2\", but is not given or has its default value now");
   const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
   const auto in = [&](const char* space) {
     OptionValues words = refined;
@@ -265,7 +265,7 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   const ProcessResult other_space = in("display");
   EXPECT_EQ(other_space.exit_code, 2);
   EXPECT_THAT(other_space.err,
-              HasSubstr("its --error-in is not given or has its default value, and is \"display\" now"));
+              HasSubstr("its --error-in is not given or has its default value, but is \"display\" now"));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);
@@ -280,7 +280,7 @@ TEST_F(JobCliTest, WrongUseIsRefused) {
       {{"-o", "a.exr", "--job", "job", "--pieces", "48"}, "job.pieces.many 48 61x47"},
       {{"-o", "a.exr", "--job", "job", "--piece", "0/4"}, "usage.options.contradict --piece --output"},
       {{"--job", "job", "--piece", "4/4"}, "--piece takes a whole number from 0 to 3, not \"4\" in \"4/4\""},
-      {{"--job", "job", "--piece", "4"}, "--piece takes I/N, as 0/4, not \"4\""},
+      {{"--job", "job", "--piece", "4"}, "--piece takes I/N, such as 0/4, not \"4\""},
       {{"-o", "a.exr", "--job", "job", "--time-limit", "1"}, "usage.options.contradict --job --time-limit"},
       {{"-o", "a.exr", "--job", "job", "--stats", "s.json"}, "usage.options.contradict --job --stats"},
       {{"-o", "a.exr", "--job", "job", "--exposure", "average"}, "usage.options.contradict --job --exposure average"}};

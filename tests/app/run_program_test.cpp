@@ -31,7 +31,7 @@ std::string message_of_cut_loops() {
 }
 
 TEST(MessageTest, OptionsAreNamedForTheSettingsOfTheLibrary) {
-  EXPECT_THAT(message_of_cut_loops(), EndsWith("; use another --device, or remove surfaces that coincide"));
+  EXPECT_THAT(message_of_cut_loops(), EndsWith("; use another --device, or remove coincident surfaces"));
   const auto message = [](const char* where, const char* cure, Setting setting) {
     return message_of(RunError({"device.lost", "bad", where, cure, setting}));
   };

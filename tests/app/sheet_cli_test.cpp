@@ -71,7 +71,7 @@ TEST_F(ContactSheetTest, ASceneThatCannotBeReadLeavesAnEmptyPlace) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("bad.obj"));
   EXPECT_THAT(run({"contact-sheet", ".", "-o", "empty.png", "--size", "16x12"}).err,
-              HasSubstr(".: the scene is a folder, not a file; it holds bad.obj and square.gltf; name a file"));
+              HasSubstr(".: the scene is a folder, not a file; it holds bad.obj and square.gltf; give a file"));
   EXPECT_THAT(result.err, HasSubstr("1 of 2 scenes is not on the sheet"));
   const Image sheet = read_image(folder() / "sheet.png");
   const std::vector<vec3> empty = cut(sheet, {12, 12}, {16, 12});
@@ -94,7 +94,7 @@ TEST_F(ContactSheetTest, WrongUseIsRefused) {
   expect_failure(run({"contact-sheet", "triangle.obj", "-o", "sheet.exe"}), 2, "sheet.exe");
   expect_failure(run({"contact-sheet", "triangle.obj", "-o", "triangle.obj"}), 2, "triangle.obj");
   expect_failure(run({"contact-sheet", "triangle.obj", "triangle.obj", "-o", "s.png", "--size", "20000x10"}), 2,
-                 "more than 32768");
+                 "at most 32768");
   expect_failure(run({"thumbnail", "triangle.obj", "t.png", "0"}), 2, "SIZE");
   expect_failure(run({"thumbnail", "nosuch.obj", "t.png"}), 3, "nosuch.obj");
   EXPECT_TRUE(files().empty());

@@ -53,7 +53,7 @@ TEST_F(SpecCliTest, OptionsOverrideIt) {
 TEST_F(SpecCliTest, WrongOnesAreRefused) {
   write("spec.json", R"({"promin_render_spec": 1, "spp": 0})");
   expect_failure(run({"render", "square.gltf", "--spec", "spec.json"}), 3,
-                 "promin: spec.json: spp takes a whole number from 1 to 65535, not 0; correct it or leave it out");
+                 "promin: spec.json: spp takes a whole number from 1 to 65535, not 0; correct it or remove it");
   expect_failure(run({"render", "--spec", "none.json"}), 3, "promin: none.json: the file does not exist");
   write("spec.json", R"({"promin_render_spec": 1})");
   expect_failure(run({"render", "--spec", "spec.json"}), 2, "SCENE is required");
@@ -110,8 +110,10 @@ TEST_F(SpecPictureCliTest, AnotherBuildGoesOnIfItGivesTheSameBits) {
   take_from_other(std::byte{1});
   const ProcessResult other = run(command);
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err,
-              HasSubstr("the job's pieces were made by another build of promin, and this build makes piece "));
+  EXPECT_THAT(
+      other.err,
+      HasSubstr(
+          "the job's pieces were made by another build of promin, and this build computes other bits for piece "));
   EXPECT_FALSE(std::filesystem::exists(job.file_of(1)));
 }
 

@@ -62,7 +62,7 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {{"growth"}, 4, ";"},
       {{"robustness"}, 2, "SCENE is required"},
       {{"methods", "square.gltf"}, 2, "--output is required"},
-      {{"methods", "square.gltf", "-o", "none"}, 1, "none: there is no such folder"},
+      {{"methods", "square.gltf", "-o", "none"}, 1, "none: the folder does not exist"},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(testing::PrintToString(c.arguments));

@@ -330,7 +330,7 @@ TEST_F(BvhFileTest, OtherGeometryMakesItStale) {
   EXPECT_EQ(refusal_for(scene_), "");
 
   const std::string stale = "bvh.file.stale " + file_.string() +
-                            ": the BVH file is stale: it was built from other geometry than the scene's; build it "
+                            ": the BVH file does not belong to this scene, because its geometry differs; build it "
                             "again with promin-bvh build";
   for (size_t vertex = 0; vertex < 6; ++vertex) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <span>
 
 namespace promin {
 namespace {
@@ -30,6 +31,13 @@ TEST(Suggest, StaysSilentWhereNothingIsNear) {
 TEST(Suggest, AlwaysListsWhatIsKnown) {
   EXPECT_EQ(suggest_name("cne", kKnown), "did you mean \"cone\"? Known: sphere, cylinder, cone");
   EXPECT_EQ(suggest_name("torus", kKnown), "known: sphere, cylinder, cone");
+}
+
+TEST(Suggest, ListsChoicesAsASentenceDoes) {
+  EXPECT_EQ(list_choices(kKnown), "sphere, cylinder or cone");
+  EXPECT_EQ(list_choices(std::span(kKnown).first(2)), "sphere or cylinder");
+  EXPECT_EQ(list_choices(std::span(kKnown).first(1)), "sphere");
+  EXPECT_EQ(list_choices({}), "");
 }
 
 }  // namespace

@@ -131,13 +131,14 @@ TEST_F(FilesOfScenesTest, ArchivesAreScenesBySomeEndings) {
 
 TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {
   const std::string where = "file.folder " + folder_.string() + ": ";
-  EXPECT_THAT(refusal(folder_), AllOf(StartsWith(where), HasSubstr("; name a file that ends in .gltf, .glb")));
+  EXPECT_THAT(refusal(folder_),
+              AllOf(StartsWith(where), HasSubstr("; use a file with one of the extensions .gltf, .glb")));
   write("notes.txt", "");
   write("c.nff", "");
-  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds c.nff; name a file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds c.nff; give a file"));
   write("b.GLB", "");
   write("a.obj", "");
-  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds a.obj and b.GLB; name a file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds a.obj and b.GLB; give a file"));
   std::filesystem::create_directory(folder_ / "d.gltf");
   EXPECT_THAT(refusal(folder_ / "d.gltf"), HasProblem("file.folder"));
 }

@@ -343,7 +343,7 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   EXPECT_THAT(spoiled(4, 3), HasSubstr("version 3"));
   EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk declares"));
   EXPECT_THAT(spoiled(12, json_length + 8), testing::Not(""));
-  EXPECT_THAT(spoiled(16, 7), HasSubstr("must be JSON"));
+  EXPECT_THAT(spoiled(16, 7), HasSubstr("is not JSON"));
   EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk declares 52 bytes, 44 remain"));
   EXPECT_THAT(spoiled(binary + 4, 7), HasSubstr("has no bytes")) << "a chunk of unknown type is skipped";
 }

@@ -81,7 +81,7 @@ TEST_F(GltfExtensionsTest, UnknownOnesOfTheFileAreAWarning) {
   gltf.json["extensionsRequired"] = {"EXT_fog"};
   gltf.json["scenes"] = {{{"nodes", {0}}, {"extensions", {{"EXT_fog", json::object()}}}}};
   EXPECT_THAT(load(gltf).warnings,
-              ElementsAre("the file requires EXT_fog, which is unknown; the scene is shown without it"));
+              ElementsAre("the file requires EXT_fog, which is unknown; promin shows the scene without it"));
 }
 
 TEST_F(GltfExtensionsTest, UnknownOnesOfGeometryAreRefused) {
@@ -148,7 +148,7 @@ TEST_F(GltfExtensionsTest, TexturesWithoutAKnownImageAreAbsent) {
       scene.warnings,
       ElementsAre(
           "1 texture uses MSFT_texture_dds, which is required but not known; an alternative image is used, or none",
-          "1 texture has no image of a known format; materials are drawn without"));
+          "1 texture has no image of a known format; promin draws materials without these textures"));
   EXPECT_FALSE(std::get<MetallicRoughness>(scene.materials[0].model).base_color_texture.exists());
 }
 

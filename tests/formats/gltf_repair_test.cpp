@@ -86,31 +86,32 @@ TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
 const Repair kRepairs[] = {
     // The document
     {"NoAsset", [](auto& g) { g.json.erase("asset"); },
-     "asset.version: the version is missing; it is read as glTF 2.0"},
+     "asset.version: the version is missing; promin reads the file as glTF 2.0"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
-     "asset.version: the version is not written as glTF requires (2); it is read as glTF 2.0"},
-    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; }, "scene: an index is out of range (index 0); it is ignored"},
+     "asset.version: the version does not have the form that glTF requires (2); promin reads the file as glTF 2.0"},
+    {"SceneIndex", [](auto& g) { g.json["scene"] = 0; },
+     "scene: an index is out of range (index 0); promin ignores it"},
     {"NameIsNumber", [](auto& g) { shape(g, 0)["name"] = 7; },
-     "extensions.KHR_implicit_shapes.shapes[0].name: another value is given where a string is expected (7); it is "
-     "ignored"},
+     "extensions.KHR_implicit_shapes.shapes[0].name: another value is given where a string is expected (7); promin "
+     "ignores it"},
     {"ExtensionsUsed",
      [](auto& g) {
        g.json["extensionsUsed"] = {"KHR_materials_ior", 3};
      },
-     "extensionsUsed[1]: another value is given where a string is expected (3); the object that contains it is "
-     "ignored"},
+     "extensionsUsed[1]: another value is given where a string is expected (3); promin ignores the object that "
+     "contains it"},
     // Materials
     {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; },
-     "meshes[0].primitives[0].material: an index is out of range (index 1); it is ignored"},
+     "meshes[0].primitives[0].material: an index is out of range (index 1); promin ignores it"},
     {"MaterialIsNoObject", [](auto& g) { g.json["materials"][0] = "red"; },
-     "materials[0]: another value is given where an object is expected (a JSON string); it is ignored"},
+     "materials[0]: another value is given where an object is expected (a JSON string); promin ignores it"},
     {"MaterialsIsNoArray", [](auto& g) { g.json["materials"] = 1; },
-     "materials: another value is given where an array is expected (1); it is ignored"},
+     "materials: another value is given where an array is expected (1); promin ignores it"},
     {"Metallic", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 2; },
      PROMIN_CLAMPED("2", "materials[0].pbrMetallicRoughness.metallicFactor", "0 to 1")},
     {"MetallicIsText", [](auto& g) { g.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "1"; },
      "materials[0].pbrMetallicRoughness.metallicFactor: another value is given where a number is expected (a JSON "
-     "string); it is ignored"},
+     "string); promin ignores it"},
     {"BaseColor",
      [](auto& g) {
        g.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1.5, 1, 1};
@@ -122,17 +123,17 @@ const Repair kRepairs[] = {
      },
      PROMIN_CLAMPED("-1", "materials[0].emissiveFactor[1]", "0 to 1e+15")},
     {"AlphaMode", [](auto& g) { g.json["materials"][0]["alphaMode"] = "CUTOUT"; },
-     "materials[0].alphaMode: a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"); it is ignored"},
+     "materials[0].alphaMode: a value is not one of OPAQUE|MASK|BLEND (\"CUTOUT\"); promin ignores it"},
     {"Ior",
      [](auto& g) {
        material_extension(g, "KHR_materials_ior") = {{"ior", -1}};
      },
-     "materials[0].extensions.KHR_materials_ior.ior: a number is out of range (-1); it is ignored"},
+     "materials[0].extensions.KHR_materials_ior.ior: a number is out of range (-1); promin ignores it"},
     {"PhongIor",
      [](auto& g) {
        material_extension(g, "PROMIN_materials_phong") = {{"ior", 0}};
      },
-     "materials[0].extensions.PROMIN_materials_phong.ior: a number is out of range (0); it is ignored"},
+     "materials[0].extensions.PROMIN_materials_phong.ior: a number is out of range (0); promin ignores it"},
     {"Transmission",
      [](auto& g) {
        material_extension(g, "KHR_materials_transmission") = {{"transmissionFactor", 2}};
@@ -142,7 +143,8 @@ const Repair kRepairs[] = {
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationDistance", -1}};
      },
-     "materials[0].extensions.KHR_materials_volume.attenuationDistance: a number is out of range (-1); it is ignored"},
+     "materials[0].extensions.KHR_materials_volume.attenuationDistance: a number is out of range (-1); promin ignores "
+     "it"},
     {"AttenuationColor",
      [](auto& g) {
        material_extension(g, "KHR_materials_volume") = {{"attenuationColor", {1, -1, 1}}};
@@ -167,65 +169,65 @@ const Repair kRepairs[] = {
      [](auto& g) {
        g.json["materials"][0]["normalTexture"] = {{"index", 0}};
      },
-     "materials[0].normalTexture.index: an index is out of range (index 0); the texture is left out"},
+     "materials[0].normalTexture.index: an index is out of range (index 0); promin omits the texture"},
     {"TextureWithoutIndex",
      [](auto& g) {
        g.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"texCoord", 0}};
      },
-     "materials[0].pbrMetallicRoughness.baseColorTexture: \"index\" is missing; the texture is left out"},
+     "materials[0].pbrMetallicRoughness.baseColorTexture: \"index\" is missing; promin omits the texture"},
     {"SamplerFilter",
      [](auto& g) {
        g.json["samplers"] = {{{"magFilter", 9987}}};
      },
-     "samplers[0].magFilter: a value is not one of 9728|9729 (\"9987\"); it is ignored"},
+     "samplers[0].magFilter: a value is not one of 9728|9729 (\"9987\"); promin ignores it"},
     {"SamplerIndex",
      [](auto& g) {
        g.json["textures"] = {{{"sampler", 4}}};
      },
-     "textures[0].sampler: an index is out of range (index 4); it is ignored"},
+     "textures[0].sampler: an index is out of range (index 4); promin ignores it"},
     {"ImageView",
      [](auto& g) {
        g.json["images"] = {{{"bufferView", 99}, {"mimeType", "image/png"}}};
      },
-     "images[0].bufferView: an index is out of range (index 99); it is ignored"},
+     "images[0].bufferView: an index is out of range (index 99); promin ignores it"},
     {"ImageViewPastItsBuffer",
      [](auto& g) {
        g.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 52}});
        g.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
      },
-     "images[0]: the buffer view of an image extends beyond its buffer (10 bytes); the image is left out"},
+     "images[0]: the buffer view of an image extends beyond its buffer (10 bytes); promin omits the image"},
     // Lights and cameras
     {"LightIndex", [](auto& g) { g.json["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 1; },
-     "nodes[3].extensions.KHR_lights_punctual.light: an index is out of range (index 1); the light is left out"},
+     "nodes[3].extensions.KHR_lights_punctual.light: an index is out of range (index 1); promin omits the light"},
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; },
      PROMIN_CLAMPED("-1", PROMIN_LIGHT ".intensity", "0 to 1e+15")},
     {"LightType", [](auto& g) { light(g)["type"] = "area"; },
-     PROMIN_LIGHT ".type: a value is not one of point|directional|spot (\"area\"); the light is left out"},
+     PROMIN_LIGHT ".type: a value is not one of point|directional|spot (\"area\"); promin omits the light"},
     {"LightRange", [](auto& g) { light(g)["range"] = 0; },
-     PROMIN_LIGHT ".range: a number is out of range (0); it is ignored"},
+     PROMIN_LIGHT ".range: a number is out of range (0); promin ignores it"},
     {"ConeAngles",
      [](auto& g) {
        light(g)["spot"] = {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}};
      },
-     PROMIN_LIGHT ".spot: a spot's inner cone angle is not less than its outer; its edge is sharp"},
+     PROMIN_LIGHT ".spot: a spot's inner cone angle is not less than its outer cone angle; its edge is sharp"},
     {"CameraIndex", [](auto& g) { g.json["nodes"][3]["camera"] = 1; },
-     "nodes[3].camera: an index is out of range (index 1); it is ignored"},
+     "nodes[3].camera: an index is out of range (index 1); promin ignores it"},
     {"FieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"]["yfov"] = 3.2; },
-     "cameras[0].perspective.yfov: a number is out of range (3.2); the camera is left out"},
+     "cameras[0].perspective.yfov: a number is out of range (3.2); promin omits the camera"},
     {"NoFieldOfView", [](auto& g) { g.json["cameras"][0]["perspective"] = json::object(); },
-     "cameras[0].perspective: \"yfov\" is missing; the camera is left out"},
+     "cameras[0].perspective: \"yfov\" is missing; promin omits the camera"},
     {"AspectRatio", [](auto& g) { g.json["cameras"][0]["perspective"]["aspectRatio"] = 0; },
-     "cameras[0].perspective.aspectRatio: a number is out of range (0); it is ignored"},
+     "cameras[0].perspective.aspectRatio: a number is out of range (0); promin ignores it"},
     {"CameraType", [](auto& g) { g.json["cameras"][0]["type"] = "fisheye"; },
-     "cameras[0].type: a value is not one of perspective|orthographic (\"fisheye\"); the camera is left out"},
+     "cameras[0].type: a value is not one of perspective|orthographic (\"fisheye\"); promin omits the camera"},
     {"CameraWithoutParameters", [](auto& g) { g.json["cameras"][0].erase("perspective"); },
-     "cameras[0]: the camera's parameters are missing; the camera is left out"},
+     "cameras[0]: the camera's parameters are missing; promin omits the camera"},
     {"Sky",
      [](auto& g) {
        g.json["extensions"]["OMI_environment_sky"]["skies"] = {{{"type", 3}}};
      },
-     "extensions.OMI_environment_sky.skies[0].type: another value is given where a string is expected (3); the object "
-     "that contains it is ignored"},
+     "extensions.OMI_environment_sky.skies[0].type: another value is given where a string is expected (3); promin "
+     "ignores the object that contains it"},
     // Vertices
     {"NegativeColor",
      [](auto& g) {
@@ -250,13 +252,13 @@ const Repair kRepairs[] = {
        primitive(g)["attributes"]["NORMAL"] = g.template add<float>({0, 0, 1}, "VEC3");
      },
      "meshes[0].primitives[0].attributes.NORMAL: an attribute does not have one element for each vertex "
-     "(1 for 3); the attribute is left out"},
+     "(1 for 3 vertices); promin omits the attribute"},
     {"AttributeFormat",
      [](auto& g) {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
      },
-     "meshes[0].primitives[0].attributes.TEXCOORD_0: the format of an attribute is not allowed (VEC3 of 5126); the "
-     "attribute is left out"},
+     "meshes[0].primitives[0].attributes.TEXCOORD_0: the format of an attribute is not allowed (VEC3 of 5126); promin "
+     "omits the attribute"},
     {"NormalizedIndices", [](auto& g) { g.json["accessors"][1]["normalized"] = true; },
      "meshes[0].primitives[0].indices: the indices are normalized; they are read as integers"},
     {"OddStride",
@@ -266,7 +268,8 @@ const Repair kRepairs[] = {
      },
      "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (14); it is used as it is"},
     {"NoStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 0; },
-     "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (0); the elements are read as packed"},
+     "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (0); promin reads the elements without "
+     "a stride"},
     // Nodes
     {"TwoParents",
      [](auto& g) {
@@ -468,8 +471,8 @@ TEST_F(GltfRepairTest, CamerasAndLightsBelowScaleZeroTurnByRotations) {
   scene = load(gltf);
   EXPECT_THAT(scene.cameras, IsEmpty());
   EXPECT_THAT(scene.lights, IsEmpty());
-  EXPECT_THAT(scene.warnings, ElementsAre("nodes[3]: a camera has no orientation; it is left out",
-                                          "nodes[3]: a light has no direction; it is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("nodes[3]: a camera has no orientation; promin omits it",
+                                          "nodes[3]: a light has no direction; promin omits it"));
 }
 
 TEST_F(GltfRepairTest, PointLightsBelowScaleZeroStay) {
@@ -487,8 +490,8 @@ TEST_F(GltfRepairTest, CamerasAndLightsTooFarAwayAreLeftOut) {
   gltf.json["nodes"][3]["translation"] = {1e15, 0, 0};
   gltf.add_node({{"children", {3}}, {"scale", {2, 2, 2}}});
   const LoadedScene scene = load(gltf);
-  EXPECT_THAT(scene.warnings, ElementsAre("nodes[3]: a camera lies beyond 1e15 in the world; it is left out",
-                                          "nodes[3]: a light lies beyond 1e15 in the world; it is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("nodes[3]: a camera lies beyond 1e15 in the world; promin omits it",
+                                          "nodes[3]: a light lies beyond 1e15 in the world; promin omits it"));
   EXPECT_THAT(scene.objects, SizeIs(3));
 }
 
@@ -586,7 +589,8 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
   LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(
       scene.warnings,
-      ElementsAre("buffers[0]: a buffer is shorter than its byteLength (42 bytes for 100); the existing part is read"));
+      ElementsAre(
+          "buffers[0]: a buffer is shorter than its byteLength (42 bytes instead of 100); the existing part is read"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   // Padding that the view counts.
   gltf.json["bufferViews"][1]["byteLength"] = 8;
@@ -605,7 +609,7 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   gltf.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings, ElementsAre("buffers[1]: a buffer of images cannot be read: a file does not exist "
-                                          "(\"none.bin\"); its images are left out"));
+                                          "(\"none.bin\"); promin omits its images"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
 }
 
@@ -664,9 +668,9 @@ TEST_F(GltfRepairTest, LengthsInTheHeaderOfAGlbAreRepaired) {
   const size_t binary = 20 + json_length;
   const std::pair<std::string, const char*> kFiles[] = {
       {good.substr(0, good.size() - 2), "a GLB chunk extends beyond the end of the file (2 bytes)"},
-      {with(8, 0xFFFFFFFF), "the GLB header declares another number of bytes than the chunks have"},
-      {with(8, 0), "the GLB header declares another number"},
-      {with(8, good.size() - 4), "the GLB header declares another number"},
+      {with(8, 0xFFFFFFFF), "the length in the GLB header differs from the length of the chunks"},
+      {with(8, 0), "the length in the GLB header differs"},
+      {with(8, good.size() - 4), "the length in the GLB header differs"},
       {with(binary, 42), "a GLB chunk header is cut off"},
       {with(12 + 4, 0x4E4F534A) + GltfBuilder::u32(0) + "JSON", "bytes after the end of the GLB"},
   };
@@ -691,7 +695,7 @@ TEST_F(GltfRepairTest, TheJsonOfAGlbMayBePaddedByZeros) {
 }
 
 TEST_F(GltfRepairTest, VersionOneIsNamedInTextAndGlb) {
-  const char* kMessage = "the file is glTF 1.0, which is not read";
+  const char* kMessage = "the file is glTF 1.0, which promin does not read";
   EXPECT_THAT(refusal("a.gltf", R"({"asset":{"version":"1.0"},"scene":"s","scenes":{"s":{"nodes":[]}}})"),
               HasSubstr(kMessage));
   EXPECT_THAT(refusal("a.gltf", R"({"asset":{"version":1.1},"scenes":[]})"), HasSubstr(kMessage));

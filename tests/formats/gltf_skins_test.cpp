@@ -177,7 +177,7 @@ TEST_F(GltfSkinTest, WithoutJointsAMeshStandsAsItIs) {
 
 TEST_F(GltfSkinTest, IndicesThatLeadNowhereAreRefused) {
   primitive()["attributes"]["JOINTS_0"] = gltf_.add<uint8_t>({0, 1, 9, 9, 2, 0, 0, 0, 0, 1, 0, 0}, "VEC4");
-  EXPECT_THAT(refusal(), HasSubstr("joint 2 is out of range, the skin has 2 joints"));
+  EXPECT_THAT(refusal(), HasSubstr("joint 2 is out of range, because the skin has only 2 joints"));
   gltf_.json["skins"][0]["joints"] = {1, 77};
   EXPECT_THAT(refusal(), HasSubstr("skins[0].joints[1]"));
   gltf_.json["skins"][0]["joints"] = {1, 2};

@@ -106,7 +106,8 @@ TEST_F(GltfTest, PointsAndLinesTakeANumberButAreNotDrawn) {
   EXPECT_TRUE(std::holds_alternative<Mesh>(scene.objects[4].shape));
   EXPECT_THAT(
       scene.warnings,
-      ElementsAre("meshes[0].primitives[0]: a mesh primitive holds points or lines, and 3 more; they are not drawn"));
+      ElementsAre(
+          "meshes[0].primitives[0]: a mesh primitive contains points or lines, and 3 more; promin does not draw them"));
 }
 
 TEST_F(GltfTest, SparseAccessorsReplaceElements) {
@@ -657,7 +658,7 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     gltf.json["textures"] = {{{"source", 0}}};
     return load(gltf).warnings;
   };
-  const std::string one = " is rough glass: only a sky is blurred through it, and objects look sharp";
+  const std::string one = " is rough glass, which blurs only the sky; objects behind it look sharp";
   EXPECT_THAT(warnings_of(json::object()), ElementsAre("material \"frosted\"" + one));
   EXPECT_THAT(warnings_of({{"name", nullptr}}), ElementsAre("material 0" + one));
   const json textured = {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}};
@@ -673,8 +674,8 @@ TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
     several.json["meshes"][0]["primitives"].push_back(several.json["meshes"][0]["primitives"][0]);
   }
   for (int i = 0; i < 4; ++i) several.json["meshes"][0]["primitives"][i]["material"] = std::max(i, 1);
-  EXPECT_THAT(load(several).warnings, ElementsAre("material \"frosted\" and 2 others like it are rough glass: only a "
-                                                  "sky is blurred through it, and objects look sharp"))
+  EXPECT_THAT(load(several).warnings, ElementsAre("material \"frosted\" and 2 others like it are rough glass, which "
+                                                  "blurs only the sky; objects behind it look sharp"))
       << "nothing has the first material";
 }
 
@@ -728,10 +729,11 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
   const LoadedScene scene = load(gltf);
   EXPECT_THAT(
       scene.warnings,
-      ElementsAre("image \"bumps\": a file does not exist (\"missing.png\"); materials are drawn without it: put it "
-                  "beside the scene",
-                  "image images[1]: a picture cannot be used: its format is unknown; materials are drawn without it: "
-                  "use another picture"));
+      ElementsAre(
+          "image \"bumps\": a file does not exist (\"missing.png\"); promin draws materials without it; put it "
+          "beside the scene",
+          "image images[1]: a picture cannot be used: its format is unknown; promin draws materials without it; "
+          "use another picture"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
   EXPECT_THAT(message_of([&] { load_scene(folder_ / "scene.gltf", {.is_strict = true}); }),
               testing::AllOf(HasSubstr("a file does not exist"), HasSubstr("format is unknown")));
@@ -742,9 +744,9 @@ TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
       {{"normalTexture", {{"index", 0}}}, {"emissiveTexture", {{"index", 1}}}, {"occlusionTexture", {{"index", 2}}}});
   gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}, {{"uri", "../c.png"}}};
   gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}};
-  EXPECT_THAT(load(gltf).warnings,
-              UnorderedElementsAre(HasSubstr(", and 1 more; materials"),
-                                   testing::AllOf(HasSubstr("leaves the scene's folder"), HasSubstr("--root DIR"))));
+  EXPECT_THAT(load(gltf).warnings, UnorderedElementsAre(HasSubstr(", and 1 more; materials"),
+                                                        testing::AllOf(HasSubstr("leads out of the scene's folder"),
+                                                                       HasSubstr("--root DIR"))));
 }
 
 // Lights and sky
@@ -924,7 +926,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_THAT(load(gltf).warnings,
               ElementsAre("the sky's panorama images[0] is ignored: the picture has an unknown format"));
   gltf.json["images"] = {{{"uri", "../sky.exr"}}};
-  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("leaves the scene's folder")));
+  EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("leads out of the scene's folder")));
   skies[0]["panorama"] = {{"cubemap", {0, 0, 0, 0, 0, 0}}};
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("cube map")));
   skies[0]["panorama"] = {{"equirectangular", 2}};
@@ -1035,7 +1037,7 @@ TEST_F(GltfTest, MotionIsLeftOut) {
   gltf.json["skins"] = {{{"joints", {0}}}, {{"joints", {0}}}};
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   EXPECT_THAT(load(gltf).warnings,
-              ElementsAre("the scene stands still: animations are ignored, morph targets have their default weights"));
+              ElementsAre("the scene does not move: animations are ignored, morph targets have their default weights"));
 }
 
 TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {
@@ -1053,7 +1055,7 @@ TEST_F(GltfTest, MorphTargetsHaveTheirDefaultWeights) {
   EXPECT_THAT(mesh_of(scene, 0).normals, ElementsAre(vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)));
   EXPECT_THAT(mesh_of(scene, 1).positions, ElementsAre(vec3(0), vec3(1, 0, 0), vec3(4, 1, 0)));
   EXPECT_EQ(mesh_of(scene, 2).positions, mesh_of(scene, 0).positions);
-  EXPECT_THAT(scene.warnings, ElementsAre("the scene stands still: morph targets have their default weights"));
+  EXPECT_THAT(scene.warnings, ElementsAre("the scene does not move: morph targets have their default weights"));
 }
 
 TEST_F(GltfTest, MorphTargetsWithoutWeightsNeedNoBytes) {

@@ -64,8 +64,9 @@ TEST_F(NffTest, NormalsAgainstTheWindingAreWarnedOf) {
   const std::string turned = "pp 3\n0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n";
   const std::string right = "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n";
   EXPECT_THAT(load(kMaterial + right).warnings, Each(Not(HasSubstr("against"))));
-  EXPECT_THAT(load(kMaterial + turned + right + turned).warnings,
-              Contains("2 triangles have vertex normals that point against their winding: the normals are reversed"));
+  EXPECT_THAT(
+      load(kMaterial + turned + right + turned).warnings,
+      Contains("2 triangles have vertex normals that point against their winding; promin reverses the normals"));
 }
 
 TEST_F(NffTest, LinesMeanNothing) {
@@ -266,16 +267,16 @@ const Repair kRepairs[] = {
     {"WordInMaterial", "f 0,5 1 1 1 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"0,5\")"},
     {"ShortMaterial", "f 1 1 1 1 1 1 0",
      "line 1: \"f\" has too few numbers; the missing ones are set to the smallest value allowed"},
-    {"LongMaterial", "f 1 1 1 1 1 1 0 0 1 2", "line 1: \"f\" has more numbers than it takes (\"1\"), and 1 more"},
+    {"LongMaterial", "f 1 1 1 1 1 1 0 0 1 2", "line 1: \"f\" has too many numbers (\"1\"), and 1 more"},
     {"NegativeBackground", "b 0 0 -1", "\"b\" has a number that is not from 0 to 1e7"},
-    {"LongBackground", "b 0 0 1 1", "\"b\" has more numbers"},
+    {"LongBackground", "b 0 0 1 1", "\"b\" has too many numbers"},
     {"NegativeLight", "l 0 0 0 1 1 -1", "\"l\" has a number that is not from 0 to 1e7"},
     {"LightOfTwo", "l 0 0 0 1 1", "\"l\" has too few numbers"},
     {"LightNowhere", "l 0 nan 0 1 1 1",
      "line 1: \"l\" has a coordinate that is not a number up to 1e15 (\"nan\"); it is"},
     {"ShortLight", "l 0 0", "\"l\" has a coordinate"},
     {"ViewWithoutUp", "v from 0 0 1 at 0 0 0 angle 45", "\"v\" lacks from, at, up or angle"},
-    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "from and at in the same place"},
+    {"ViewNowhere", "v from 1 1 1 at 1 1 1 up 0 1 0 angle 45", "equal points from and at"},
     {"ViewOfNan", "v from 1 nan 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
     {"ViewOfTwo", "v from 1 1 at 1 1 1 up 0 1 0 angle 45", "\"v\" has a coordinate"},
     {"UpAlongView", "v from 0 0 1 at 0 0 0 up 0 0 2 angle 45", "an up that is 0 or parallel"},
@@ -297,7 +298,7 @@ const Repair kRepairs[] = {
     {"RadiusTooSmall", "s 0 0 0 1e-30", "\"s\" has a radius"},
     {"Radii", "c 0 0 0 0 1 0 0 0", "\"c\" has two radii of 0"},
     {"Signs", "c 0 0 0 1 1 0 0 -1", "\"c\" has one radius that is negative"},
-    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "line 2: \"c\" has its base and apex at the same point, or too far apart"},
+    {"NoHeight", "c 1 2 3 1\n1 2 3 2", "line 2: \"c\" has a base and an apex that coincide or are too far apart"},
     {"ConeNan", "c 0 0 0 nan 1 1 1 1", "\"c\" has a coordinate"},
     {"TwoCorners", "p 2 0 0 0 1 1 1", "\"p\" has fewer than 3 corners"},
     {"NoCorners", "pp 0", "\"pp\" has fewer than 3 corners"},

@@ -197,7 +197,7 @@ TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");
   EXPECT_THAT(mesh_of(scene, 0).triangles, SizeIs(1));
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(2)) << "those left out have no number";
-  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a face has fewer than 3 corners, and 2 more; it is left out"));
+  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a face has fewer than 3 corners, and 2 more; promin omits it"));
   expect_strict_refusal(kSquare + "f 1 2\nf 1 2 3\n", "obj.face.corners", ": line 5");
 }
 
@@ -218,7 +218,7 @@ TEST_F(ObjTest, FacesOfVerticesWithoutAPlaceAreLeftOut) {
   EXPECT_THAT(mesh_of(scene, 1).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("a face has a vertex that is not three numbers up to 1e15"),
                                                 HasSubstr("\"-inf\" is not a number"), HasSubstr("line 13: "),
-                                                HasSubstr(", and 2 more; "), HasSubstr("the face is left out"))));
+                                                HasSubstr(", and 2 more; "), HasSubstr("promin omits the face"))));
   expect_strict_refusal(text, "obj.position.range", ": line 13");
   EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasProblem("obj.faces.none"));
 }
@@ -358,9 +358,9 @@ TEST_F(ObjTest, GlassIsRead) {
 TEST_F(ObjTest, TransparencyAndOtherMapsAreSaid) {
   std::vector<std::string> warnings;
   material("illum 4\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\" is of glass (illum 4) and has a d of 1; it is drawn opaque"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\" is glass (illum 4) and has a d of 1; promin draws it opaque"));
   material("illum 7\nNi -1\n", &warnings);
-  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; 1.5 is used"));
+  EXPECT_THAT(warnings, ElementsAre("material \"m\": its Ni is not an index of refraction; promin uses 1.5"));
   material("map_Ns wood.png\ndisp wood.png\n", &warnings);
   EXPECT_THAT(warnings,
               ElementsAre("material \"m\": some of its texture maps are ignored, the first is map_Ns in m.mtl line 2"));
@@ -374,11 +374,11 @@ TEST_F(ObjTest, NumbersOfMaterialsThatAreNoneAreIgnored) {
   EXPECT_EQ(m.phong().specular, vec3(0));
   EXPECT_THAT(warnings,
               ElementsAre("mtllib m.mtl line 3: Ks of a material is not a number from 0 to 1e15 (\"nan\"), and 1 "
-                          "more; the statement is ignored",
+                          "more; promin ignores the statement",
                           HasSubstr("Ns of a material"), HasSubstr("Ka of a material")));
   for (const char* line : {"Kd x\n", "Ke 1e999 0 0\n", "illum -1\n", "Ns 1e16\n", "d full\n", "Tr x\n", "Ni nan\n"}) {
     EXPECT_EQ(material(std::string("Kd 1 0 0\nd 0.5\n") + line, &warnings).phong().diffuse, vec3(1, 0, 0)) << line;
-    EXPECT_THAT(warnings, ElementsAre(HasSubstr("the statement is ignored"))) << line;
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("promin ignores the statement"))) << line;
     expect_strict_refusal(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", "mtl.number.range", ": mtllib m.mtl line 4");
   }
   EXPECT_EQ(material("Kd -0.5 0.25 -1e-9\n", &warnings).phong().diffuse, vec3(0, 0.25F, 0));
@@ -449,7 +449,7 @@ TEST_F(ObjTest, AnMtlOfAnotherFolderIsReadFromBesideTheScene) {
                            "file:///x/a.mtl", "\\\\server\\share\\a.mtl # x"}) {
     const LoadedScene scene = load(kSquare + "mtllib " + name + "\nusemtl red\nf 1 2 3\n");
     EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(1, 0, 0)) << name;
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr("are read from the scene's folder"))) << name;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("from the scene's folder"))) << name;
   }
   write("b.mtl", "newmtl blue\nKd 0 0 1\n");
   const LoadedScene two = load(kSquare + "mtllib /x/a.mtl /x/b.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
@@ -464,14 +464,16 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
     EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1)) << line;
     return scene.warnings;
   };
-  EXPECT_THAT(warnings_of("mtllib ../none.mtl"), ElementsAre(HasSubstr("leaves the scene's folder (\"../none.mtl\")")));
-  EXPECT_THAT(warnings_of("mtllib /etc/none"), ElementsAre(HasSubstr("is an absolute path (\"/etc/none\")")));
-  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is not a relative path")));
+  EXPECT_THAT(warnings_of("mtllib ../none.mtl"),
+              ElementsAre(HasSubstr("leads out of the scene's folder (\"../none.mtl\")")));
+  EXPECT_THAT(warnings_of("mtllib /etc/none"), ElementsAre(HasSubstr("is absolute (\"/etc/none\")")));
+  EXPECT_THAT(warnings_of("mtllib C:\\none.mtl"), ElementsAre(HasSubstr("is not relative")));
   EXPECT_THAT(warnings_of("mtllib"), IsEmpty());
   write("empty.mtl", "");
   EXPECT_THAT(warnings_of("mtllib empty.mtl"), ElementsAre(HasSubstr("\"empty.mtl\" is ignored: the file is empty")));
   std::filesystem::create_directories(folder_ / "folder.mtl");
-  EXPECT_THAT(warnings_of("mtllib folder.mtl"), ElementsAre(HasSubstr("a file is a folder (\"folder.mtl\")")));
+  EXPECT_THAT(warnings_of("mtllib folder.mtl"),
+              ElementsAre(HasSubstr("the path of a file is a folder (\"folder.mtl\")")));
 }
 
 TEST_F(ObjTest, AMissingMtlIsGrey) {
@@ -658,9 +660,9 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
   const LoadedScene scene = load_with("map_Kd none.png\nmap_Ke broken.png\nmap_Ks ../b.png\nnorm empty.png\n");
   EXPECT_THAT(scene.warnings,
               testing::UnorderedElementsAre(
-                  testing::StartsWith("a file does not exist (\"none.png\"); materials are drawn without it"),
+                  testing::StartsWith("a file does not exist (\"none.png\"); promin draws materials without it"),
                   testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
-                  testing::StartsWith("a file's name leaves the scene's folder (\"../b.png\"); materials"),
+                  testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); materials"),
                   testing::StartsWith("image \"empty.png\": the file is empty")));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.phong().diffuse, vec3(0.8F));
@@ -687,8 +689,8 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   }
   const LoadedScene beside = load_with("map_Kd C:\\x\\a.png\nmap_Ks /y/a.png\n");
   EXPECT_TRUE(beside.materials.at(0).phong().specular_texture.exists());
-  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("are read from the scene's folder")));
-  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not a relative path")));
+  EXPECT_THAT(beside.warnings, ElementsAre(HasSubstr("from the scene's folder")));
+  EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not relative")));
 }
 
 // Maps of heights
@@ -806,7 +808,7 @@ TEST_F(ObjHeightsTest, APictureOfNormalsIsTakenForOne) {
   std::vector<std::string> warnings;
   const TextureImage normals = normals_of("map_Bump -bm 0.5 n.png\n", &warnings);
   EXPECT_EQ(normals.texels.at(1), 0xFFFA80A0U);
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map holds normals")));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map contains normals")));
   // Bright grey texels are vectors of length 1 too, and photographs are blue.
   write_picture("grey.png", {200, 200, 200, 201, 201, 201, 199, 199, 199, 202, 202, 202}, {4, 1});
   normals_of("bump grey.png\n", &warnings);
@@ -917,7 +919,7 @@ TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
   write_picture("m.png", {5, 0, 0, 6, 0, 0}, {2, 1});
   const LoadedScene scene = load_with("map_Pr r.png\nmap_Pm m.png\n");
   EXPECT_THAT(scene.warnings,
-              ElementsAre("images \"r.png\" and \"m.png\" differ in size; the smaller one is enlarged"));
+              ElementsAre("images \"r.png\" and \"m.png\" differ in size; promin enlarges the smaller one"));
   const auto& model = std::get<MetallicRoughness>(scene.materials.at(0).model);
   EXPECT_THAT(image_of(scene, model.metallic_roughness_texture).texels,
               ElementsAre(0xFF0501FFU, 0xFF0502FFU, 0xFF0603FFU, 0xFF0604FFU));

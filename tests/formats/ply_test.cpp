@@ -157,7 +157,7 @@ TEST_F(PlyTest, SmallFacesAreSaidAndNotDrawn) {
   const LoadedScene scene = load(square("2 0 1\n3 0 1 2\n0\n", 3));
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1));
   EXPECT_THAT(scene.warnings,
-              ElementsAre("line 16: a face has fewer than 3 corners, and 1 more; the face is left out"));
+              ElementsAre("line 16: a face has fewer than 3 corners, and 1 more; promin omits the face"));
 }
 
 TEST_F(PlyTest, DegenerateTrianglesKeepTheirNumber) {
@@ -188,7 +188,7 @@ TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
   EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
   EXPECT_THAT(mesh_of(scene).positions, SizeIs(4));
   EXPECT_THAT(scene.warnings, ElementsAre("vertex 4: a face has a vertex coordinate that is not a number up to 1e15, "
-                                          "and 1 more; the face is left out"));
+                                          "and 1 more; promin omits the face"));
   EXPECT_THROW(load_scene(folder_ / "scene.ply", {.is_strict = true}), InputError);
 }
 
@@ -449,7 +449,7 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
     return scene.warnings;
   };
   EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("a file does not exist (\"none.png\")")));
-  EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leaves the scene's folder")));
+  EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leads out of the scene's folder")));
   EXPECT_THAT(warnings("C:\\scans\\a.png", uvs, "0 0"), IsEmpty()) << "a path of another machine";
   EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("format is unknown")));
   EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));

@@ -143,10 +143,10 @@ TEST_F(StlTest, FacetsThatAreNoTrianglesAreSaid) {
       load("solid\n" + begin + "endfacet\n" + begin + "vertex 1 1 0\nvertex 0 1 0\nendfacet\n" + begin +
            "vertex 0 nan inf\nendfacet\n" + begin + "vertex 0 1e16 0\nendfacet\n" + kFacet);
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3)) << "two of the square";
-  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a facet has fewer than 3 corners (2); the facet is left out",
+  EXPECT_THAT(scene.warnings, ElementsAre("line 5: a facet has fewer than 3 corners (2); promin omits the facet",
                                           "line 11: a facet has more than 3 corners (4); it is divided into triangles",
                                           "line 15: a facet has a vertex coordinate that is not a number up to 1e15 "
-                                          "(\"nan\"), and 1 more; the facet is left out"));
+                                          "(\"nan\"), and 1 more; promin omits the facet"));
   EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
 }
 
@@ -159,7 +159,7 @@ TEST_F(StlTest, BinaryFacetsWithoutAPlaceAreLeftOut) {
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
   EXPECT_THAT(mesh_of(scene).colors, testing::Each(vec4(1, 0, 0, 1))) << "that of its facet";
   EXPECT_THAT(scene.warnings, ElementsAre("facet 0: a facet has a vertex coordinate that is not a number up to 1e15, "
-                                          "and 1 more; the facet is left out"));
+                                          "and 1 more; promin omits the facet"));
 }
 
 TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
@@ -170,7 +170,7 @@ TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
     std::memcpy(bytes.data() + 80, &count, sizeof(count));
     const LoadedScene scene = load(bytes);
     EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3));
-    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the number of facets was never written")));
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the number of facets is missing")));
     EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
     // Where the size is no sign, the file is refused.
     EXPECT_THAT(refusal(bytes + "x"),

@@ -134,8 +134,8 @@ TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
   EXPECT_THAT(refusal_of<InputError>([&] { job.read(0); }), HasProblem("job.piece.damaged"));
   EXPECT_THAT(find_missing(job), ElementsAre(0, 1, 2, 3, 5));
   EXPECT_THAT(run(job), ElementsAre(0, 1, 2, 3, 5));
-  EXPECT_THAT(bad_, ElementsAre("0 the piece is damaged", "1 the piece is cut short", "2 the file is empty",
-                                "3 the file holds another piece", "5 the piece is damaged"));
+  EXPECT_THAT(bad_, ElementsAre("0 the piece is damaged", "1 the piece is incomplete", "2 the file is empty",
+                                "3 the file contains another piece", "5 the piece is damaged"));
   EXPECT_EQ(read(job.file_of(0)), whole);
   EXPECT_THAT(find_missing(job), IsEmpty());
 }
@@ -157,15 +157,15 @@ TEST_F(JobTest, PiecesOfAnotherJobAreForeign) {
 TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   Job::create(job_folder_, make_manifest());
   const std::pair<void (*)(Manifest&), const char*> cases[] = {
-      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", and \"8\" now"},
-      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", and is not given or has its default value now"},
+      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", but \"8\" now"},
+      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", but is not given or has its default value now"},
       {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
-       "its --crop is not given or has its default value, and is \"0 0 1 1\" now"},
-      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", and \"2\" now"},
+       "its --crop is not given or has its default value, but is \"0 0 1 1\" now"},
+      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", but \"2\" now"},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
-      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", and \"b.gltf\" now"},
+      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", but \"b.gltf\" now"},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
-      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, and 4 now"},
+      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, but 4 now"},
       {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is called other now"},
       {[](Manifest& m) { m.kind = "rays"; }, "its kind is \"bytes\""}};
   for (const auto& [change, sentence] : cases) {
@@ -232,7 +232,7 @@ TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
   EXPECT_THAT(refusal_of<UsageError>([&] {
                 check_build(job, {"here", "print", "two"}, other);
               }),
-              HasSubstr("were made by another build of promin, and this build makes piece part2 with other bits"));
+              HasSubstr("were made by another build of promin, and this build computes other bits for piece part2"));
   // Once a build has made a piece, its processes need no proof.
   make_piece(job, 0, {"here", "print", "two"}, make_content);
   EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);

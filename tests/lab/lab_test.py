@@ -169,7 +169,8 @@ def check_picture_rays(folder):
     scene = SCENES / "showcase.gltf"
     options = ("--runs", 1, "--side", 64, "--max-depth", 2, "--rays", rays, "-o", folder / "runs.json")
     done = run_program(BIN / "promin-lab", "rates", scene, *options)
-    expect(done.returncode == 1 and "no such folder" in done.stderr and not done.stdout, f"a folder is missing: {done}")
+    is_refused = done.returncode == 1 and "the folder does not exist" in done.stderr and not done.stdout
+    expect(is_refused, f"a folder is missing: {done}")
     rays.mkdir()
     expect("of what its own" in run_lab("rates", scene, *options), "no picture is compared with its rays")
     rates = read_json(folder / "runs.json")["rates"]

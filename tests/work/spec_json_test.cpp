@@ -208,8 +208,8 @@ TEST(SpecJsonTest, WrongMembersAreRefusedTogether) {
   const std::pair<const char*, const char*> cases[] = {
       {R"("spp": 1.5)", "spp takes a whole number from 1 to 65535, not 1.5"},
       {R"("spp": "8")", "spp takes a whole number from 1 to 65535, not \"8\""},
-      {R"("filter": "fox")", "filter takes box or tent or "},
-      {R"("light": "auto")", "light takes studio or "},
+      {R"("filter": "fox")", "filter takes box, tent, "},
+      {R"("light": "auto")", "light takes studio, "},
       {R"("min_spp": 6)", "min_spp takes a power of two, not 6"},
       {R"("eye": [1, 2])", "eye takes three numbers, not [1,2]"},
       {R"("crop": [4, 0, 2, 2])", "crop takes X0, Y0, X1, Y1 with X0 < X1 and Y0 < Y1"},

@@ -420,7 +420,8 @@ TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
   far.up = vec3(0.0F, 1.0F, 0.0F);
   far.yfov = 2.0F * std::atan(0.5F);
   scene.cameras = {far};
-  EXPECT_THAT(sentence_of({}), HasSubstr("shows the model on 5 % of the picture's side; --from three-quarter"))
+  EXPECT_THAT(sentence_of({}),
+              HasSubstr("the model covers only 5 % of the picture's side in the file's camera; --from three-quarter"))
       << "a ball of radius 1/2, its front 19.5 away";
   ViewOptions named;
   named.camera = "0";
@@ -449,8 +450,7 @@ TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
   EXPECT_EQ(warning_of({}), "");
   EXPECT_THAT(
       warning_of({.eye = dvec3(5.0), .direction = dvec3(1.0, 0.0, 0.0)}),
-      HasSubstr(
-          "the picture shows nothing of the scene; --look-at 1 2 3 in place of any direction looks at its middle"));
+      HasSubstr("the picture shows nothing of the scene; --look-at 1 2 3 instead of a direction looks at its middle"));
 }
 
 }  // namespace

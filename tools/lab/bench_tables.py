@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Prints figures of promin-lab and of peers.py as Markdown tables, beside the targets, and writes them to one file;
-tools/bench calls it."""
+"""Prints the figures of promin-lab and of peers.py as Markdown tables with the targets, and writes them to one file.
+tools/bench calls this program."""
 
 import argparse
 import json
@@ -174,9 +174,9 @@ def _read_driver(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("drivers", nargs="+", type=pathlib.Path, help="folder of each driver, the system's first")
-    parser.add_argument("--growth", type=pathlib.Path, required=True, help="file of promin-lab growth")
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help="the .json file")
+    parser.add_argument("drivers", nargs="+", type=pathlib.Path, help="folder of each driver, first the system's")
+    parser.add_argument("--growth", type=pathlib.Path, required=True, help="file that promin-lab growth has written")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help=".json file to write")
     arguments = parser.parse_args()
     reports = {folder.name: _read_driver(folder) for folder in arguments.drivers}
     growth = read_figures(arguments.growth)

@@ -117,7 +117,7 @@ struct CheckOptions {
 
 app::Command add_check_hits_command(CLI::App& program) {
   CLI::App& command =
-      app::add_command(program, "check-hits", "Checks a device's hits in a scene against brute force in long double");
+      app::add_command(program, "check-hits", "Compares a device's hits in a scene with brute force in long double");
   const auto options = std::make_shared<CheckOptions>();
   app::OptionTable table(command);
   table.add_required("SCENE", "", "Scene file: .gltf, .glb, .obj, .ply, .stl or .nff",

@@ -52,15 +52,16 @@ void print_difference(const DifferenceOptions& options) {
 
 app::Command add_difference_command(CLI::App& program) {
   using app::OptionValues;
-  CLI::App& command = app::add_command(program, "difference",
-                                       "Prints as JSON how two pictures of linear light differ; EXR, or 16-bit PPM");
+  CLI::App& command =
+      app::add_command(program, "difference",
+                       "Prints as JSON how two pictures of linear light differ. They may be EXR or 16-bit PPM files");
   const auto options = std::make_shared<DifferenceOptions>();
   options->compare.fail = 0.02F;
   app::OptionTable table(command);
   table.add_required("FIRST", "", "A picture", [=](const OptionValues& words) { options->first = words.text(); });
-  table.add_required("SECOND", "", "Another of the same size",
+  table.add_required("SECOND", "", "A second picture of the same size",
                      [=](const OptionValues& words) { options->second = words.text(); });
-  table.add("--fail", "D", "A pixel that differs by more counts as different, 0 to 1 [0.02]",
+  table.add("--fail", "D", "Limit above which a pixel counts as different, 0 to 1 [0.02]",
             [=](const OptionValues& words) { options->compare.fail = static_cast<float>(words.real(0, 0.0, 1.0)); });
   return {&command, [options] { print_difference(*options); }};
 }

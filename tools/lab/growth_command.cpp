@@ -127,15 +127,15 @@ void measure_growth(const LabOptions& options, bool is_quick) {
 }  // namespace
 
 app::Command add_growth_command(CLI::App& program) {
-  CLI::App& command =
-      app::add_command(program, "growth", "How steps, time and memory grow with the triangles of a wavy sphere");
+  CLI::App& command = app::add_command(
+      program, "growth", "Measures how steps, time and memory grow with the number of triangles of a wavy sphere");
   const auto options = std::make_shared<LabOptions>();
   options->runs = 3;
   options->side = 512;
   const auto is_quick = std::make_shared<bool>(false);
   app::OptionTable table(command);
   add_measuring_options(table, *options, 1);
-  table.add_flag("--quick", "Small meshes: a check that it works", *is_quick);
+  table.add_flag("--quick", "Use small meshes, only to check that the command works", *is_quick);
   return {&command, [options, is_quick] { measure_growth(*options, *is_quick); }};
 }
 

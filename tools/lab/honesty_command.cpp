@@ -218,22 +218,21 @@ void measure_honesty(const HonestyOptions& options) {
 app::Command add_honesty_command(CLI::App& program) {
   using app::OptionValues;
   CLI::App& command = app::add_command(program, "honesty",
-                                       "How many pixels of pictures with an error target are within their claims, and "
-                                       "time beside that of as many samples in each pixel");
+                                       "Compares the true errors of pictures with a target error with their claimed "
+                                       "errors, and their times with uniform sampling");
   const auto options = std::make_shared<HonestyOptions>();
   app::OptionTable table(command);
-  table.add_required("SCENE", "", "A scene to make pictures of",
-                     [=](const OptionValues& words) { options->scene = words.text(); });
+  table.add_required("SCENE", "", "Scene to render", [=](const OptionValues& words) { options->scene = words.text(); });
   table.add("--size", "W H", "Size of the pictures, 25 to 8192 [1280 720]", [=](const OptionValues& words) {
     options->size = uvec2(words.whole(0, 25, 8192), words.whole(1, 25, 8192));
   });
-  table.add("--truth", "N", "Samples of what counts as true, 64 to 65535 [1024]",
+  table.add("--truth", "N", "Samples per pixel of the reference picture, 64 to 65535 [1024]",
             [=](const OptionValues& words) { options->truth_samples = words.whole(0, 64, kMaxSamplesPerPixel); });
-  table.add("--most", "N", "The most samples in each pixel to compare with, 2 to 1024 [128]",
+  table.add("--most", "N", "Largest number of samples per pixel of the uniform pictures, 2 to 1024 [128]",
             [=](const OptionValues& words) { options->most_samples = words.whole(0, 2, 1024); });
-  table.add("--runs", "N", "Turns whose median counts, 1 to 99 [3]",
+  table.add("--runs", "N", "Number of runs, whose median is reported, 1 to 99 [3]",
             [=](const OptionValues& words) { options->runs = words.whole(0, 1, 99); });
-  table.add_flag("--shown", "Errors and claims of what is shown (--error-in display), and not of linear light",
+  table.add_flag("--shown", "Measure errors in the displayed picture (--error-in display) instead of linear light",
                  options->is_shown);
   return {&command, [options] { measure_honesty(*options); }};
 }

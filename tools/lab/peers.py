@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the sphereflake by promin, Tachyon and POV-Ray in turns, and the time of a first picture; tools/bench calls
-it. The page of tools/report uses its classes."""
+"""Measures the times of promin, Tachyon and POV-Ray for the sphereflake in turns, and the time of a first picture.
+tools/bench calls this program. The page of tools/report uses its classes."""
 
 import argparse
 import json
@@ -200,11 +200,11 @@ def measure(programs, folder, runs, side, level):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("output", type=pathlib.Path, help="the .json file")
+    parser.add_argument("output", type=pathlib.Path, help=".json file to write")
     parser.add_argument("--programs", type=pathlib.Path, required=True, help="folder of the built programs")
     parser.add_argument("--runs", type=int, default=9)
-    parser.add_argument("--side", type=int, default=1024, help="pixels in each direction [1024]")
-    parser.add_argument("--level", type=int, default=4, help="of the sphereflake [4, of 7381 spheres]")
+    parser.add_argument("--side", type=int, default=1024, help="width and height in pixels [1024]")
+    parser.add_argument("--level", type=int, default=4, help="level of the sphereflake [4, with 7381 spheres]")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         programs = arguments.programs.resolve()

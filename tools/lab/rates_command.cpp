@@ -93,7 +93,7 @@ void check_options(const LabOptions& options) {
         {"usage.option.needs", "--rays goes with pictures, which --runs 0 leaves out", "", "give some runs"});
   }
   if (!std::filesystem::is_directory(*options.rays)) {
-    throw RunError({"folder.missing", "there is no such folder", options.rays->string(), "make it first"});
+    throw RunError({"folder.missing", "the folder does not exist", options.rays->string(), "create it first"});
   }
 }
 
@@ -121,7 +121,7 @@ void measure_rates(const LabOptions& options) {
 
 app::Command add_rates_command(CLI::App& program) {
   CLI::App& command = app::add_command(
-      program, "rates", "Rates of rays and builds, and of pictures over their own rays, beside Embree's");
+      program, "rates", "Measures rates of rays, tree builds and pictures, and compares them with Embree");
   const auto options = std::make_shared<LabOptions>();
   app::OptionTable table(command);
   add_scenes(command, table, *options);
@@ -129,9 +129,9 @@ app::Command add_rates_command(CLI::App& program) {
   add_measuring_options(table, *options, 0);
   table.add("--builder", "NAME", fmt::format("{} [sah]", fmt::join(builder_names(), ", ")),
             [=](const app::OptionValues& words) { options->builder = words.choice(builder_names()); });
-  table.add("--max-depth", "N", fmt::format("Mirror bounces of the picture [{}]", View().max_depth),
+  table.add("--max-depth", "N", fmt::format("Largest number of mirror bounces in the picture [{}]", View().max_depth),
             [=](const app::OptionValues& words) { options->max_depth = words.whole(0, 0, kMaxDepth); });
-  table.add("--rays", "FOLDER", "Write the picture's own rays here, a .npy file a set",
+  table.add("--rays", "FOLDER", "Folder to write the picture's rays to, with one .npy file per set of rays",
             [=](const app::OptionValues& words) { options->rays = words.text(); });
   return {&command, [options] { measure_rates(*options); }};
 }

@@ -433,11 +433,13 @@ def footer_text(provenance, plan, commit, busy):
 
 
 def read_arguments():
-    parser = argparse.ArgumentParser(prog="tools/report", description="One page on promin's speed against its error.")
-    parser.add_argument("scene", nargs="?", type=pathlib.Path, help="scene of the knobs [scenes/showcase.gltf]")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FOLDER", help="[build/report]")
-    parser.add_argument("--quick", action="store_true", help="small and once: whether everything works")
-    parser.add_argument("--runs", type=int, metavar="N", help="timed runs of each setting [5]")
+    description = "Makes a page on promin's speed against its error."
+    parser = argparse.ArgumentParser(prog="tools/report", description=description)
+    scene_help = "scene to compare settings with [scenes/showcase.gltf]"
+    parser.add_argument("scene", nargs="?", type=pathlib.Path, help=scene_help)
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FOLDER", help="folder to write [build/report]")
+    parser.add_argument("--quick", action="store_true", help="render small pictures once, as a check")
+    parser.add_argument("--runs", type=int, metavar="N", help="number of timed runs of each setting [5]")
     parser.add_argument("--programs", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument("--commit", default="unknown", help=argparse.SUPPRESS)
     return parser.parse_args()

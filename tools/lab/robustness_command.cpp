@@ -76,7 +76,7 @@ void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_
   world::Scene scene = measure::open_scene(options.scenes.front());
   add_default_lights(scene);
   if (!fs::is_directory(folder))
-    throw RunError({"folder.missing", "there is no such folder", folder.string(), "make it first"});
+    throw RunError({"folder.missing", "the folder does not exist", folder.string(), "create it first"});
   const Session session(options);
   View view = view_of(scene, uvec2(session.side()));
   view.samples_per_pixel = samples;
@@ -105,8 +105,8 @@ void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_
 
 app::Command add_robustness_command(CLI::App& program) {
   CLI::App& command = app::add_command(program, "robustness",
-                                       "Rates of promin's kernel beside those of the textbook's methods, and the rays "
-                                       "that hit by one alone");
+                                       "Compares the rates of promin's kernel and of textbook methods, and counts rays "
+                                       "that only one of them reports as hits");
   const auto options = std::make_shared<LabOptions>();
   options->runs = 5;
   app::OptionTable table(command);
@@ -116,8 +116,9 @@ app::Command add_robustness_command(CLI::App& program) {
 }
 
 app::Command add_methods_command(CLI::App& program) {
-  CLI::App& command =
-      app::add_command(program, "methods", "Makes a picture by promin's methods and by the textbook's, and times both");
+  CLI::App& command = app::add_command(
+      program, "methods",
+      "Renders a picture with promin's methods and with textbook methods, and measures the time of both");
   const auto options = std::make_shared<LabOptions>();
   const auto folder = std::make_shared<fs::path>();
   const auto samples = std::make_shared<uint32_t>(1);
@@ -125,16 +126,16 @@ app::Command add_methods_command(CLI::App& program) {
   app::OptionTable table(command);
   table.add_required("SCENE", "", "A scene file, or wavy:N or needles:N for a mesh of about N triangles",
                      [=](const app::OptionValues& words) { options->scenes = {words.text()}; });
-  table.add_required("-o,--output", "FOLDER", "Write promin.exr and textbook.exr here",
+  table.add_required("-o,--output", "FOLDER", "Folder to write promin.exr and textbook.exr to",
                      [=](const app::OptionValues& words) { *folder = words.text(); });
   app::add_device_option(table, options->device);
-  table.add("--runs", "N", "Timed runs of each after a warm-up [9]",
+  table.add("--runs", "N", "Number of timed runs of each method after a warm-up [9]",
             [=](const app::OptionValues& words) { options->runs = words.whole(0, 1, 1000); });
-  table.add("--side", "N", "Pixels of the picture in each direction [512]",
+  table.add("--side", "N", "Width and height of the picture in pixels [512]",
             [=](const app::OptionValues& words) { options->side = words.whole(0, 1, 4096); });
-  table.add("--spp", "N", "Samples of each pixel [1]",
+  table.add("--spp", "N", "Samples per pixel [1]",
             [=](const app::OptionValues& words) { *samples = words.whole(0, 1, kMaxSamplesPerPixel); });
-  table.add("--max-depth", "N", "Mirror bounces [5]",
+  table.add("--max-depth", "N", "Largest number of mirror bounces [5]",
             [=](const app::OptionValues& words) { options->max_depth = words.whole(0, 0, kMaxDepth); });
   return {&command, [=] { compare_pictures(*options, *folder, *samples); }};
 }

@@ -54,11 +54,11 @@ void add_scenes(CLI::App& command, app::OptionTable& table, LabOptions& options)
 
 void add_measuring_options(app::OptionTable& table, LabOptions& options, uint32_t fewest_runs) {
   app::add_device_option(table, options.device);
-  table.add("--runs", "N", fmt::format("Timed runs of each contestant after a warm-up [{}]", options.runs),
+  table.add("--runs", "N", fmt::format("Number of timed runs of each contestant after a warm-up [{}]", options.runs),
             [&, fewest_runs](const app::OptionValues& words) { options.runs = words.whole(0, fewest_runs, 1000); });
-  table.add("--side", "N", fmt::format("Pixels of the camera's picture in each direction [{}]", options.side),
+  table.add("--side", "N", fmt::format("Width and height of the camera's picture in pixels [{}]", options.side),
             [&](const app::OptionValues& words) { options.side = words.whole(0, 1, 4096); });
-  table.add("--commit", "NAME", "The commit of the sources, for the JSON",
+  table.add("--commit", "NAME", "Commit of the sources, which is written to the JSON",
             [&](const app::OptionValues& words) { options.commit = words.text(); });
   table.add("-o,--output", "FILE.json", "Write the time of each run and the counts as JSON",
             [&](const app::OptionValues& words) { options.output = words.text(); });

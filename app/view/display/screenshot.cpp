@@ -94,7 +94,7 @@ std::string find_free_name(const fs::path& folder) {
     if (!fs::exists(folder / (name + ".exr")) && !fs::exists(folder / (name + ".png"))) return name;
   }
   throw RunError({"window.screenshots.many", fmt::format("no number up to {} is free for a screenshot", kLastNumber),
-                  folder.string(), "move some to another folder"});
+                  folder.string(), "move some screenshots to another folder"});
 }
 
 }  // namespace promin::app

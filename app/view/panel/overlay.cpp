@@ -64,7 +64,7 @@ std::string describe_picture(const ProgressivePicture& picture) {
   const std::string accuracy = fmt::format("accurate to 1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
   if (!picture.is_settled()) return accuracy + ", sharpening";
   if (shown->error->unmet_pixels == 0) return "done: " + accuracy;
-  return fmt::format("done: {} but for {} pixels", accuracy, shown->error->unmet_pixels);
+  return fmt::format("done: {} except for {} pixels", accuracy, shown->error->unmet_pixels);
 }
 
 void show_state(const OverlayContent& content) {

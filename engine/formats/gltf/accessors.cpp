@@ -85,7 +85,7 @@ std::vector<To> read_accessor(const GltfDocument& document, int index, LoadRepor
   for (size_t i = 0; i < sparse.count; ++i) {
     if (places[i] >= accessor.count) {
       report.refuse("gltf.accessor.index",
-                    "sparse index " + std::to_string(places[i]) + " is out of range, the accessor has " +
+                    "sparse index " + std::to_string(places[i]) + " is out of range, because the accessor has only " +
                         std::to_string(accessor.count) + " elements",
                     "accessors[" + std::to_string(index) + "].sparse.indices, element " + std::to_string(i),
                     "export the file again");

@@ -67,7 +67,7 @@ std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& pl
   // Four letters are three bytes.
   if (most_bytes / 3 < text.size() / 4) text = text.substr(0, (most_bytes / 3 + 1) * 4);
   std::optional<Bytes> bytes = decode_base64(text);
-  if (!bytes) report.refuse("gltf.uri.broken", "the data: URI holds broken base64", place, "export the file again");
+  if (!bytes) report.refuse("gltf.uri.broken", "the data: URI contains invalid base64", place, "export the file again");
   return bytes;
 }
 
@@ -80,7 +80,7 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
                                                LoadReport& report) {
   const std::optional<std::string> name = decode_percent(uri);
   if (name) return find_beside_scene(*name, place, must_exist, report);
-  report.refuse("gltf.uri.broken", "the URI holds a broken percent escape", place, "write % as %25");
+  report.refuse("gltf.uri.broken", "the URI contains an invalid percent escape", place, "write % as %25");
   return std::nullopt;
 }
 
@@ -276,7 +276,7 @@ class BufferReader {
       return;
     }
     report_.repair({"gltf.buffer.short", "a buffer is shorter than its byteLength",
-                    std::to_string(bytes.size()) + " bytes for " + std::to_string(length), place_of(index),
+                    std::to_string(bytes.size()) + " bytes instead of " + std::to_string(length), place_of(index),
                     "export the file again", "the existing part is read"});
     if (needed <= bytes.size()) return;
     Bytes& own = buffers_.own.emplace_back(bytes.begin(), bytes.end());
@@ -293,7 +293,7 @@ class BufferReader {
     } catch (const InputError& error) {
       buffers_.bytes[index] = {};
       report_.repair({"gltf.buffer.unreadable", "a buffer of images cannot be read: " + error.problems().front().what,
-                      "", place_of(index), "export the file again", "its images are left out"});
+                      "", place_of(index), "export the file again", "promin omits its images"});
     }
     for (const SourceFile& file : attempt.sources()) report_.add_source(file.file);
   }

@@ -31,12 +31,12 @@ bool read_pose(const PlacedNode& placed, Camera& camera, LoadReport& report) {
   const dvec3 eye(placed.world_from_object[3]);
   camera.eye = vec3(eye);
   if (!(std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) <= kMaxCoordinate)) {
-    report.warn({"gltf.camera.far", "a camera lies beyond 1e15 in the world", "", place, "", "it is left out"});
+    report.warn({"gltf.camera.far", "a camera lies beyond 1e15 in the world", "", place, "", "promin omits it"});
     return false;
   }
   if (take_axes(dmat3(placed.world_from_object), camera)) return true;
   if (placed.rotation && take_axes(*placed.rotation, camera)) return true;
-  report.warn({"gltf.camera.direction", "a camera has no orientation", "", place, "", "it is left out"});
+  report.warn({"gltf.camera.direction", "a camera has no orientation", "", place, "", "promin omits it"});
   return false;
 }
 

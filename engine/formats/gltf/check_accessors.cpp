@@ -128,10 +128,10 @@ void check_accessor(const json& document, const json& accessor, bool is_plain, c
     const json& view = document["bufferViews"][accessor["bufferView"].get<size_t>()];
     const uint64_t stride = stride_of(view, size);
     if (stride < size) {
-      report.refuse(
-          "gltf.accessor.stride",
-          "a stride of " + std::to_string(stride) + " bytes is less than an element of " + std::to_string(size), place,
-          "correct byteStride of its buffer view");
+      report.refuse("gltf.accessor.stride",
+                    "a stride of " + std::to_string(stride) + " bytes is less than the " + std::to_string(size) +
+                        " bytes of an element",
+                    place, "correct byteStride of its buffer view");
     }
     check_fit(view, accessor.value("byteOffset", uint64_t{0}), count, stride, needed_bytes(type, component_type), place,
               report);
@@ -183,10 +183,10 @@ void check_attributes(const json& attributes, const json& accessors, const std::
     const auto count = accessor["count"].get<uint64_t>();
     if (first_count == 0) first_count = count;
     if (count != first_count) {
-      report.refuse(
-          "gltf.accessor.count",
-          "the attribute has " + std::to_string(count) + " elements, others have " + std::to_string(first_count),
-          place + "." + name, "give all attributes the same number of elements");
+      report.refuse("gltf.accessor.count",
+                    "the attribute has " + std::to_string(count) + " elements, but other attributes have " +
+                        std::to_string(first_count),
+                    place + "." + name, "give all attributes the same number of elements");
     }
   }
 }
@@ -198,11 +198,11 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   const bool has_wrong_format = is_read_attribute(name) && !has_format(accessor, name);
   if (has_wrong_format) {
     report.repair({"gltf.accessor.format", "the format of an attribute is not allowed", say_format(accessor), place,
-                   "export it as the glTF specification requires", "the attribute is left out"});
+                   "export it as the glTF specification requires", "promin omits the attribute"});
   } else if (count != vertex_count) {
     report.repair({"gltf.accessor.count", "an attribute does not have one element for each vertex",
-                   std::to_string(count) + " for " + std::to_string(vertex_count), place,
-                   "give all attributes the same number of elements", "the attribute is left out"});
+                   std::to_string(count) + " for " + std::to_string(vertex_count) + " vertices", place,
+                   "give all attributes the same number of elements", "promin omits the attribute"});
   }
   return has_wrong_format || count != vertex_count;
 }
@@ -235,8 +235,8 @@ void check_instances(const json& node, const json& accessors, const std::string&
   check_attributes(attributes, accessors, attributes_place, report);
   for (const auto& [name, index] : attributes.items()) {
     if (accessors[index.get<size_t>()].contains("bufferView")) continue;
-    report.refuse("gltf.instances.missing", "the instances have no buffer view, so all are 0",
-                  attributes_place + "." + name, "add the bytes");
+    report.refuse("gltf.instances.missing", "the instances have no buffer view, so all their values are 0",
+                  attributes_place + "." + name, "add the values");
   }
 }
 
@@ -286,8 +286,8 @@ void check_view(const json& view, uint64_t available, const std::string& place, 
   if (const auto stride = view.find("byteStride"); stride != view.end()) {
     if (*stride >= 4 && *stride <= 252 && stride->get<uint64_t>() % 4 == 0) return;
     report.repair({"gltf.view.stride", "a stride is not a multiple of 4 from 4 to 252", stride->dump(),
-                   place + ".byteStride", "pad the elements",
-                   *stride == 0 ? "the elements are read as packed" : "it is used as it is"});
+                   place + ".byteStride", "add padding to the elements",
+                   *stride == 0 ? "promin reads the elements without a stride" : "promin uses it as it is"});
   }
 }
 
@@ -304,7 +304,7 @@ void check_images(json& document, LoadReport& report) {
     if (end <= available) continue;
     report.repair({"gltf.view.short", "the buffer view of an image extends beyond its buffer",
                    std::to_string(end - available) + " bytes", place, "export the file again",
-                   "the image is left out"});
+                   "promin omits the image"});
     image.erase("bufferView");
   }
 }

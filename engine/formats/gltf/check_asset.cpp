@@ -14,7 +14,7 @@ void check_gltf_cameras(json& document, LoadReport& report) {
     json& camera = (*cameras)[i];
     if (camera.is_null() || camera.contains(camera["type"].get<std::string>())) continue;
     report.repair({"json.missing", "the camera's parameters are missing", "", "cameras[" + std::to_string(i) + "]",
-                   "add them under the name of its type", "the camera is left out"});
+                   "add a member with the name of the camera's type", "promin omits the camera"});
     camera = nullptr;
   }
 }

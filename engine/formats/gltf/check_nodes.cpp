@@ -69,7 +69,7 @@ void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadR
   }
   if (reached_count == nodes.size()) return;
   const auto lost = std::ranges::find_if(parent_counts, [](uint32_t count) { return count > 0; });
-  report.refuse("gltf.node.cycle", "the node is its own ancestor or lies below one that is",
+  report.refuse("gltf.node.cycle", "the node is its own ancestor, or lies below such a node",
                 node_place(static_cast<size_t>(lost - parent_counts.begin())),
                 "remove the child that closes the cycle");
 }
@@ -133,10 +133,10 @@ void check_scene(json& listed, const json& nodes, const std::vector<uint32_t>& p
           {"gltf.node.twice", "a scene lists a node twice", node_place(node), at, "list it once", "it is shown once"});
     } else if (is_below[node]) {
       report.repair({"gltf.node.root", "a scene lists a node that lies below another", node_place(node), at,
-                     "list root nodes only", "it is shown once, below that node"});
+                     "list only root nodes", "it is shown once, below that node"});
     } else if (parent_counts[node] > 0) {
       report.repair({"gltf.node.root", "a scene lists a node that has a parent", node_place(node), at,
-                     "list root nodes only", "it is shown as a root, without the parent's transform"});
+                     "list only root nodes", "it is shown as a root, without the parent's transform"});
     }
     return is_twice || is_below[node];
   });

@@ -36,8 +36,8 @@ std::string_view as_text(std::span<const std::byte> bytes) {
 /// Compares the length in the header with the end of the chunks.
 void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
   if (length != end) {
-    report.repair({"glb.length", "the GLB header declares another number of bytes than the chunks have",
-                   std::to_string(length) + " for " + std::to_string(end), "byte 8", kExportAgain,
+    report.repair({"glb.length", "the length in the GLB header differs from the length of the chunks",
+                   std::to_string(length) + " and " + std::to_string(end) + " bytes", "byte 8", kExportAgain,
                    "the chunks are read"});
   }
   if (end < size) report.warn("the " + std::to_string(size - end) + " bytes after the end of the GLB are ignored");
@@ -45,14 +45,16 @@ void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
 
 uint32_t read_length(std::span<const std::byte> bytes, LoadReport& report) {
   if (bytes.size() < kHeaderBytes + kChunkHeaderBytes)
-    refuse_file("glb.short", report, "the GLB header is cut off", "byte 0");
+    refuse_file("glb.short", report, "the GLB header is incomplete", "byte 0");
   const uint32_t version = read_u32(bytes, 4);
   if (version == 1) {
-    report.refuse("gltf.version", "the file is glTF 1.0, which is not read", "byte 4", "export it as glTF 2.0");
+    report.refuse("gltf.version", "the file is glTF 1.0, which promin does not read", "byte 4",
+                  "export it as glTF 2.0");
     report.throw_if_refused();
   }
   if (version != 2)
-    refuse_file("gltf.version", report, "GLB version " + std::to_string(version) + " is not 2", "byte 4");
+    refuse_file("gltf.version", report,
+                "the GLB version is " + std::to_string(version) + ", but promin reads only version 2", "byte 4");
   return read_u32(bytes, 8);
 }
 
@@ -62,7 +64,7 @@ std::span<const std::byte> take_chunk(std::span<const std::byte> bytes, size_t o
   const size_t left = bytes.size() - offset;
   if (length <= left) return bytes.subspan(offset, length);
   const std::string what =
-      "a GLB chunk declares " + std::to_string(length) + " bytes, " + std::to_string(left) + " remain";
+      "a GLB chunk declares " + std::to_string(length) + " bytes, but only " + std::to_string(left) + " bytes remain";
   if (length - left > kMostPadding) refuse_file("glb.short", report, what, place);
   report.repair({"glb.short", "a GLB chunk extends beyond the end of the file",
                  std::to_string(length - left) + " bytes", place, kExportAgain, "the existing part is read"});
@@ -89,9 +91,9 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
     const auto chunk = take_chunk(bytes, offset, chunk_length, place, report);
     offset += chunk_length;
     if (is_first && chunk_type != kJsonChunk)
-      refuse_file("glb.chunks", report, "the first GLB chunk must be JSON", place);
+      refuse_file("glb.chunks", report, "the first GLB chunk is not JSON", place);
     if (!is_first && chunk_type == kJsonChunk) {
-      report.repair({"glb.chunks", "a second GLB chunk is JSON", "", place, kExportAgain, "it is ignored"});
+      report.repair({"glb.chunks", "a second GLB chunk is JSON", "", place, kExportAgain, "promin ignores it"});
     }
     if (is_first) container.json = as_text(chunk);
     if (chunk_type == kBinaryChunk && !container.binary) container.binary = chunk;

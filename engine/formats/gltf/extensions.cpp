@@ -151,7 +151,7 @@ void warn_of_unknown(const Extension& extension, LoadReport& report) {
   } else if (extension.texture_count > 0) {
     report.warn(say_users(extension.texture_count, "texture") + rest + "an alternative image is used, or none");
   } else if (is_required) {
-    report.warn("the file requires " + name + ", which is unknown; the scene is shown without it");
+    report.warn("the file requires " + name + ", which is unknown; promin shows the scene without it");
   } else if (!name.starts_with("KHR_materials_") && !name.starts_with("KHR_texture_")) {
     report.warn("the extension " + name + " is ignored");
   }
@@ -171,7 +171,7 @@ std::vector<FileExtension> check_gltf_extensions(const json& document, bool is_s
     } else if (extension.required >= 0 && !extension.geometry_place.empty()) {
       report.refuse(
           "gltf.extension.required",
-          "the required extension " + extension.name + " is not implemented, and without it the geometry is unknown",
+          "the required extension " + extension.name + " is not implemented, so promin cannot read the geometry",
           extension.geometry_place, "export the scene without it");
     } else {
       warn_of_unknown(extension, report);

@@ -61,12 +61,12 @@ std::string_view part_of(const JsonRule& rule) {
 
 std::string say_left_out(const JsonRule& rule) {
   const std::string_view part = part_of(rule);
-  if (part == rule.path) return "it is ignored";
+  if (part == rule.path) return "promin ignores it";
   const std::string_view name = last_name(part);
-  if (name.ends_with("Texture")) return "the texture is left out";
-  if (name == "cameras[]") return "the camera is left out";
-  if (name == "lights[]" || name == "KHR_lights_punctual") return "the light is left out";
-  return "the object that contains it is ignored";
+  if (name.ends_with("Texture")) return "promin omits the texture";
+  if (name == "cameras[]") return "promin omits the camera";
+  if (name == "lights[]" || name == "KHR_lights_punctual") return "promin omits the light";
+  return "promin ignores the object that contains it";
 }
 
 /// The place of a value in a document, which becomes a text only if a message needs it.
@@ -253,9 +253,9 @@ class RuleCheck {
       return true;
     }
     const std::string target(rule_.target);
-    const std::string cure = used_.empty()
-                                 ? "add the array " + target + " that it points into"
-                                 : "use 0 to " + std::to_string(used_.size() - 1) + ", the elements of " + target;
+    const std::string cure = used_.empty() ? "add the array " + target + " that it points into"
+                                           : "use an index from 0 to " + std::to_string(used_.size() - 1) +
+                                                 ", because " + target + " has no other elements";
     return fail("json.index", "an index", "index " + value.dump(), "is out of range", place, cure);
   }
 

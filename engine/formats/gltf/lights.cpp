@@ -36,8 +36,8 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
   // Both as they are given and as the light has them.
   if (inner < outer && light.inner_cone_angle < light.outer_cone_angle) return;
-  report.repair({"gltf.light.cone", "a spot's inner cone angle is not less than its outer", "", place + ".spot",
-                 "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
+  report.repair({"gltf.light.cone", "a spot's inner cone angle is not less than its outer cone angle", "",
+                 place + ".spot", "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
   light.outer_cone_angle = std::max(light.outer_cone_angle, kLeastConeAngle);
   light.inner_cone_angle = std::nextafter(light.outer_cone_angle, 0.0F);
 }
@@ -97,7 +97,7 @@ std::optional<T> value_of(const json& object, const char* name) {
 /// The picture of a panorama. On nullopt the report holds the reason.
 std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const json& source, LoadReport& report) {
   if (source.contains("cubemap") && !source.contains("equirectangular")) {
-    report.warn("the sky is a cube map, but only equirectangular panoramas are drawn: the scene has no sky");
+    report.warn("the sky is a cube map, but promin draws only equirectangular panoramas; the scene has no sky");
     return std::nullopt;
   }
   const json& textures = elements_of(document.json, "textures");
@@ -105,7 +105,7 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   const auto texture = value_of<size_t>(source, "equirectangular");
   const auto image = texture ? value_of<size_t>(textures[*texture], "source") : std::nullopt;
   if (!image || !images.is_array() || *image >= images.size()) {
-    report.warn("the sky's panorama has no image of a known format: the scene has no sky");
+    report.warn("the sky's panorama has no image of a known format; the scene has no sky");
     return std::nullopt;
   }
   const std::string name = "the sky's panorama " + title_of(document.json, "images", *image);
@@ -157,13 +157,13 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   light.kind = kind_of(source["type"]);
   const dvec3 position(placed.world_from_object[3]);
   if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kMaxCoordinate)) {
-    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "it is left out"});
+    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "promin omits it"});
     return std::nullopt;
   }
   if (light.kind != LightKind::kPoint) {
     const std::optional<dvec3> direction = direction_of(placed);
     if (!direction) {
-      report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "it is left out"});
+      report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
       return std::nullopt;
     }
     light.direction = vec3(*direction);
@@ -205,7 +205,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
     }
   } else if (type != "plain") {
     report.warn("the sky is of type " + quote(type) +
-                ", but only plain skies, gradients and panoramas are drawn: the background is black");
+                ", but promin draws only plain skies, gradients and panoramas; the background is black");
   } else if (sky.contains("plain")) {
     color = vec3_of(sky["plain"], "color", dvec3(0.0));
   }

@@ -81,7 +81,8 @@ class SceneReader {
   void read_skinned_mesh(const PlacedNode& placed) {
     if (count_gltf_instances(document_, placed)) {
       report_.warn({"gltf.skin.instances", "a skinned mesh has instances", "",
-                    "nodes[" + std::to_string(placed.node) + "]", "", "it is drawn once, at its joints"});
+                    "nodes[" + std::to_string(placed.node) + "]", "",
+                    "promin draws it once, in the pose of its joints"});
     }
     const GltfPose& pose = skins_->find(document_.nodes[static_cast<size_t>(placed.node)].skin);
     PlacedNode posed = placed;
@@ -104,7 +105,7 @@ class SceneReader {
     report_.refuse("scene.size.limit",
                    "its " + std::to_string(instance_count) + " instances of " + std::to_string(triangle_count) +
                        " triangles in " + std::to_string(primitive_count) +
-                       " primitives are more than a scene can hold",
+                       " primitives exceed the capacity of a scene",
                    "nodes[" + std::to_string(placed.node) + "]", "use fewer instances, or a simpler mesh");
     return false;
   }
@@ -193,7 +194,7 @@ class SceneReader {
     const auto say = [&](const char* part) { parts += (parts.empty() ? ": " : ", ") + std::string(part); };
     if (!elements_of(document_.json, "animations").empty()) say("animations are ignored");
     if (std::ranges::any_of(document_.meshes, is_morphed)) say("morph targets have their default weights");
-    if (!parts.empty()) report_.warn("the scene stands still" + parts);
+    if (!parts.empty()) report_.warn("the scene does not move" + parts);
   }
 
   static constexpr uint32_t kNoMaterial = std::numeric_limits<uint32_t>::max();

@@ -34,7 +34,7 @@ Phong phong_of(const json& extension, const dvec3& base) {
 float ior_of(const json& extension, const std::string& title, LoadReport& report) {
   const float ior = extension.value("ior", 1.5F);
   if (ior == 0.0F || ior >= 1.0F) return ior;
-  report.warn("material " + title + ": an index of refraction lies between 0 and 1; 1 is used");
+  report.warn("material " + title + ": an index of refraction is between 0 and 1; promin uses 1");
   return 1.0F;
 }
 

@@ -47,7 +47,8 @@ bool has_length(const dvec3& normal) {
 }
 
 void warn_of_normals(const std::string& place, LoadReport& report) {
-  report.warn({"gltf.normals.zero", "a mesh primitive has normals of no length", "", place, "", "it is shaded flat"});
+  report.warn({"gltf.normals.zero", "a mesh primitive has normals of length 0", "", place, "",
+               "promin uses flat shading for it"});
 }
 
 /// Returns a valid component of a vertex colour: not negative, and 1, which has no effect, for a NaN.
@@ -75,12 +76,13 @@ class PrimitiveReader {
   Mesh read() {
     const int positions = accessor_of("POSITION");
     if (primitive_.mode < kGltfTriangles) {
-      report_.warn(
-          {"gltf.primitive.lines", "a mesh primitive holds points or lines", "", place_, "", "they are not drawn"});
+      report_.warn({"gltf.primitive.lines", "a mesh primitive contains points or lines", "", place_, "",
+                    "promin does not draw them"});
       return {};
     }
     if (positions < 0) {
-      report_.warn({"gltf.primitive.positions", "a mesh primitive has no POSITION", "", place_, "", "it is not drawn"});
+      report_.warn(
+          {"gltf.primitive.positions", "a mesh primitive has no POSITION", "", place_, "", "promin does not draw it"});
       return {};
     }
     vertex_count_ = document_.accessors[static_cast<size_t>(positions)].count;
@@ -89,7 +91,7 @@ class PrimitiveReader {
     mesh.triangles = assemble(read_corners());
     if (mesh.triangles.empty()) {
       report_.warn({"gltf.primitive.short", "a mesh primitive has too few corners for a triangle", "", place_, "",
-                    "it is not drawn"});
+                    "promin does not draw it"});
       return {};
     }
     keep_used_vertices(mesh.triangles);
@@ -121,8 +123,8 @@ class PrimitiveReader {
     const auto wrong = std::find_if(corners.begin(), corners.end(), [&](uint32_t i) { return i >= vertex_count_; });
     if (wrong == corners.end()) return corners;
     report_.refuse("gltf.indices.range",
-                   "index " + std::to_string(*wrong) + " is out of range, there are " + std::to_string(vertex_count_) +
-                       " vertices",
+                   "index " + std::to_string(*wrong) + " is out of range, because there are only " +
+                       std::to_string(vertex_count_) + " vertices",
                    place_ + ".indices, element " + std::to_string(wrong - corners.begin()), "export the file again");
     return {};
   }
@@ -135,8 +137,8 @@ class PrimitiveReader {
       triangles.reserve(count / 3);
       for (size_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
       if (count % 3 != 0) {
-        report_.warn({"gltf.primitive.incomplete", "a mesh primitive ends in an incomplete triangle", "", place_, "",
-                      "that is ignored"});
+        report_.warn({"gltf.primitive.incomplete", "a mesh primitive ends with an incomplete triangle", "", place_, "",
+                      "promin ignores this triangle"});
       }
     } else if (primitive_.mode == kGltfTriangleStrip) {
       for (size_t i = 0; i + 2 < count; ++i) {
@@ -175,8 +177,8 @@ class PrimitiveReader {
       if (weights_[target] == 0.0 || found == primitive_.targets[target].end()) continue;
       const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(found->second)];
       if (3 * accessor.count != values.size() || accessor.component_count != 3) {
-        report_.warn({"gltf.morph.count", "a morph target has another number of vertices", "",
-                      place_ + ".targets[" + std::to_string(target) + "]", "", "it is ignored"});
+        report_.warn({"gltf.morph.count", "a morph target has another number of vertices than its mesh", "",
+                      place_ + ".targets[" + std::to_string(target) + "]", "", "promin ignores it"});
         continue;
       }
       const std::vector<float> moves = read_floats(document_, found->second, report_);
@@ -276,8 +278,8 @@ class PrimitiveReader {
       const float* t = &values[4 * size_t{vertex}];
       const vec4 tangent(t[0], t[1], t[2], t[3] < 0.0F ? -1.0F : 1.0F);
       if (!has_length(dvec3(vec3(tangent)))) {
-        report_.warn({"gltf.tangents.zero", "a mesh primitive has tangents of no length", "", place_, "",
-                      "they are computed from its texture coordinates"});
+        report_.warn({"gltf.tangents.zero", "a mesh primitive has tangents of length 0", "", place_, "",
+                      "promin computes them from its texture coordinates"});
         return;
       }
       tangents.push_back(tangent);
@@ -356,7 +358,7 @@ class PrimitiveReader {
       if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;
       report_.refuse(
           "gltf.skin.joint",
-          "joint " + std::to_string(influences.joints[i]) + " is out of range, the skin has " +
+          "joint " + std::to_string(influences.joints[i]) + " is out of range, because the skin has only " +
               std::to_string(pose_->joint_matrices.size()) + " joints",
           element_place(("JOINTS_" + std::to_string(i % influences.per_vertex / 4)).c_str(), used_vertices_[vertex]),
           "export the file again");

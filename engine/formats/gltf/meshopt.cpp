@@ -50,16 +50,17 @@ std::string place_of(size_t view) {
 /// Returns the fault in the shape of the elements, or null.
 const char* find_wrong_stride(const Stream& stream) {
   if (stream.mode != "ATTRIBUTES") {
-    if (stream.stride != 2 && stream.stride != 4) return "indices have a stride of 2 or 4";
+    if (stream.stride != 2 && stream.stride != 4) return "the stride of indices is neither 2 nor 4";
     if (stream.filter != "NONE") return "indices have no filter";
     if (stream.mode == "TRIANGLES" && stream.count % 3 != 0) return "triangles have three indices each";
     return nullptr;
   }
-  if (stream.stride % 4 != 0 || stream.stride > 256) return "attributes have a stride of 4, 8, ... 256";
+  if (stream.stride % 4 != 0 || stream.stride > 256)
+    return "the stride of attributes is not a multiple of 4 from 4 to 256";
   if (stream.filter == "OCTAHEDRAL" && stream.stride != 4 && stream.stride != 8) {
-    return "the octahedral filter has a stride of 4 or 8";
+    return "the stride for the octahedral filter is neither 4 nor 8";
   }
-  if (stream.filter == "QUATERNION" && stream.stride != 8) return "the filter of quaternions has a stride of 8";
+  if (stream.filter == "QUATERNION" && stream.stride != 8) return "the stride for the filter of quaternions is not 8";
   return nullptr;
 }
 
@@ -80,8 +81,8 @@ void check_view(const json& document, size_t index, LoadReport& report) {
   // In 64 bits this does not wrap: the schema keeps counts below 2^31 and strides below 257.
   if (const auto length = view["byteLength"].get<uint64_t>(); length != stream.decoded_bytes()) {
     report.refuse("gltf.meshopt.count",
-                  "the view has " + std::to_string(length) + " bytes, its stream " + std::to_string(stream.count) +
-                      " elements of " + std::to_string(stream.stride),
+                  "the view has " + std::to_string(length) + " bytes, but its stream has " +
+                      std::to_string(stream.count) + " elements of " + std::to_string(stream.stride) + " bytes",
                   place_of(index), "compress the file again");
   }
 }
@@ -143,7 +144,9 @@ class Decoder {
     const uint64_t wanted = stream.decoded_bytes();
     if (wanted > ratio * stream.length) {
       refuse("gltf.meshopt.ratio",
-             std::to_string(stream.length) + " compressed bytes are too few for " + std::to_string(wanted), index);
+             std::to_string(stream.length) + " compressed bytes are too few for " + std::to_string(wanted) +
+                 " bytes of data",
+             index);
       return false;
     }
     if (wanted > room_) {

@@ -99,7 +99,7 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
     const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
     if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
     if (!is_finite(next.world_from_object)) {
-      report.refuse("gltf.node.far", "the node's place in the world overflows",
+      report.refuse("gltf.node.far", "the node's position in the world is too large for floating-point numbers",
                     "nodes[" + std::to_string(next.node) + "]",
                     "use smaller translations and scales in it and its parents");
       continue;

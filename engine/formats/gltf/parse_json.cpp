@@ -74,8 +74,9 @@ json parse_json(std::string_view text, LoadReport& report, const std::string& cu
   const int depth = depth_of(text);
   if (depth > kMaxJsonDepth) {
     report.refuse("json.depth",
-                  "the JSON nests " + std::to_string(depth) + " deep, more than " + std::to_string(kMaxJsonDepth), "",
-                  cure);
+                  "the JSON has " + std::to_string(depth) + " nested levels, more than the limit of " +
+                      std::to_string(kMaxJsonDepth),
+                  "", cure);
   }
   report.throw_if_refused();
   json document;

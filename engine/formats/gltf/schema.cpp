@@ -447,16 +447,17 @@ void check_gltf_version(json& document, LoadReport& report) {
                               : given->is_string() ? given->get<std::string>()
                                                    : given->dump();
   if (version.starts_with("1") || (version.empty() && is_of_gltf_1(document))) {
-    report.refuse("gltf.version", "the file is glTF 1.0, which is not read", "asset.version", "export it as glTF 2.0");
+    report.refuse("gltf.version", "the file is glTF 1.0, which promin does not read", "asset.version",
+                  "export it as glTF 2.0");
   } else if (version.empty()) {
-    report.repair(
-        {"gltf.version", "the version is missing", "", "asset.version", "write \"2.0\"", "it is read as glTF 2.0"});
+    report.repair({"gltf.version", "the version is missing", "", "asset.version", "write \"2.0\"",
+                   "promin reads the file as glTF 2.0"});
   } else if (version != "2" && !version.starts_with("2.")) {
     report.refuse("gltf.version", "glTF version " + quote(version) + " is not 2.x", "asset.version",
                   "export the file as glTF 2.0");
   } else if (!given->is_string() || version == "2") {
-    report.repair({"gltf.version", "the version is not written as glTF requires", version, "asset.version",
-                   "write \"2.0\"", "it is read as glTF 2.0"});
+    report.repair({"gltf.version", "the version does not have the form that glTF requires", version, "asset.version",
+                   "write \"2.0\"", "promin reads the file as glTF 2.0"});
   }
   const auto least = asset.find("minVersion");
   if (least != asset.end() && *least != "2.0") {

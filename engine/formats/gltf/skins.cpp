@@ -42,7 +42,7 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
     report.refuse("gltf.skin.count",
                   "a skin has " + std::to_string(numbers.size() / 16) + " inverse bind matrices for " +
                       std::to_string(joint_count) + " joints",
-                  place, "give one for each joint");
+                  place, "give one matrix for each joint");
     return matrices;
   }
   for (size_t joint = 0; joint < joint_count; ++joint) {

@@ -148,7 +148,7 @@ void GltfTextures::finish(Scene& scene) {
   for (Material& material : scene.materials) restore_roughness(material);
   if (const size_t count = textures_without_image_.size(); count > 0) {
     report_.warn(std::to_string(count) + (count == 1 ? " texture has" : " textures have") +
-                 " no image of a known format; materials are drawn without");
+                 " no image of a known format; promin draws materials without these textures");
   }
 }
 

@@ -19,7 +19,8 @@ size_t find_variant(const json& document, const std::string& name, const std::fi
   if (found != names.end()) return static_cast<size_t>(found - names.begin());
   const std::string what = "the scene has no variant " + quote(name);
   if (names.empty())
-    throw UsageError({"scene.variant.unknown", what + " or any other", file.string(), "leave the variant out"});
+    throw UsageError(
+        {"scene.variant.unknown", what + ", because it has no variants", file.string(), "remove the variant"});
   std::string known;
   for (const std::string& other : names) known += (known.empty() ? "" : ", ") + quote(other);
   throw UsageError({"scene.variant.unknown", what, file.string(), "choose one of: " + known});

@@ -60,10 +60,10 @@ class NffParser {
     const Statement* found = find_statement(keyword);
     const bool is_further_number = statement_ != nullptr && !statement_->is_shape && parse_any_number(keyword);
     if (found == nullptr && is_further_number)
-      return repair("nff.numbers.many", "has more numbers than it takes", keyword, "they are ignored");
+      return repair("nff.numbers.many", "has too many numbers", keyword, "they are ignored");
     if (found == nullptr) {
       return refuse("nff.statement.unknown", quote(keyword) + " is not a statement of NFF",
-                    "use v b l f c s p or pp, each with all its numbers");
+                    "use v, b, l, f, c, s, p or pp with all of its numbers");
     }
     statement_ = found;
     is_placed_ = true;
@@ -86,7 +86,7 @@ class NffParser {
   }
 
   void leave_out(ProblemCode code, const std::string& what) {
-    repair(code, what, {}, "it is left out");
+    repair(code, what, {}, "promin omits it");
     if (statement_->is_shape) report_.lose_geometry();
   }
 
@@ -123,7 +123,7 @@ class NffParser {
     // Written so that NaN fails.
     if (std::abs(number) <= kMaxCoordinate) return number;
     if (is_placed_ && !is_broken_) {
-      repair("nff.position.range", "has a coordinate that is not a number up to 1e15", word_, "it is left out");
+      repair("nff.position.range", "has a coordinate that is not a number up to 1e15", word_, "promin omits it");
       if (statement_->is_shape) report_.lose_geometry();
     }
     is_placed_ = false;
@@ -204,7 +204,7 @@ class NffParser {
     const dvec3 axis = apex - base;
     const double half_height = 0.5 * glm::length(axis);
     if (!(half_height >= kMinSize && half_height <= kMaxCoordinate)) {
-      return leave_out("nff.size.range", "has its base and apex at the same point, or too far apart");
+      return leave_out("nff.size.range", "has a base and an apex that coincide or are too far apart");
     }
     if (base_radius == apex_radius) {
       add(Cylinder{center, axis, half_height, std::abs(base_radius), true});
@@ -223,7 +223,7 @@ class NffParser {
     constexpr auto kMostCorners = static_cast<int64_t>(kMaxPolygonCorners);
     if (!count || *count < 0 || *count > kMostCorners) {
       return refuse("nff.corners.count", quote(word) + " is not a number of corners",
-                    "give 3 to " + std::to_string(kMostCorners));
+                    "give a whole number from 3 to " + std::to_string(kMostCorners));
     }
     const NffPolygon polygon{out_.corners.size(), out_.normals.size(), static_cast<uint32_t>(*count), has_normals};
     for (int64_t i = 0; i < *count && !is_broken_; ++i) {
@@ -273,7 +273,7 @@ class NffParser {
     // Written so that NaN, which coinciding points give, is refused too.
     if (!(glm::length(side) >= kLeastSine)) {
       return leave_out("nff.view.direction",
-                       "has from and at in the same place, or an up that is 0 or parallel to the view");
+                       "has equal points from and at, or a vector up that is 0 or parallel to the view");
     }
     camera.eye = vec3(*from);
     camera.look = vec3(look);
@@ -288,7 +288,7 @@ class NffParser {
     const auto is_side = [](double side) { return side >= 1.0 && side <= kMaxSide && side == std::floor(side); };
     if (is_broken_ || (is_side(size.x) && is_side(size.y))) return uvec2(size);
     repair("nff.resolution", "has a resolution that is not two whole numbers from 1 to 32768", {},
-           "its resolution is ignored");
+           "promin ignores its resolution");
     return uvec2(0);
   }
 
@@ -311,7 +311,7 @@ const std::array<NffParser::Statement, NffParser::kStatementCount> NffParser::kS
      {"s", "s x y z radius", &NffParser::read_sphere},
      {"c", "c x y z radius of the base, then x y z radius of the apex", &NffParser::read_cone},
      {"f", "f red green blue Kd Ks Shine T index-of-refraction", &NffParser::read_material, false},
-     {"l", "l x y z, and red green blue where it has a colour", &NffParser::read_light, false},
+     {"l", "l x y z, and red green blue if the light has a colour", &NffParser::read_light, false},
      {"b", "b red green blue", &NffParser::read_background, false},
      {"v", "v from x y z at x y z up x y z angle degrees hither distance resolution width height",
       &NffParser::read_view, false}}};

@@ -43,7 +43,7 @@ class MeshBuilder {
       if (normal == kNoObjIndex) return false;
       const double length = glm::length(dvec3(text_.normals[normal]));
       if (length > 0.0) continue;
-      if (length == 0.0) report_.warn("some normals have no length; faces that use them are shaded flat");
+      if (length == 0.0) report_.warn("some normals have length 0; promin draws faces that use them with flat shading");
       return false;
     }
     return true;
@@ -106,7 +106,7 @@ class MeshBuilder {
   /// A mesh's v grows downwards, from the first row of a picture.
   vec4 uv_of(const ObjCorner& corner) {
     if (corner.uv == kNoObjIndex) {
-      report_.warn("some corners of textured faces have no texture coordinates; 0 is used");
+      report_.warn("some corners of textured faces have no texture coordinates; promin uses 0");
       return vec4(0.0F, 1.0F, 0.0F, 0.0F);
     }
     const dvec2 uv = text_.uvs[corner.uv];
@@ -151,7 +151,7 @@ std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadRepor
       continue;
     }
     scene.materials.emplace_back().name = name;
-    report.warn("material " + quote(name) + " is not defined in any MTL file: it is drawn grey");
+    report.warn("material " + quote(name) + " is not defined in any MTL file; promin draws it grey");
   }
   textures.finish(scene);
   return indices;
@@ -179,11 +179,11 @@ bool has_texture(const Material& material) {
 
 void refuse_without_faces(const ObjText& text, LoadReport& report) {
   const auto refuse = [&](const std::string& what) {
-    report.refuse("obj.faces.none", what, "", "export it with faces");
+    report.refuse("obj.faces.none", what, "", "export the model with faces");
   };
   const std::string vertices = "the file has " + std::to_string(text.positions.size()) + " vertices but no faces";
-  if (text.small_face_count > 0) return refuse("all faces have fewer than 3 corners: there is nothing to draw");
-  if (text.has_lines_or_points) return refuse(vertices + ", and lines and points are not drawn");
+  if (text.small_face_count > 0) return refuse("all faces have fewer than 3 corners, so there is nothing to draw");
+  if (text.has_lines_or_points) return refuse(vertices + ", and promin does not draw lines and points");
   refuse(text.positions.empty() ? "the file has neither vertices nor faces" : vertices);
 }
 

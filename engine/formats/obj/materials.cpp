@@ -56,8 +56,8 @@ std::vector<std::string> find_library(const std::string& line, LoadReport& repor
   if (missing.empty()) return files;
   if (auto whole = find_by_last_part(line, "", report)) return {*whole};
   for (const std::string& name : missing) {
-    report.warn("the material file " + quote(name) +
-                " is not read and its materials are grey: " + reason_against(name, report));
+    report.warn("promin cannot read the material file " + quote(name) +
+                ", so its materials are grey: " + reason_against(name, report));
   }
   return files;
 }
@@ -123,9 +123,10 @@ void settle_transparency(std::vector<MtlMaterial>& materials, const std::string&
     return has_tr_alone(source) && opacity_of(source) == 0.0F && blends(source);
   });
   if (invisible == materials.end()) return;
-  report.warn("material " + quote(invisible->name) +
-              " would be invisible because of its Tr without a d: it is drawn opaque, and each Tr without a d of " +
-              file + " is read as d");
+  report.warn(
+      "material " + quote(invisible->name) +
+      " would be invisible because of its Tr without a d; promin draws it opaque, and reads each Tr without a d of " +
+      file + " as d");
   for (MtlMaterial& source : materials) {
     if (!has_tr_alone(source)) continue;
     const double opacity = source.find("Tr", 1.0).x;
@@ -203,14 +204,14 @@ void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& ma
 void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
   if (opacity_of(source) == 1.0F && (illum_of(source) == 4.0 || illum_of(source) == 9.0)) {
-    report.warn(title + " is of glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
-                ") and has a d of 1; it is drawn opaque");
+    report.warn(title + " is glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
+                ") and has a d of 1; promin draws it opaque");
   }
   const bool is_bending = is_refracting(source) || illum_of(source) == 5.0;
   if (is_bending && source.numbers.contains("Ni") && !is_index(source.find("Ni", kGlass).x)) {
-    report.warn(title + ": its Ni is not an index of refraction; 1.5 is used");
+    report.warn(title + ": its Ni is not an index of refraction; promin uses 1.5");
   }
-  if (illum_of(source) == 10.0) report.warn(title + " has illum 10 (only shadows); it is drawn as illum 2");
+  if (illum_of(source) == 10.0) report.warn(title + " has illum 10 (only shadows); promin draws it like illum 2");
   // Most exporters name one file for both.
   const MtlMap* ambient = source.find_map("map_Ka");
   const MtlMap* diffuse = source.find_map("map_Kd");

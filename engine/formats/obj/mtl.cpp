@@ -171,7 +171,7 @@ class MtlParser {
       if (!number || std::abs(*number) > kMaxCoordinate || (keyword == "illum" && *number < 0.0)) {
         return report_.repair({"mtl.number.range", keyword + " of a material is not a number from 0 to 1e15",
                                quote(word), place(), "use numbers from 0, with a decimal point",
-                               "the statement is ignored"});
+                               "promin ignores the statement"});
       }
       is_negative = is_negative || *number < 0.0;
       numbers[count++] = *number;

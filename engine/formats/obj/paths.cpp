@@ -40,7 +40,8 @@ std::optional<std::string> find_by_last_part(const std::string& name, const std:
   if (!found) found = find_named_file(last, "", report);
   if (found)
     report.warn(
-        "files that are named in other folders are read from the scene's folder, where files of the same names exist");
+        "promin reads files that are named in other folders from the scene's folder, which has files with the same "
+        "names");
   return found;
 }
 

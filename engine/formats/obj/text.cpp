@@ -153,8 +153,8 @@ class ObjParser {
     }
     vec3 color(n[3], n[4], n[5]);
     if (!numbers.are_good(6) || n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) {
-      repair("obj.color.range", "a vertex colour is not three numbers of 0 or more", numbers.bad_word,
-             "use numbers from 0", "white is used");
+      repair("obj.color.range", "a vertex colour is not three numbers from 0", numbers.bad_word, "use numbers from 0",
+             "white is used");
       color = vec3(1.0F);
     }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
@@ -188,7 +188,7 @@ class ObjParser {
       return;
     }
     if (numbers.word_count > 3) {
-      repair("obj.normal.numbers", "a normal has more than 3 numbers", "", "give it x y z",
+      repair("obj.normal.numbers", "a normal has more than 3 numbers", "", "write only x y z",
              "those after the third are ignored");
     }
     out_.normals.emplace_back(n[0], n[1], n[2]);
@@ -208,8 +208,8 @@ class ObjParser {
     if (count < 3) {
       ++out_.small_face_count;
       out_.corners.resize(first);
-      return repair("obj.face.corners", "a face has fewer than 3 corners", "", "give it 3 or more, on one line",
-                    "it is left out");
+      return repair("obj.face.corners", "a face has fewer than 3 corners", "", "give it 3 or more corners on one line",
+                    "promin omits it");
     }
     if (count > kMaxPolygonCorners) {
       refuse("obj.face.corners", "a face has " + std::to_string(count) + " corners",
@@ -266,11 +266,12 @@ class ObjParser {
       is_drawn[i] = check_positions(corners, face_lines_[i]);
       if (forget_past_the_end(corners, &ObjCorner::uv, out_.uvs.size())) {
         report_.repair({"obj.uv.index", "a face refers to texture coordinates that do not exist", "",
-                        place_of(face_lines_[i]), "use an index up to their number", "it is drawn without them"});
+                        place_of(face_lines_[i]), "use an index up to the number of texture coordinates",
+                        "it is drawn without them"});
       }
       if (forget_past_the_end(corners, &ObjCorner::normal, out_.normals.size())) {
         report_.repair({"obj.normal.index", "a face refers to a normal that does not exist", "",
-                        place_of(face_lines_[i]), "use an index up to their number", "it is shaded flat"});
+                        place_of(face_lines_[i]), "use an index up to the number of normals", "it is shaded flat"});
       }
     }
     for (const BadVertex& vertex : bad_vertices_) report_bad_vertex(vertex);
@@ -313,14 +314,15 @@ class ObjParser {
     for (const ObjCorner& corner : corners) {
       if (corner.position >= out_.positions.size()) {
         report_.refuse("obj.face.index",
-                       "index " + std::to_string(uint64_t{corner.position} + 1) + " is out of range, there are " +
-                           std::to_string(out_.positions.size()) + " vertices",
+                       "index " + std::to_string(uint64_t{corner.position} + 1) +
+                           " is out of range, because there are only " + std::to_string(out_.positions.size()) +
+                           " vertices",
                        place_of(line), "use an index up to their number");
       } else if (BadVertex* bad = find_bad_vertex(corner.position); bad != nullptr) {
         bad->is_used = true;
         if (is_placed) {
           report_.repair({"obj.position.range", "a face has a vertex that is not three numbers up to 1e15", bad->what,
-                          place_of(bad->line), kVertexCure, "the face is left out"});
+                          place_of(bad->line), kVertexCure, "promin omits the face"});
         }
         is_placed = false;
       }
@@ -347,7 +349,7 @@ class ObjParser {
   void report_bad_vertex(const BadVertex& vertex) {
     if (vertex.is_used) return;
     report_.repair({"obj.position.range", "a vertex that no face uses is not three numbers up to 1e15", vertex.what,
-                    place_of(vertex.line), kVertexCure, "it is left out"});
+                    place_of(vertex.line), kVertexCure, "promin omits it"});
   }
 
   void use_material(const std::string& name) {
@@ -378,7 +380,7 @@ class ObjParser {
 ObjText parse_obj_text(std::string_view text, LoadReport& report) {
   text = without_zero_bytes_at_end(text);
   if (text.find('\0') != std::string_view::npos) {
-    report.refuse("obj.file.kind", "the file is not text", "", "name a Wavefront OBJ file");
+    report.refuse("obj.file.kind", "the file is not text", "", "use a Wavefront OBJ file");
     return {};
   }
   return ObjParser(text, report).parse();

@@ -125,7 +125,7 @@ TextureSlot ObjTextures::read_heights(const MtlMap* map) {
   HeightMap heights = {map->strength * glm::sign(map->scale), map->channel, map->is_clamped};
   const bool is_of_normals = holds_normals(*picture);
   if (is_of_normals) {
-    report_.warn("image " + quote(map->file) + " of a height map holds normals; it is used as a normal map");
+    report_.warn("image " + quote(map->file) + " of a height map contains normals; promin uses it as a normal map");
     heights.height = dvec2(0.0);
   }
   const std::tuple key(picture, heights.height.x, heights.height.y, heights.channel, heights.is_clamped);
@@ -173,7 +173,7 @@ ObjTextures::ImagePointer ObjTextures::merge(const ImagePointer& roughness, cons
   }
   if (roughness != nullptr && metallic != nullptr && roughness->size != metallic->size) {
     report_.warn("images " + quote(roughness->name) + " and " + quote(metallic->name) +
-                 " differ in size; the smaller one is enlarged");
+                 " differ in size; promin enlarges the smaller one");
   }
   merged->texels.reserve(texel_count(merged->size));
   for (uint32_t y = 0; y < merged->size.y; ++y) {

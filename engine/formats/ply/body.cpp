@@ -248,7 +248,7 @@ class BodyReader {
     if (number >= 0.0 && number < static_cast<double>(vertex_count_) && number == std::floor(number)) {
       return static_cast<uint32_t>(number);
     }
-    problem_ = "a face refers to a vertex that does not exist, there are " + std::to_string(vertex_count_);
+    problem_ = "a face refers to a vertex that does not exist, because there are only " + std::to_string(vertex_count_);
     return std::nullopt;
   }
 
@@ -264,7 +264,7 @@ class BodyReader {
     }
     if (list_.size() < 3) {
       report_.repair({"ply.face.corners", "a face has fewer than 3 corners", "", place_of("face"), "give it 3",
-                      "the face is left out"});
+                      "promin omits the face"});
       out_.corners.resize(out_.corners.size() - list_.size());
       return;
     }

@@ -85,7 +85,7 @@ class HeaderParser {
 
   PlyHeader parse() {
     if (!lines_.advance() || without_byte_order_mark(lines_.line()) != "ply") {
-      report_.refuse("ply.file.kind", "the first line is not \"ply\"", "", "name a PLY file");
+      report_.refuse("ply.file.kind", "the first line is not \"ply\"", "", "use a PLY file");
       return {};
     }
     while (lines_.advance()) {
@@ -95,7 +95,7 @@ class HeaderParser {
       }
       read_statement(lines_.line());
     }
-    refuse("ply.header.short", "the header has no end", kExportAgain);
+    refuse("ply.header.short", "the header does not end", kExportAgain);
     return {};
   }
 
@@ -107,7 +107,7 @@ class HeaderParser {
   void finish() {
     out_.size_bytes = lines_.next();
     out_.line_count = lines_.number();
-    if (!has_format_) refuse("ply.header.format", "the header states no format", kExportAgain);
+    if (!has_format_) refuse("ply.header.format", "the header does not contain the format", kExportAgain);
     check_counts(file_.size() - out_.size_bytes);
   }
 
@@ -211,7 +211,7 @@ class HeaderParser {
         report_.refuse("ply.file.short",
                        "the header declares " + std::to_string(element.row_count) + " rows of " + quote(element.name) +
                            ", but the file has room for " + std::to_string(rows),
-                       "", "the file is cut short: copy or export it again");
+                       "", "copy or export it again, because it is incomplete");
         return;
       }
       room -= element.row_count * row_bytes;

@@ -69,18 +69,18 @@ void check_elements(const PlyHeader& header, LoadReport& report) {
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr) {
     report.refuse("ply.vertices.missing", "the file has no element \"vertex\"", "",
-                  "name a PLY file that holds a mesh");
+                  "use a PLY file that contains a mesh");
     return;
   }
   if (!has_property(*vertices, "x") || !has_property(*vertices, "y") || !has_property(*vertices, "z")) {
-    report.refuse("ply.vertices.missing", "the vertices have no x, y and z", "", "export it with positions");
+    report.refuse("ply.vertices.missing", "the vertices have no x, y and z", "", "export the mesh with positions");
   }
   if (vertices->row_count >= kUnused)
-    report.refuse("ply.vertices.many", "the file has too many vertices", "", "divide the mesh");
+    report.refuse("ply.vertices.many", "the file has too many vertices", "", "divide the mesh into several files");
   if (vertices->row_count == 0 || lists_vertices(header.find("face")) || lists_vertices(header.find("tristrips")))
     return;
   report.refuse("ply.faces.missing", "the file has " + std::to_string(vertices->row_count) + " vertices but no faces",
-                "", "export it with faces; point clouds are not drawn");
+                "", "export the model with faces, because promin does not draw point clouds");
 }
 
 /// Makes a mesh from the content of a file.
@@ -191,7 +191,7 @@ class MeshMaker {
       if (is_in_range(dvec3(body_.positions[corner]))) continue;
       report_.repair({"ply.position.range", "a face has a vertex coordinate that is not a number up to 1e15", "",
                       "vertex " + std::to_string(corner), "export the mesh again, in a larger unit of length",
-                      "the face is left out"});
+                      "promin omits the face"});
       return false;
     }
     return true;

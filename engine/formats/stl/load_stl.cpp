@@ -121,7 +121,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
     if (!std::ranges::all_of(corners, [](const vec3& p) { return is_in_range(dvec3(p)); })) {
       report.repair({"stl.position.range", "a facet has a vertex coordinate that is not a number up to 1e15", "",
                      "facet " + std::to_string(i), "export the mesh again, in a larger unit of length",
-                     "the facet is left out"});
+                     "promin omits the facet"});
       continue;
     }
     for (const vec3& corner : corners) solid.corners.emplace_back(dvec3(corner) - report.center());
@@ -132,7 +132,7 @@ StlSolid read_facets(std::string_view file, uint64_t count, LoadReport& report) 
 
 std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   if (file.size() < kFirstFacet) {
-    report.refuse("stl.file.kind", "the file is not an STL file", "", "name an STL file, binary or text");
+    report.refuse("stl.file.kind", "the file is not an STL file", "", "use a binary or text STL file");
     return {};
   }
   uint64_t count = facet_count(file);
@@ -140,14 +140,14 @@ std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   // A program that writes to a pipe cannot go back to write the count.
   const bool is_open = count == 0 || count == std::numeric_limits<uint32_t>::max();
   if (is_open && room > 0 && file.size() == kFirstFacet + kFacetBytes * room) {
-    report.repair({"stl.count.missing", "the number of facets was never written", std::to_string(count), "",
-                   "export the file again", "all facets that the file holds are read"});
+    report.repair({"stl.count.missing", "the number of facets is missing", std::to_string(count), "",
+                   "export the file again", "promin reads all facets in the file"});
     count = room;
   }
   if (count > room) {
     report.refuse("stl.file.short",
                   "the file declares " + std::to_string(count) + " facets, but has room for " + std::to_string(room),
-                  "", "the file is cut short or is not an STL file: copy or export it again");
+                  "", "copy or export it again, because it is incomplete or not an STL file");
     return {};
   }
   if (file.size() > kFirstFacet + kFacetBytes * count) report.warn("bytes after the last facet are ignored");

@@ -84,7 +84,7 @@ class StlParser {
 
   /// The normal may be anything, as it is not used.
   void begin_facet() {
-    if (is_in_facet_) refuse("stl.facet.nested", "a facet begins within another", "export the file again");
+    if (is_in_facet_) refuse("stl.facet.nested", "a facet begins within another facet", "export the file again");
     if (solids_.empty()) solids_.emplace_back();
     is_in_facet_ = true;
     is_placed_ = true;
@@ -95,7 +95,7 @@ class StlParser {
   }
 
   void read_vertex() {
-    if (!is_in_facet_) return refuse("stl.facet.nested", "a vertex lies outside of facets", "export the file again");
+    if (!is_in_facet_) return refuse("stl.facet.nested", "a vertex is outside a facet", "export the file again");
     vec3 corner;
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.take();
@@ -105,7 +105,7 @@ class StlParser {
       if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
         is_placed_ = false;
         repair("stl.position.range", "a facet has a vertex coordinate that is not a number up to 1e15", quote(word),
-               "the facet is left out");
+               "promin omits the facet");
       }
       corner[i] = static_cast<float>(*number - report_.center()[i]);
     }
@@ -113,13 +113,12 @@ class StlParser {
   }
 
   void end_facet() {
-    if (!is_in_facet_)
-      return refuse("stl.facet.nested", "the end of a facet has no beginning", "export the file again");
+    if (!is_in_facet_) return refuse("stl.facet.nested", "a facet ends that has not begun", "export the file again");
     is_in_facet_ = false;
     std::vector<vec3>& all = solids_.back().corners;
     if (corners_.size() < 3) {
       repair("stl.facet.corners", "a facet has fewer than 3 corners", std::to_string(corners_.size()),
-             "the facet is left out");
+             "promin omits the facet");
     } else if (corners_.size() > kMaxPolygonCorners) {
       refuse("stl.facet.corners", "a facet has " + std::to_string(corners_.size()) + " corners", "give it 3");
     } else if (is_placed_ && corners_.size() == 3) {

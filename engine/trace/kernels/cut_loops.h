@@ -10,9 +10,8 @@ namespace promin {
 /// then incomplete. All callers that trace use this function.
 inline void refuse_cut_loops(bool were_loops_cut) {
   if (!were_loops_cut) return;
-  throw RunError({"device.loops.cut",
-                  "tracing takes longer than the driver allows: it ends loops after 65535 iterations", "",
-                  "use another device, or remove surfaces that coincide", Setting::kDevice});
+  throw RunError({"device.loops.cut", "tracing takes too many iterations: the driver ends loops after 65535 iterations",
+                  "", "use another device, or remove coincident surfaces", Setting::kDevice});
 }
 
 }  // namespace promin

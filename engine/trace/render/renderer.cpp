@@ -112,7 +112,7 @@ void Renderer::set_environment(const Environment& environment) {
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
   check_view(view);
   check("view.pixel.outside", pixel.x < view.size.x && pixel.y < view.size.y,
-        "the pixel to explain lies outside the picture", "pixel", "name a pixel inside");
+        "the pixel to explain lies outside the picture", "pixel", "use a pixel inside");
   Explanation explanation;
   gpu::translate_vulkan_errors([&] { explanation = impl_->tracer.explain(view, pixel); });
   return explanation;

@@ -97,7 +97,7 @@ std::string encode(const HitPiece& piece) {
 /// Reads the description of a piece and checks its bytes against it. Throws InputError.
 HitPiece decode(const jobs::Content& content, const fs::path& file) {
   const InputError bad(
-      {"job.piece.kind", "the piece does not hold hits", file.string(), "remove it and run the job again"});
+      {"job.piece.kind", "the piece does not contain hits", file.string(), "remove it and run the job again"});
   HitPiece piece;
   try {
     const Json json = Json::parse(content.description);
@@ -251,7 +251,7 @@ class HitLists {
     const uint64_t begin = ray == 0 ? 0 : ends_[ray - 1];
     if (begin <= ends_[ray] && ends_[ray] <= hits_.size()) return hits_.subspan(begin, ends_[ray] - begin);
     throw InputError(
-        {"job.piece.kind", "the piece does not hold hits", file.string(), "remove it and run the job again"});
+        {"job.piece.kind", "the piece does not contain hits", file.string(), "remove it and run the job again"});
   }
 
  private:
@@ -295,7 +295,7 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
 void check_count(size_t count, const std::vector<fs::path>& files) {
   if (files.size() == count) return;
   throw UsageError({"job.outputs.count",
-                    fmt::format("the job's results are written to {}, not to {}",
+                    fmt::format("the results of this job need {}, but the number of outputs is {}",
                                 count == 2 ? "two files, hits and offsets" : "one file", files.size()),
                     files.empty() ? "" : files.front().string(),
                     count == 2 ? "give --output and --offsets" : "give --output alone"});
@@ -373,13 +373,14 @@ void merge_hits(const jobs::Job& job, const std::vector<fs::path>& files, const 
     if (!first) first = piece;
     if (!written) written.emplace(piece.query, files, rays);
     if (piece.query != first->query || piece.rays.begin != done) {
-      throw InputError({"job.piece.order", "the piece's rays do not follow those of the piece before", file.string(),
-                        "remove it and run the job again"});
+      throw InputError({"job.piece.order", "the piece's rays do not follow the rays of the previous piece",
+                        file.string(), "remove it and run the job again"});
     }
     if (piece.driver != first->driver && !is_mixed) {
-      throw InputError({"job.device.other",
-                        fmt::format("the piece was made on {}, other pieces on {}", piece.driver, first->driver),
-                        file.string(), "remove the pieces of one device, and run the job again on the other"});
+      throw InputError(
+          {"job.device.other",
+           fmt::format("the piece was made on {}, but other pieces were made on {}", piece.driver, first->driver),
+           file.string(), "remove the pieces of one device, and run the job again on the other device"});
     }
     written->add(content, piece.rays.count());
     done = piece.rays.end;

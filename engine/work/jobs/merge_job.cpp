@@ -38,12 +38,13 @@ void check_job_files(const jobs::Job& job, const std::vector<fs::path>& outputs,
   } else {
     throw InputError(
         {"job.kind.unknown",
-         fmt::format("the job's kind is \"{}\", neither that of promin render nor that of promin cast", kind),
-         job.folder().string(), "name a folder that was given to promin render --job or promin cast --job"});
+         fmt::format("the job's kind is \"{}\", which is neither the kind of promin render nor that of promin cast",
+                     kind),
+         job.folder().string(), "give a folder that promin render --job or promin cast --job created"});
   }
   for (const fs::path& output : kind == kPictureJob ? number_pictures(job, outputs, frames) : outputs) {
     if (!is_input(job, output)) continue;
-    throw UsageError({"output.input", "the output would overwrite an input", output.string(), "name another file"});
+    throw UsageError({"output.input", "the output would overwrite an input", output.string(), "use another file"});
   }
 }
 
@@ -53,7 +54,7 @@ std::optional<PictureError> merge_job(const jobs::Job& job, const std::vector<fs
   check_job_files(job, outputs, frames);
   if (job.manifest().kind == kPictureJob) return merge_pictures(job, outputs, progress, frames);
   if (frames)
-    throw UsageError({"job.frames.none", "a job of rays has no frames", job.folder().string(), "leave the frames out"});
+    throw UsageError({"job.frames.none", "a job of rays has no frames", job.folder().string(), "remove the frames"});
   merge_hits(job, outputs, progress, is_mixed);
   return {};
 }

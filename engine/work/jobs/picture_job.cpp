@@ -129,8 +129,8 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
                        part.window.hi == first.window.hi && part.error.has_value() == first.error.has_value() &&
                        std::ranges::equal(part.channels, first.channels, is_same_channel);
   if (!is_same)
-    throw InputError({"job.piece.other", "the piece is part of another picture than the other pieces", file.string(),
-                      "remove it and run the job again"});
+    throw InputError({"job.piece.other", "the piece does not belong to the same picture as the other pieces",
+                      file.string(), "remove it and run the job again"});
   if (part.metadata.size() != first.metadata.size()) {
     throw InputError({"job.piece.other", "the piece has other metadata than the other pieces", file.string(),
                       "remove it and run the job again"});
@@ -140,10 +140,10 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
     // Versions with the same results give the same pieces.
     const bool may_differ = is_error_metadata(name) || name == kVersionEntry;
     if (part.metadata[i] == first.metadata[i] || may_differ) continue;
-    throw InputError(
-        {"job.device.other",
-         fmt::format("the piece's {} is \"{}\", that of other pieces is \"{}\"", name, value, first.metadata[i].second),
-         file.string(), "remove the pieces of one device, and run the job again on the other"});
+    throw InputError({"job.device.other",
+                      fmt::format("the piece has the {} \"{}\", but other pieces have \"{}\"", name, value,
+                                  first.metadata[i].second),
+                      file.string(), "remove the pieces of one device, and run the job again on the other device"});
   }
 }
 
@@ -241,7 +241,7 @@ std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
     pictures.push_back(find_pieces_of(job, frame));
     if (!pictures.back().empty()) continue;
     throw UsageError({"job.frame.missing", fmt::format("the job has no frame {}", frame), job.folder().string(),
-                      "name frames that the job has"});
+                      "give frames that belong to the job"});
   }
   return pictures;
 }
@@ -253,7 +253,7 @@ void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     if (number_file(file, 0) != file) continue;
     throw UsageError({"output.frames.one", "several frames would be written to one file", file.string(),
-                      "write #### in its name for the number of a frame"});
+                      "put #### into its name, which stands for the frame number"});
   }
 }
 
@@ -272,14 +272,14 @@ std::vector<PixelWindow> cut_picture(const PixelWindow& window, const JobOptions
   const uvec2 tiles = options.tiles.value_or(uvec2(1, options.pieces.value_or(choose_bands(window, pictures))));
   if (tiles.x > size.x || tiles.y > size.y) {
     throw UsageError({"job.pieces.many",
-                      fmt::format("{} columns and {} rows of pieces are more than the picture of {}x{} pixels has",
+                      fmt::format("{} columns and {} rows of pieces are too many for a picture of {}x{} pixels",
                                   tiles.x, tiles.y, size.x, size.y),
-                      "", "give fewer by --pieces or --tiles"});
+                      "", "use --pieces or --tiles to request fewer"});
   }
   if (uint64_t{tiles.x} * tiles.y > kMostParts) {
     throw UsageError({"job.pieces.many",
-                      fmt::format("{} pieces are more than {}", uint64_t{tiles.x} * tiles.y, kMostParts), "",
-                      "give fewer by --pieces or --tiles"});
+                      fmt::format("{} pieces are more than the limit of {}", uint64_t{tiles.x} * tiles.y, kMostParts),
+                      "", "use --pieces or --tiles to request fewer"});
   }
   const std::vector<uint32_t> columns = divide(size.x, tiles.x);
   const std::vector<uint32_t> rows = divide(size.y, tiles.y);

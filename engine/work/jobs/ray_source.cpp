@@ -22,7 +22,7 @@ class RayFile : public RaySource {
   void read(uint64_t first, std::span<Ray> rays, const dvec3& center) override {
     if (stamp_of(file_) != stamp_) {
       throw InputError({"file.changed", "the file changed after the job's rays were first read", file_.string(),
-                        "restore the file, or name another folder for the job"});
+                        "restore the file, or use another folder for the job"});
     }
     const std::lock_guard lock(mutex_);
     reader_.seek(first);

@@ -52,12 +52,12 @@ std::unique_ptr<PlannedJob> plan_job_of_kind(const std::string& kind, const std:
                                              const std::function<CastSpec()>& read_hits, const fs::path& folder,
                                              const Messages& messages, std::shared_ptr<RaySource> rays) {
   if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "leave the rays out"});
+    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "remove the rays"});
     return plan_job(read_pictures(), folder, messages);
   }
   if (kind == kRayJob) return plan_job(read_hits(), folder, messages, std::move(rays));
   throw UsageError(
-      {"job.command.unknown", fmt::format("the command \"{}\" cannot run as a job", kind), "", "use render or cast"});
+      {"job.command.unknown", fmt::format("the command \"{}\" cannot be a job", kind), "", "use render or cast"});
 }
 
 std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text, const fs::path& file,
@@ -80,8 +80,8 @@ std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Messages& mes
   const std::optional<std::string> text = read_job_spec(job);
   const std::string& kind = job.manifest().kind;
   if (!text || (kind != kPictureJob && kind != kRayJob)) {
-    throw InputError({"job.spec.missing", "the folder does not say how the job's pieces are made",
-                      spec_file(job).string(), "run the job's command once more"});
+    throw InputError({"job.spec.missing", "the file that says how to make the job's pieces is missing",
+                      spec_file(job).string(), "run the job's command again"});
   }
   std::unique_ptr<PlannedJob> planned =
       plan_job_of_text(kind, *text, spec_file(job), job.folder(), messages, std::move(rays));

@@ -31,7 +31,7 @@ std::string list_cameras(const Scene& scene) {
 /// The name is tried first, because a camera may be called "2".
 const Camera& find_camera(const Scene& scene, const std::string& selection) {
   if (scene.cameras.empty()) {
-    throw UsageError({"camera.missing", "the scene has no cameras", scene.file.string(), "leave --camera out"});
+    throw UsageError({"camera.missing", "the scene has no cameras", scene.file.string(), "remove --camera"});
   }
   for (const Camera& camera : scene.cameras) {
     if (camera.name == selection) return camera;
@@ -70,7 +70,7 @@ dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Ca
   const dvec3 direction = eye ? point - *eye : point - center - dvec3(camera.eye);
   if (direction != dvec3(0.0)) return direction;
   throw UsageError(
-      {"camera.point.eye", "--look-at names the position of the eye", "", "give another point, or --direction"});
+      {"camera.point.eye", "--look-at is the position of the eye", "", "give another point, or --direction"});
 }
 
 /// Returns the user's direction; empty if none is given.
@@ -109,8 +109,9 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
     direction = middle_of(bounds) + scene.center - *pose.eye;
     // The bounds of shapes are rounded to fp32.
     if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(bounds.extent()))) {
-      throw UsageError({"camera.eye.middle", "--eye is at the middle of the scene, so there is no direction of view",
-                        "", "give --look-at or --direction as well"});
+      throw UsageError({"camera.eye.middle",
+                        "--eye is at the middle of the scene, so promin cannot derive a direction of view", "",
+                        "give --look-at or --direction as well"});
     }
   }
   face(camera, direction, pose.up);
@@ -190,8 +191,8 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
   if (bounds_of(scene).is_empty()) return "";  // what has read it says so
   const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
   return fmt::format(
-      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} in place of any direction looks at its "
-      "middle, and --from three-quarter in place of all other words of the camera shows all of it",
+      "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} instead of a direction looks at its "
+      "middle, and --from three-quarter instead of all other options of the camera shows all of it",
       middle.x, middle.y, middle.z);
 }
 
@@ -203,7 +204,7 @@ std::string describe_small_model(const Scene& scene, const ViewOptions& options,
       covered_share(scene, view.camera, static_cast<float>(view.size.x) / static_cast<float>(view.size.y));
   if (share >= kSmall || bounds_of(scene).is_empty()) return "";
   return fmt::format(
-      "the file's camera shows the model on {:.0f} % of the picture's side; --from three-quarter frames it",
+      "the model covers only {:.0f} % of the picture's side in the file's camera; --from three-quarter frames it",
       100.0 * share);
 }
 

@@ -81,7 +81,7 @@ TimedCamera read_frame(const json& frame, int version, const std::string& place,
   }
   if (frame.contains("fov_deg") == frame.contains("ymag")) {
     report.refuse("path.frame.choice", "a frame has both fov_deg and ymag, or neither", place,
-                  "give only one: fov_deg for a perspective camera");
+                  "give fov_deg for a perspective camera, or ymag for an orthographic one");
   } else if (frame.contains("fov_deg")) {
     timed.camera.yfov = static_cast<float>(glm::radians(frame["fov_deg"].get<double>()));
   } else {
@@ -207,7 +207,7 @@ PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
   const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
   if (count > static_cast<double>(kMaxCount)) {
     throw UsageError({"path.frames.many",
-                      fmt::format("a path of {:g} s has {:.0f} pictures at {:g} per second, more than {}",
+                      fmt::format("a path of {:g} s has {:.0f} pictures at {:g} per second, but the limit is {}",
                                   path_.frames.back().time_s, count, fps_, kMaxCount),
                       "", "lower --fps"});
   }

@@ -51,7 +51,7 @@ std::vector<PlannedFrame> plan_frames(const RenderSpec& options) {
   for (const std::filesystem::path& file : options.pictures) {
     if (frames.size() == 1 || number_file(file, 0) != file) continue;
     throw UsageError({"output.frames.one", fmt::format("{} frames would be written to one file", frames.size()),
-                      file.string(), "write #### in its name for the number of a frame"});
+                      file.string(), "put #### into its name, which stands for the frame number"});
   }
   return frames;
 }

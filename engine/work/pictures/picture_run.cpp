@@ -17,8 +17,8 @@ namespace {
 void check_explained_pixel(const RenderSpec& options, const uvec2& size) {
   if (!options.explained_pixel || glm::all(glm::lessThan(*options.explained_pixel, size))) return;
   throw UsageError({"view.pixel.outside",
-                    fmt::format("the pixel of --explain lies outside the picture of {}x{}", size.x, size.y), "",
-                    "name a pixel inside, or give a larger --size"});
+                    fmt::format("the pixel of --explain is outside the picture of {}x{} pixels", size.x, size.y), "",
+                    "use a pixel inside the picture, or give a larger --size"});
 }
 
 /// The cameras of all frames.

@@ -38,7 +38,8 @@ std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2
 uvec2 choose_size(const ViewOptions& options, const Camera& camera, const Scene& scene) {
   if (const auto size = size_for(options.size.value_or(uvec2(0)), camera)) return *size;
   throw UsageError({"camera.aspect",
-                    fmt::format("the camera's aspect ratio of {} gives no sensible width", camera.aspect_ratio),
+                    fmt::format("the camera's aspect ratio of {} is too extreme to compute the width of the picture",
+                                camera.aspect_ratio),
                     scene.file.string(), "give --size"});
 }
 
@@ -66,8 +67,8 @@ View make_view(const Scene& scene, const ViewOptions& options, const Messages& c
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
     throw UsageError({"view.crop.outside",
-                      fmt::format("--crop extends beyond the picture of {}x{}", view.size.x, view.size.y), "",
-                      "choose pixels inside, or give a larger --size"});
+                      fmt::format("--crop extends beyond the picture of {}x{} pixels", view.size.x, view.size.y), "",
+                      "use a crop inside the picture, or give a larger --size"});
   }
   view.samples_per_pixel = options.samples_per_pixel.value_or(View{}.samples_per_pixel);
   view.filter = options.filter;
@@ -156,7 +157,8 @@ void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
   for (const uint32_t index : indices) {
     if (index < scene.lights.size()) continue;
     throw UsageError({"light.unknown", fmt::format("the scene has no light {} to switch off", index),
-                      scene.file.string(), fmt::format("it has {}; the first is number 0", scene.lights.size())});
+                      scene.file.string(),
+                      fmt::format("the scene has {} in all, and the first is number 0", scene.lights.size())});
   }
 }
 

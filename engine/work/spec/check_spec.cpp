@@ -28,7 +28,7 @@ void refuse_if(ProblemCode code, bool holds, const std::string& what, const std:
 
 /// Refuses the first of the others that is given beside `name`.
 void refuse_beside(std::string_view name, std::initializer_list<Given> others,
-                   const std::string& cure = "leave one out") {
+                   const std::string& cure = "remove one of them") {
   for (const auto& [is_given, other] : others) {
     refuse_if("usage.options.contradict", is_given, fmt::format("{} and {} contradict each other", name, other), cure);
   }
@@ -80,8 +80,9 @@ void check_no_camera(const ViewOptions& options, std::string_view name) {
   if (!options.camera && !options.pose.any()) return;
   throw UsageError(
       {"usage.options.contradict",
-       fmt::format("{} and a camera of --camera, --from, --eye, --look-at or the like contradict each other", name), "",
-       "leave one out"});
+       fmt::format("{} and options of the camera (--camera, --from, --eye, --look-at and others) contradict each other",
+                   name),
+       "", "remove one of them"});
 }
 
 namespace {
@@ -131,12 +132,13 @@ void check_target(const RenderSpec& options) {
   const bool averages = view.look.averages_exposure;
   const std::string_view name = error.target ? "--target-error" : "--time-limit";
   refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
-                "leave one out; --min-spp and --max-spp limit the samples");
+                "remove one of them; --min-spp and --max-spp limit the samples of --target-error");
   refuse_beside(name, {{is_debug, "--shading"}});
   // Each repetition could reach another target, and so another picture.
   if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
   refuse_if("usage.options.contradict", error.space == ErrorSpace::kDisplay && averages,
-            "--error-in display and --exposure average contradict each other: the average is known only after tracing",
+            "--error-in display and --exposure average contradict each other, because the average is known only after "
+            "tracing",
             "give --exposure in stops");
   check_error_target(*error.error_target());
 }
@@ -147,10 +149,11 @@ void check_fixed_samples(const RenderSpec& options) {
   const bool is_debug = shades_for_debugging(options);
   const AovSet named = named_aovs(options);
   refuse_if("usage.options.contradict", (named.has_any(AovSource::kParts) || named.unlit) && is_debug,
-            "--shading and an --aov of light contradict each other: a debug shading computes no light",
-            "leave one out");
+            "--shading and an --aov of light contradict each other, because a debug shading computes no light",
+            "remove one of them");
   refuse_if("usage.options.contradict", options.aovs.error && is_debug,
-            "--shading and --aov error contradict each other: a debug shading has no error estimate", "leave one out");
+            "--shading and --aov error contradict each other, because a debug shading has no error estimate",
+            "remove one of them");
   for (const auto& [is_given, name] : {Given{error.min_samples.has_value(), "--min-spp"},
                                        {error.max_samples.has_value(), "--max-spp"},
                                        {error.space.has_value(), "--error-in"}}) {
@@ -173,8 +176,8 @@ void check_job(const RenderSpec& options) {
                           {options.tracing.repeat_count > 1, "--repeat"}});
   if (job.pieces) refuse_beside("--pieces", {{job.tiles.has_value(), "--tiles"}});
   refuse_if("usage.options.contradict", job.share && !options.pictures.empty(),
-            "--piece and --output contradict each other: with --piece no picture is written",
-            "leave one out; promin merge writes the picture when all pieces are made");
+            "--piece and --output contradict each other, because --piece writes no picture",
+            "remove one of them; promin merge writes the picture when all pieces are made");
 }
 
 void check_frames(const RenderSpec& options) {
@@ -182,7 +185,8 @@ void check_frames(const RenderSpec& options) {
   refuse_if("usage.option.needs", options.skips_existing && options.pictures.empty(),
             "--skip-existing needs the names of the pictures", "give -o as well");
   refuse_if("usage.options.contradict", options.skips_existing && averages,
-            "--skip-existing and --exposure average contradict each other: the average is that of the first frame",
+            "--skip-existing and --exposure average contradict each other, because promin takes the average from the "
+            "first frame",
             "give --exposure in stops");
   refuse_if("usage.option.needs", options.frames && !options.path, "--frames needs a camera path",
             "give --path as well");
@@ -214,7 +218,7 @@ void check_alpha(const RenderSpec& options) {
   if (!options.aovs.alpha) return;
   refuse_beside("--alpha", {{is_debug, "--shading"}});
   refuse_beside("--alpha", {{view.look.background.has_value(), "--background"}},
-                "leave one out: --alpha makes the background transparent");
+                "remove --background, because --alpha makes the background transparent");
   refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_jpeg), "a JPEG cannot store the channel of --alpha",
             "write a .png or .exr");
   refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_radiance),
@@ -265,9 +269,9 @@ void check_query(const CastSpec& options) {
   }
   refuse_if("usage.option.needs", options.is_all && !options.offsets && !options.job.share,
             "--all is given without --offsets",
-            "add --offsets OFFSETS.npy, which says where the hits of each ray begin");
+            "add --offsets OFFSETS.npy, a file of the indices at which the hits of each ray begin");
   refuse_if("usage.option.needs", options.offsets && !options.is_all, "--offsets is given without --all",
-            "add --all or leave --offsets out");
+            "add --all or remove --offsets");
 }
 
 void check_job_options(const CastSpec& options) {
@@ -279,8 +283,8 @@ void check_job_options(const CastSpec& options) {
   refuse_beside("--job",
                 {{options.tracing.stats.has_value(), "--stats"}, {options.tracing.repeat_count > 1, "--repeat"}});
   refuse_if("usage.options.contradict", options.job.share && !options.outputs().empty(),
-            "--piece and --output contradict each other: with --piece no file is written",
-            "leave one out; promin merge writes the file when all pieces are made");
+            "--piece and --output contradict each other, because --piece writes no file",
+            "remove one of them; promin merge writes the file when all pieces are made");
 }
 
 }  // namespace
@@ -288,7 +292,7 @@ void check_job_options(const CastSpec& options) {
 void check_arrays(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     if (lower_case_ending(file) == ".npy") continue;
-    throw UsageError({"output.ending", "the output's ending \"" + file.extension().string() + "\" is unknown",
+    throw UsageError({"output.ending", "the output's extension \"" + file.extension().string() + "\" is unknown",
                       file.string(), "use .npy"});
   }
 }
@@ -303,7 +307,7 @@ void check_cast_spec(const CastSpec& options) {
 void check_pictures(const std::vector<std::filesystem::path>& pictures) {
   for (const std::filesystem::path& picture : pictures) {
     if (!is_writable_format(picture)) {
-      throw UsageError({"output.ending", "the output's ending \"" + picture.extension().string() + "\" is unknown",
+      throw UsageError({"output.ending", "the output's extension \"" + picture.extension().string() + "\" is unknown",
                         picture.string(), kUseKnownEnding});
     }
   }

@@ -145,7 +145,7 @@ struct NameOf {
   Enum read(const Json& json) const {
     const auto known = names.subspan(hidden);
     const auto found = json.is_string() ? std::ranges::find(known, json.get<std::string>()) : known.end();
-    if (found == known.end()) refuse_value(fmt::format("{}", fmt::join(known, " or ")), json);
+    if (found == known.end()) refuse_value(list_choices(known), json);
     return static_cast<Enum>(static_cast<size_t>(found - known.begin()) + hidden);
   }
 };
@@ -587,8 +587,8 @@ void change_paths(Json& value, const std::function<std::string(const std::string
 
 std::string make_absolute(const std::string& path) {
   if (to_utf8(path) != path) {
-    throw UsageError(
-        {"spec.file.name", "the name of the file is not UTF-8, so a specification cannot name it", path, "rename it"});
+    throw UsageError({"spec.file.name", "the name of the file is not UTF-8, so a specification cannot contain it", path,
+                      "rename the file"});
   }
   return fs::absolute(path).lexically_normal().string();
 }
@@ -618,7 +618,7 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
     for (const Field<Spec>& each : fields_of<Spec>()) known.push_back(each.name);
     const std::string_view near = nearest_name(name, known);
     report.refuse("spec.member.unknown", fmt::format("a specification has no member {}", quote(name)), "",
-                  near.empty() ? "leave it out" : fmt::format("did you mean {}?", near));
+                  near.empty() ? "remove it" : fmt::format("did you mean {}?", near));
     return;
   }
   Json value = parsed;
@@ -626,7 +626,7 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
   try {
     field->read(value, spec);
   } catch (const WrongValue& wrong) {
-    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), "", "correct it or leave it out");
+    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), "", "correct it or remove it");
   }
 }
 

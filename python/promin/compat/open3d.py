@@ -149,7 +149,7 @@ def _split(rays: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 def _to_array(value: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
     array = to_numbers(_to_numpy(value), "the numbers").astype(np.float64)
     if array.shape != shape:
-        raise UsageError(f"an array of the shape {array.shape} is given for one of {shape}")
+        raise UsageError(f"an array of the shape {array.shape} is given instead of the shape {shape}")
     return array
 
 

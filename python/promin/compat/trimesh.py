@@ -109,6 +109,6 @@ def _check(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArray[n
     origins = to_vectors(ray_origins, "ray_origins").astype(np.float64)
     directions = to_vectors(ray_directions, "ray_directions").astype(np.float64)
     if origins.shape != directions.shape or origins.ndim != 2:
-        raise UsageError(f"ray_origins {origins.shape} and ray_directions {directions.shape} are not (n, 3) both")
+        raise UsageError(f"ray_origins {origins.shape} and ray_directions {directions.shape} are not both (n, 3)")
     with np.errstate(divide="ignore", invalid="ignore"):
         return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)

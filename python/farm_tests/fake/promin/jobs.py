@@ -156,7 +156,7 @@ class Job:
             if header["sha256"] != hashlib.sha256(content).hexdigest():
                 return "bad", "the piece is damaged", b""
         except (ValueError, KeyError):
-            return "bad", "the file is not a piece of a job, or it is cut short", b""
+            return "bad", "the file is not a piece of a job, or it is incomplete", b""
         return "done", "", content
 
     def state(self, number: int) -> str:
