@@ -94,7 +94,7 @@ struct Aovs {
   static constexpr uint32_t kNoId = Coverage::kNoId;
 
   /// @cond
-  // One member for each row of the table.
+  /// ne member for each row of the table.
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) std::vector<TYPE> FIELD;
 #include "promin/kinds/aovs.def"
   /// @endcond

@@ -16,13 +16,13 @@ namespace promin {
 /// The parts of a PLY file that promin draws, as stored: numbers may have any value, indices are in range.
 struct PlyBody {
   std::vector<vec3> positions = {};
-  /// Empty, or one per position.
+  /// Vertex normals: empty, or one per position.
   std::vector<vec3> normals = {};
-  /// Empty, or one per position: linear RGBA within 0...1.
+  /// Vertex colours: empty, or one per position; linear RGBA within 0...1.
   std::vector<vec4> colors = {};
-  /// Empty, or one per position; v increases upwards from the lowest row of a picture.
+  /// Texture coordinates: empty, or one per position; v increases upwards from the lowest row of a picture.
   std::vector<vec2> uvs = {};
-  /// Indices of positions, polygon after polygon.
+  /// The corners of all polygons, one polygon after the other, as indices of positions.
   std::vector<uint32_t> corners = {};
   /// Number of corners of each polygon, 3...kMaxPolygonCorners.
   std::vector<uint32_t> corner_counts = {};
