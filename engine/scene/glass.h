@@ -43,8 +43,8 @@ inline bool shows_backs(const Material& material) {
   return material.is_double_sided || bounds_volume(material);
 }
 
-/// Returns the difference of the indices of refraction of blue and green, and of green and red, in a metallic-roughness
-/// material (KHR_materials_dispersion); 0 if it has no inside.
+/// Returns the difference between the indices of refraction of blue and green, which is also the difference between
+/// green and red, in a metallic-roughness material (KHR_materials_dispersion). It is 0 if the material has no inside.
 inline float index_spread(const MetallicRoughness& model) {
   if (model.thickness == 0.0F) return 0.0F;
   const double above_one = static_cast<double>(model.ior) - 1.0;

@@ -4,5 +4,5 @@
 // each thread (engine/trace/kernels/group_rows.h), and the rows take the work in turns: all threads take equally long, and
 // consecutive work of a thread is close together.
 
-// Returns the number of the piece of work that this group takes.
+// Returns the number of the piece of work of this group.
 uint group_number() { return gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y; }

@@ -153,8 +153,8 @@ class SceneReader {
     return static_cast<uint32_t>(scene_.geometries.size() - 1);
   }
 
-  /// Returns the geometry of a primitive of a node's mesh, which is read once for all nodes with the same morph weights
-  /// and the same skin; kNoGeometry if nothing is drawn.
+  /// Returns the geometry of a primitive of a node's mesh; kNoGeometry if nothing is drawn. The geometry is read once
+  /// for all nodes with the same morph weights and the same skin.
   uint32_t find_mesh(int node, size_t primitive) {
     const GltfNode& shown = document_.nodes[static_cast<size_t>(node)];
     const auto mesh = static_cast<size_t>(shown.mesh);

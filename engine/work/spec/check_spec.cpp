@@ -221,7 +221,7 @@ void check_alpha(const RenderSpec& options) {
             "a .hdr cannot store the channel of --alpha", "write a .png or .exr");
 }
 
-/// Refuses options that only affect a PNG.
+/// Throws UsageError if options for a PNG are given without a PNG.
 void check_dither(const RenderSpec& options) {
   const ViewOptions& view = options.view;
   const auto& pictures = options.pictures;
