@@ -28,7 +28,7 @@ inline constexpr uint32_t kNoObject = 0xFFFFFFFF;
 struct PictureBounds {
   /// The largest margin of a pixel with another object or primitive than the oracle's, in units of u S: B2 plus the
   /// error of the camera's ray. In d = look + (x right - y up) each product, the difference and the sum are rounded.
-  /// Because |x right - y up| <= |d|, the error is (1 + 1 + sqrt(2)) u |d|, and the same part of S at the hit.
+  /// Because |x right - y up| <= |d|, the error is (1 + 1 + sqrt(2)) u |d|, and the same fraction of S at the hit.
   Real id_margin = kB2 + 3.4L;
   /// The largest fraction of pixels with another object or primitive. The same fraction may have the normal of the
   /// other side of a crease, which is also a different answer.

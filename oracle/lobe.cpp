@@ -210,7 +210,7 @@ Real integrate_sheen_share(Real v, Real roughness) {
   const Real sine = std::sqrt(1 - v * v);
   Real sum = 0;
   for (int ring = 0; ring < kRings; ++ring) {
-    // Rings crowd at the horizon, near which visibility changes fastest.
+    // Rings are denser at the horizon, near which visibility changes fastest.
     const Real place = (ring + 0.5L) / kRings;
     const Real l = place * place * place;
     const Real across = std::sqrt(1 - l * l);

@@ -102,8 +102,9 @@ class Search {
     intersect_frustum(cone.center, cone.axis, cone.half_height, cone.radius_bottom, cone.radius_top, cone.is_open);
   }
 
-  /// |P - C - m V| = r + s m, m = (P - C) . V in [0, h], between two disks: s = tan of the half angle. With s = 0 this
-  /// is the thesis' cylinder, with r = 0 its cone, whose apex is C; k = 1 + s^2. An open shape has no disks.
+  /// Solves |P - C - m V| = r + s m with m = (P - C) . V in [0, h], between two disks; s is the tangent of the half
+  /// angle. With s = 0 this is the thesis' cylinder, with r = 0 its cone, whose apex is C; k = 1 + s^2. An open shape
+  /// has no disks.
   void intersect_frustum(const Vector& center, const Vector& axis, Real half_height, Real bottom, Real top,
                          bool is_open) {
     const Vector w = glm::normalize(axis);

@@ -76,8 +76,8 @@ class OptionTable {
 
   using Setter = std::function<void(const OptionValues&)>;
   /// Adds an option. `names` is like "-s,--spp", or "SCENE" for an argument without a dash; `placeholders` has a word
-  /// for each value of the option: "N", "W H". "R G B|word|other" stands for three words, or for one of the other
-  /// words, which the setter receives three times; a word in capitals stands for any word that is not a number.
+  /// for each value of the option: "N", "W H". "R G B|word|other" stands for three words, or for one of the words after
+  /// a bar, which the setter receives three times. A word in capitals stands for any word that is not a number.
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// Adds a required argument.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);

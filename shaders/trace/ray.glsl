@@ -44,8 +44,8 @@ const Crossing NO_CROSSING = Crossing(-1.0, 0.0, 0.0, PART_SIDE);
 vec3 permute_axes(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
 
 // A ray's closest approach to `center`: the point is center + offset, at t = t_far + t_near. The two terms of t are
-// added only after the small one has been combined with the half chord, which keeps the error at u * |t|. Haines et
-// al., Ray Tracing Gems ch. 7, with one more correction step.
+// added only after the small one has been combined with the half chord, which keeps the error at u * |t|. The
+// method is that of Haines et al., Ray Tracing Gems ch. 7, with one more correction step.
 struct Approach {
   vec3 offset;
   float t_far;

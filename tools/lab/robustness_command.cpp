@@ -71,7 +71,7 @@ void measure_robustness(const LabOptions& options) {
   session.write("robustness", {{"rows", rows}});
 }
 
-/// A picture by promin's methods and by the textbook's, timed in turns.
+/// Compares a picture by promin's methods with one by the textbook's; both are timed in turns.
 void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_t samples) {
   world::Scene scene = measure::open_scene(options.scenes.front());
   add_default_lights(scene);
