@@ -25,9 +25,9 @@ def main():
         print("the validation layer is not installed")
         sys.exit(77)
     environment = {**os.environ, "VK_INSTANCE_LAYERS": "VK_LAYER_KHRONOS_validation"}
-    # Not promin's own way to the layer, which would take its messages.
+    # promin's own way to load the layer would take the layer's messages.
     environment.pop("PROMIN_VALIDATION", None)
-    # Warnings as well as errors, by the names of this and of older releases.
+    # The layer reports warnings and errors. The variables are those of this release and of older ones.
     environment["VK_LAYER_REPORT_FLAGS"] = "error,warn,perf"
     environment["VK_KHRONOS_VALIDATION_REPORT_FLAGS"] = "error,warn,perf"
     environment["VK_LOADER_DEBUG"] = "layer"

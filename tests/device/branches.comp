@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #version 450
-// Branches of every form that hang on specialisation constants. `compute` in branches.h computes the same.
+// This shader has every form of branch that depends on specialisation constants. `compute` in branches.h computes the
+// same.
 layout(local_size_x = 1) in;
 
 layout(constant_id = 0) const uint FIRST = 0u;
