@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A valid document, how to break it, and what the refusal must name.
+/// A change that breaks a valid document, and the words that the refusal must contain.
 struct BadGltf {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;
@@ -237,7 +237,7 @@ const BadGltf kBadGltf[] = {
 INSTANTIATE_TEST_SUITE_P(Table, BadGltfTest, testing::ValuesIn(kBadGltf),
                          [](const auto& bad) { return std::string(bad.param.name); });
 
-/// Buffers: the document's own URI is replaced, so these do not go through text().
+/// Faults of buffers. The document's own URI is replaced, so these cases do not use text().
 struct BadUri {
   const char* name;
   const char* uri;
@@ -357,7 +357,7 @@ TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
   EXPECT_THAT(refusal("a.glb", bytes), HasProblem("gltf.buffer.short 44 48"));
 }
 
-/// Whatever reads from a buffer makes its bytes needed.
+/// A buffer's bytes are needed as soon as something reads from the buffer.
 TEST_F(BadFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
   const auto refuse_without = [&](const std::function<void(GltfBuilder&)>& use) {
     GltfBuilder gltf = triangle_gltf();

@@ -21,7 +21,7 @@ using testing::SizeIs;
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 const std::vector<vec3> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-/// Faults that leave the geometry in no doubt: how to spoil a document, and the warning.
+/// A change that makes a document faulty but leaves its geometry clear, and the warning that it gives.
 struct Repair {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;
@@ -36,7 +36,7 @@ class GltfRepairTest : public SceneFolder {
  protected:
   LoadedScene load(GltfBuilder& gltf) const { return SceneFolder::load("scene.gltf", gltf.text()); }
 
-  /// What a strict reader says.
+  /// Returns the refusal of a strict loader.
   std::string strict_refusal(const std::string& name, std::string_view bytes) const {
     const std::filesystem::path file = write(name, bytes);
     return message_of([&] { load_scene(file, {.is_strict = true}); });
@@ -58,7 +58,7 @@ TEST_P(GltfRepairsTest, AreOneWarningAndStrictlyARefusal) {
   EXPECT_THAT(strict_refusal("bad.gltf", gltf.text()), HasSubstr("; ")) << "no cure";
 }
 
-/// The text of a file whose material has this number, of any length, as its metallic factor.
+/// Returns the text of a file whose material has this number as its metallic factor. The number may have any length.
 std::string with_metallic_factor(const std::string& number) {
   GltfBuilder gltf = rich_gltf();
   gltf.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "NUMBER";
@@ -421,7 +421,7 @@ TEST_F(GltfRepairTest, TheMatrixCountsAlone) {
 TEST_F(GltfRepairTest, NodesOfScaleZeroAreNotDrawnAndKeepTheirNumber) {
   GltfBuilder gltf = rich_gltf();
   gltf.add_node({{"mesh", 0}, {"name", "last"}});
-  // The mesh, and both shapes, below scales of 0 along three axes and two.
+  // The mesh and both shapes are under scales of 0 along three axes and along two.
   gltf.json["nodes"][0]["scale"] = {0, 0, 0};
   gltf.json["nodes"][1]["scale"] = {0, 2, 0};
   gltf.json["nodes"][2]["matrix"] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
@@ -455,7 +455,7 @@ TEST_F(GltfRepairTest, CamerasAndLightsBelowScaleZeroTurnByRotations) {
   EXPECT_THAT(scene.warnings, IsEmpty());
   ASSERT_THAT(scene.cameras, SizeIs(1));
   ASSERT_THAT(scene.lights, SizeIs(1));
-  // -Z turns to -X about Y, which the turn about X leaves; +Y turns to +Z.
+  // The rotation about Y turns -Z to -X, which the rotation about X keeps; that rotation turns +Y to +Z.
   EXPECT_LT(glm::distance(scene.cameras[0].look, vec3(-1, 0, 0)), 1e-6F);
   EXPECT_LT(glm::distance(scene.cameras[0].up, vec3(0, 0, 1)), 1e-6F);
   EXPECT_LT(glm::distance(scene.lights[0].direction, vec3(-1, 0, 0)), 1e-6F);
@@ -588,7 +588,7 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
       scene.warnings,
       ElementsAre("buffers[0]: a buffer is shorter than its byteLength (42 bytes for 100); the existing part is read"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
-  // Padding that the view counts.
+  // The view's length includes padding.
   gltf.json["bufferViews"][1]["byteLength"] = 8;
   scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings, SizeIs(1));
@@ -625,7 +625,7 @@ TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
 TEST_F(GltfRepairTest, TheLastColumnOfAMatrixNeedsNoPadding) {
   GltfBuilder gltf = triangle_gltf();
   const size_t view = gltf.add_view(std::vector<uint8_t>(14, 0));
-  // Two of 2 x 2 bytes: columns of 2 lie 4 apart.
+  // The buffer has two matrices of 2 x 2 bytes; their columns of 2 bytes begin 4 bytes apart.
   gltf.json["accessors"].push_back({{"bufferView", view}, {"componentType", 5121}, {"count", 2}, {"type", "MAT2"}});
   EXPECT_EQ(strict_refusal("scene.gltf", gltf.text()), "");
   gltf.json["bufferViews"][view]["byteLength"] = 13;
