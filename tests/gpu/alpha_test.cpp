@@ -88,7 +88,7 @@ TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
   scene.add("ball", Sphere{.radius = 0.5}, 1);
   add_board(scene, -1.0F, make_blending(vec3(0.5F)));
   EXPECT_THAT(reds(scene, 4), testing::Each(0.5F));
-  // AOVs do not see it either. For a solid, they see only what blends with alpha 0.
+  // AOVs do not see the board either. They see the ball, because a solid counts as one that blends with alpha 0.
   TunedRendererOptions options;
   options.with_aovs = true;
   const Aovs aovs = trace(scene, make_board_view(uvec2(4)), options).aovs;

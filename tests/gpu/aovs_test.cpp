@@ -262,7 +262,7 @@ TEST_F(AovsTest, TextureCoordinatesAreThoseOfTheMesh) {
       const vec2 share((static_cast<float>(x) + 0.5F) / 16.0F, 1.0F - (static_cast<float>(y) + 0.5F) / 16.0F);
       const vec2 expected = vec2(0.25F, 0.125F) + share * vec2(0.5F, 0.375F);
       const vec2 off = aovs.uv[size_t{y} * 16 + x] - expected;
-      // The offset is a whole number of pixels.
+      // The coordinates are right except for whole numbers.
       EXPECT_LT(std::abs(off.x - std::round(off.x)) + std::abs(off.y - std::round(off.y)), 1e-5F) << x << " " << y;
     }
   }

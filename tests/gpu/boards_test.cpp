@@ -139,7 +139,7 @@ Board make_srgb() {
   return board;
 }
 
-/// The mask's edge is the middle column of the texture: the surface is present there and absent to the left of it.
+/// The cutoff is in the middle column of the texture: the surface is present there and absent to the left of it.
 Board make_masks() {
   Board board;
   for (const uint32_t cutoff : {64U, 128U, 191U}) {

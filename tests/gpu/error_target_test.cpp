@@ -113,7 +113,8 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
     light_scene(scene, LightChoice::kAuto);
     Renderer renderer = make_renderer(device(), scene, options);
     expect_honest(renderer, with_target(view_of(scene, uvec2(48, 36)), 1.0F / 64.0F), name, display_of(scene));
-    // As in promin render, a coarse picture begins with few samples, with which a claim is by chance small most easily.
+    // This is how promin render begins coarse pictures. With few samples a claim is most likely to be too small by
+    // chance.
     const uvec2 size = is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
     const View coarse = with_target(view_of(scene, size), 1.0F / 16.0F, kMinRefinedSamples);
     expect_honest(renderer, coarse, name, display_of(scene));

@@ -66,7 +66,7 @@ class ExplainTest : public test::DeviceTest {
   }
 
   /// Returns the weight of the mirror ray that follows. For a metallic-roughness material it depends on the angle; here
-  /// the test only checks that it is not larger than its part.
+  /// it is only checked to be no larger than `weight`.
   static vec3 next_weight(const ExplainedSample& sample, size_t i, const vec3& weight, const world::Scene& scene) {
     const ExplainedRay& ray = sample.rays[i];
     if (ray.hit.object < 0) return weight;

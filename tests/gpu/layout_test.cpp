@@ -152,7 +152,8 @@ TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   EXPECT_THAT(left.float_operation_count, AllOf(Gt(50U), Lt(module.float_operation_count)));
 }
 
-// The test above is needed: a lavapipe that does not contract by itself would give the same pictures without `precise`.
+// This shows that the test above can fail. Pictures cannot show it: a lavapipe that does not contract by itself would
+// give the same ones without `precise`.
 TEST(SpirvTest, RemovedPreciseIsSeen) {
   const std::vector<uint32_t> words = read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / "nothing_precise/cast.spv");
   EXPECT_THAT(test::SpirvModule(words).contractible, Contains(HasSubstr("shear_triangle")));

@@ -17,7 +17,7 @@ namespace {
 
 class PipelineTest : public test::DeviceTest {};
 
-// Pipelines are compiled from what is left of a shader once it is known what its constants are.
+// A pipeline is compiled from the part of a shader that is left once its constants are known.
 TEST_F(PipelineTest, ComputesTheSameWithoutItsDeadCode) {
   std::vector<uint32_t> numbers(500);
   for (const test::BranchConstants& constants : test::all_branch_constants()) {
