@@ -316,7 +316,7 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
 TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   constexpr float kRoughnesses[] = {0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.27F, 0.35F, 0.47F, 0.6F, 0.8F, 1.0F};
   const uint32_t side = test::is_thorough() ? 24 : 12;
-  // The bounds are the largest root mean square of a roughness, and of the range.
+  // The member rms is the largest root mean square error at one roughness, as a fraction of the sky's range.
   const struct {
     const char* name;
     Environment environment;

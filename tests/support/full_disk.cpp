@@ -15,7 +15,7 @@
 
 namespace {
 
-/// A file of memfd_create has no name, and no other file that a program makes longer by ftruncate lacks one.
+/// A file of memfd_create has no name; every other file that a program extends with ftruncate has one.
 bool is_in_memory(int file) {
   struct stat status {};
   return fstat(file, &status) == 0 && status.st_nlink == 0;
