@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Walks a promin glTF scene for the programs that write it in another renderer's language.
 
-What is not of the classic kind that those renderers share (vertex colours, metallic-roughness materials, falloff,
-spots, coloured specular factors, a source with two powers) is refused, so that a difference between the pictures is a
+Those renderers share a classic kind of scene. Anything else is refused (vertex colours, metallic-roughness materials,
+falloff, spots, coloured specular factors, a source with two powers), so that a difference between the pictures is a
 difference between the renderers.
 """
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The stream: the paths of a piece of a picture that a mirror leads on, and the rays that they ask for. It lies in the
-// film, behind the pixels. A turn makes lists of what has been asked for, sorted so that neighbours meet the same nodes
-// (place_rays.comp, list_rays.comp), traces the shadow rays (trace_shadow_rays.comp), then follows the paths
-// (follow_paths.comp): adds what the shadow rays let through, traces the mirror ray, shades what it has met and asks
-// for the rays of the next turn. All numbers of a path are its own, and its lane makes its sums in the order of bounces
-// and sources, so no bit depends on the order of lists.
+// The stream: the paths of a piece of a picture that continue at a mirror, and the rays that they request. It is stored
+// in the film, after the pixels. A turn first makes lists of the requested rays, sorted so that neighbours meet the
+// same nodes (place_rays.comp, list_rays.comp). It then traces the shadow rays (trace_shadow_rays.comp). At last it
+// follows the paths (follow_paths.comp): it adds the light of the shadow rays, traces the mirror ray, shades its hit and
+// requests the rays of the next turn. Paths share no numbers, and the lane of a path adds its light in the order of
+// bounces and sources, so no bit depends on the order of the lists.
 //
-// Of each path there are 7 records, and one for each source of a turn:
+// Each path has 7 records, and one more for each source of a turn:
 const uint RECORD_ORIGIN = 0u;     // xyz = origin of the path's ray, w = pixel
 const uint RECORD_DIRECTION = 1u;  // xyz = direction of the ray, unit; w = roughness of the path
 const uint RECORD_WEIGHTS = 2u;    // xyz = weight of the ray's radiance; two records, selected by the parity of the

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The sheen of cloth (KHR_materials_sheen; docs/model.md, "Metallic-roughness"): fibres that stand about the normal, and
-// show where they are seen or lit from the side.
+// The sheen of cloth (KHR_materials_sheen; docs/model.md, "Metallic-roughness"): fibres that stand on the surface, and
+// are visible if they are seen or lit from the side.
 
 const float LEAST_SHEEN_ROUGHNESS = 0.07;
 const float LOG2_E = 1.44269504;

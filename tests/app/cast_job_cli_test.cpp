@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// `promin cast --job`: answers to rays in pieces, whatever ends the work.
+// These tests run `promin cast --job`, which answers rays in pieces, and end the work in different ways.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

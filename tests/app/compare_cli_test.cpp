@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// `promin compare`.
+// These tests run `promin compare`.
 #include <gmock/gmock.h>
 
 #include <bit>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// `promin render --job` and `promin merge`: pictures in pieces, whatever ends the work.
+// These tests run `promin render --job` and `promin merge`, which make pictures in pieces, and end the work in
+// different ways.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

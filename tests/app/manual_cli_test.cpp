@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The manual pages and completions that are installed.
+// These tests check the manual pages and completions that are installed.
 #include <gmock/gmock.h>
 
 #include <regex>

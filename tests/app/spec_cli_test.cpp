@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// --spec and --print-spec.
+// These tests check the options `--spec` and `--print-spec`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

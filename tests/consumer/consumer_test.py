@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The installed library as another project uses it without CMake, and the promises of its headers and of docs/library.md.
+"""Tests the installed library as another project uses it without CMake, and the promises of its headers and of
+docs/library.md.
 
-consumer_test.py TEST PREFIX FOLDER COMPILER: PREFIX is where promin is installed, FOLDER the test's own.
+consumer_test.py TEST PREFIX FOLDER COMPILER: PREFIX is the folder where promin is installed, FOLDER the test's own.
 """
 
 import concurrent.futures

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a program does with promin as a library: a scene in memory, checked, rendered, changed, rendered again, and
-// rays; a picture to the file that the argument names, and a failure caught.
+// This program uses promin as a library. It makes a scene in memory, checks it, renders it, changes it, renders it
+// again, and casts rays. It writes a picture to the file that the argument names, and catches a failure.
 #include <cstdio>
 #include <vector>
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""run_validated.py CONSUMER ARGUMENT...: runs it under the Khronos validation layer, which speaks on standard output:
-anything there beside the consumer's one line is a failure.
+"""run_validated.py CONSUMER ARGUMENT...: runs the consumer under the Khronos validation layer, which writes to the
+standard output. Anything there besides the consumer's one line is a failure.
 
-Exits with 77, which ctest takes for skipped, where the layer is not installed.
+Exits with 77, which ctest counts as skipped, if the layer is not installed.
 """
 
 import os

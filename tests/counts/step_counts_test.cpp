@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Node steps and primitive tests of fixed rays through fixed scenes, for every builder, against stored ones: what makes
-// rays faster or slower whatever the machine. PROMIN_UPDATE_COUNTS=1, which tools/update_counts sets, stores them anew.
+// These tests compare node steps and primitive tests of fixed rays through fixed scenes with stored numbers, for every
+// builder. The numbers show what makes rays faster or slower on any machine. PROMIN_UPDATE_COUNTS=1, which
+// tools/update_counts sets, stores new numbers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

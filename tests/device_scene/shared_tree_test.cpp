@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// pack_scene_sharing: the first who needs a tree builds it and writes it, the others read it.
+// These tests check pack_scene_sharing(): the first process that needs a tree builds and writes it, and the others read
+// it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

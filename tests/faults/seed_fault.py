@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the shaders with a fault in them, for tests of the tests: what removes robustness must make a test fail.
+"""Builds the shaders with a fault in them, for tests of the tests: a fault removes a part of the robustness, which must
+make a test fail.
 
-seed_fault.py FAULT SHADERS INCLUDE GLSLANG OUT KERNEL...: copies the folder SHADERS and the .comp files KERNEL into OUT,
-puts the fault in, and compiles the kernels to OUT/*.spv, with the tables in INCLUDE. A fault whose place is gone is an
-error."""
+seed_fault.py FAULT SHADERS INCLUDE GLSLANG OUT KERNEL...: copies the folder SHADERS and the .comp files KERNEL into
+OUT, puts the fault in, and compiles the kernels to OUT/*.spv, with the tables in INCLUDE. If the code that a fault
+changes no longer exists, the script fails."""
 
 import os
 import pathlib

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Which files were written for classic light.
+// These tests check which files count as written for classic light.
 #include <gtest/gtest.h>
 
 #include "support/gltf_builder.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Compressed meshes of glTF: EXT_meshopt_compression and KHR_draco_mesh_compression.
+// These tests load compressed meshes of glTF: EXT_meshopt_compression and KHR_draco_mesh_compression.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>

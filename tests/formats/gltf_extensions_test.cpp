@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Extensions of glTF that are not known, or change how the rest of the file is read.
+// These tests load glTF files with extensions that promin does not know, or that change how the rest of the file is
+// read.
 #include <gmock/gmock.h>
 
 #include <cmath>

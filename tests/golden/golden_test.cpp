@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Every scene of scenes/ against its stored picture, and pictures that must not pass.
-// PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes them instead.
+// These tests compare a picture of every scene in scenes/ with its stored one, and check that wrong pictures fail.
+// PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes the stored pictures instead.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The version of results (engine/work/jobs/results_version.h), which jobs depend on: it must be raised if the stored
-// pictures or the casts of three scenes change. results.txt has the hashes of each, and the version at which they were
-// recorded. PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes it.
+// These tests check the version of results (engine/work/jobs/results_version.h), on which jobs depend. It must be
+// raised if the stored pictures or the casts of three scenes change. results.txt has their hashes, and the version at
+// which they were recorded. PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes that file.
 #include "work/jobs/results_version.h"
 
 #include <gtest/gtest.h>

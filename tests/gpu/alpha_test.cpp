@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Alpha and sides (docs/model.md, "Alpha"): holes, what blends, and backs that are not shown. boards_test.cpp has more
-// of cutoffs, sides and shadows. Boards are unlit and fill the picture, so that its pixels are closed forms.
+// These tests check alpha and sides (docs/model.md, "Alpha"): holes, blending, and backs that are not shown.
+// boards_test.cpp has more tests of cutoffs, sides and shadows. Boards are unlit and fill the picture, so that its
+// pixels have closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

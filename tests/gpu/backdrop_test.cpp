@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A backdrop (docs/model.md, "Backdrop"): what the camera, glass and mirrors see of it, and what is shown as it is.
+// These tests check a backdrop (docs/model.md, "Backdrop"): how the camera, glass and mirrors see it, and which pixels
+// are shown unchanged.
 #include <gtest/gtest.h>
 
 #include "gpu/device_fixture.h"

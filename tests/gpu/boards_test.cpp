@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Boards in the manner of Khronos' sample models: rows of patches, each of which should be as green as it is told to
-// be. What is wrong counts as red. Each board is also drawn by shaders with a fault in them (tests/faults), which must
-// turn it red: so each can fail.
+// Boards like those of Khronos' sample models: rows of patches with an expected green each. Red light in a patch is an
+// error. Shaders with a fault (tests/faults) also draw each board, and must turn it red; this shows that each board can
+// fail.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Counts and lists of all crossings of a ray.
+// These tests check counts and lists of all crossings of a ray.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Pictures with an error target: whether they are as exact as they claim, and the same however they are made.
+// These tests check pictures with an error target: they must be as exact as they claim, and equal however they are
+// made.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

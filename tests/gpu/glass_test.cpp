@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Glass (docs/model.md, "Glass") where its light has a closed form, and that no bit of it hangs on how it is traced.
+// These tests check glass (docs/model.md, "Glass") in scenes whose light has a closed form. They also check that no bit
+// depends on how the picture is traced.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Levels of detail (docs/model.md, "Textures"): which a device takes, and what of a mask it sees by them, against the
-// oracle. Textures are meters: an image each of whose texels differs from the one over it on the next level by the same
-// step, up or down, in each channel. So a colour tells the level to a step's share, and a level that is off by little
-// shows everywhere.
+// These tests compare levels of detail (docs/model.md, "Textures") and masks on a device with the oracle. Textures
+// are meters: images in which a texel and the one over it on the next level differ by the same step, up or down, in
+// each channel. A colour therefore gives the level to a fraction of a step, and a slightly wrong level shows
+// everywhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The models of materials on a device, where their light is known without a picture to compare with.
+// These tests check the models of materials on a device, in cases whose light is known without another picture.
 #include "promin/materials.h"
 
 #include <gtest/gtest.h>

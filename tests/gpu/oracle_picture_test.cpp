@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The project's scenes and one of everything against the oracle's pictures, pixel by pixel: ids, depth, normals and
-// colour. Mismatching pixels are printed with their margins.
+// These tests compare the project's scenes and a scene of everything with the oracle's pictures, pixel by pixel: ids,
+// depth, normals and colour. Pixels that differ are printed with their margins.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Filters of pixels where what they give has a closed form: beside a straight edge.
+// These tests check pixel filters beside a straight edge, where their results have a closed form.
 #include <gtest/gtest.h>
 
 #include "device_scene/sampling.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"), beside lit ones, through what blends
-// and in a mirror.
+// These tests check what the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"): beside lit ones,
+// through blending ones and in a mirror.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Refracted rays, one by one as the renderer explains them, against closed forms in long double.
+// These cases compare refracted rays, one by one as the renderer explains them, with closed forms in long double.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

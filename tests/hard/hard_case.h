@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The hard cases of ray tracing in floating point, each with the bound that it must meet, through the device.
+// The hard cases of ray tracing in floating point. Each runs on the device and has a bound that it must meet.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What the host keeps from the device: numbers that fp32 cannot hold are refused, and cameras do not drift.
+// These cases check what the host keeps away from the device: numbers that fp32 cannot hold are refused, and cameras do
+// not drift.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Boxes and capsules, as KHR_implicit_shapes has them.
+// These cases check the boxes and capsules of KHR_implicit_shapes.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Open cylinders and cones: sides without disks.
+// These tests check open cylinders and cones, which have a side but no disks.
 #include <gtest/gtest.h>
 
 #include <algorithm>

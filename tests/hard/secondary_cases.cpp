@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays that start where others ended: the renderer's own lift and mirror direction, by tests/hard/bounce.comp.
+// These cases check rays that start where others ended, with the renderer's own lift and mirror direction
+// (tests/hard/bounce.comp).
 #include <gtest/gtest.h>
 
 #include <algorithm>

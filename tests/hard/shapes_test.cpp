@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every shape of promin/kinds/primitives.def, the same tests for all of them.
+// These tests are the same for every shape of promin/kinds/primitives.def.
 #include <gtest/gtest.h>
 
 #include <cstring>

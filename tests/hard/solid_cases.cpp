@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders, cones and frustums.
+// These cases check cylinders, cones and frustums.
 #include <algorithm>
 #include <array>
 #include <cmath>

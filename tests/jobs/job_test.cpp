@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Jobs of pieces that are mere bytes: what the folder alone tells, whatever happened to it.
+// These tests check jobs whose pieces are plain bytes: the folder alone tells the state, whatever happened to it.
 #include "jobs/job.h"
 
 #include <gmock/gmock.h>

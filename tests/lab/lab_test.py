@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The tools that measure: statistics, tables, peers and a quick report as a user makes it.
+"""Tests the tools that measure: statistics, tables, peers and a quick report as a user makes it.
 
 lab_test.py TEST BIN TOOLS SCENES: TEST is a function below, BIN the folder of the programs."""
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a window shows (shaders/window/encode_film.comp) against what PNG files have.
+// These tests compare what a window shows (shaders/window/encode_film.comp) with the content of PNG files.
 #include <gtest/gtest.h>
 
 #include <algorithm>

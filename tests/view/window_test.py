@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""promin-view as a user meets it: a real window on an X server, keys and pointer by xdotool.
+"""Tests promin-view as a user meets it: a real window on an X server, with keys and pointer from xdotool.
 
 window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the programs.
 """

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What two devices may differ by on one piece of a job.
+// These tests check how much the results of two devices for one piece of a job may differ.
 #include "work/jobs/compare_pieces.h"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-lab check-hits: a device's answers in a scene of any size against the oracle's brute force.
+// promin-lab check-hits compares a device's answers in a scene of any size with the oracle's brute force.
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers and tables for people."""
+"""Formats numbers and tables for people."""
 
 
 def number(value, digits=3):

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// How time, steps and memory grow with triangles.
+// promin-lab growth measures how time, steps and memory grow with the number of triangles.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-lab honesty: whether pictures with an error target are as exact as they claim, and what they take beside
-// pictures of as many samples in each pixel that are as exact. Whole pictures are timed; what is true is known of some
-// windows of them, from many samples of a lattice, which these pictures do not take.
+// promin-lab honesty measures whether pictures with an error target are as exact as they claim. It compares their time
+// with that of equally exact pictures with the same number of samples in each pixel. Whole pictures are timed. The true
+// values are known for some windows of them, from many samples on a lattice, which the measured pictures do not use.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The cost of robustness: promin's kernels beside those with the textbook's methods (tools/plain/textbook), by rays and
-// by pictures.
+// promin-lab robustness measures the cost of robustness: it compares promin's kernels with those of the textbook's
+// methods (tools/plain/textbook), with rays and with pictures.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Statistics of runs: medians, quartiles, intervals and growth; and the files of promin-lab with all runs."""
+"""Computes statistics of runs (medians, quartiles, intervals and growth), and reads the files of promin-lab with all
+runs."""
 
 import json
 import math

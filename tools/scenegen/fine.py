@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of more detail than pixels: what pictures of a known error are held against (docs/performance.md).
+"""Makes scenes with more detail than pixels, which serve to check pictures with a known error (docs/performance.md).
 
-They are made when they are wanted and are none of scenes/, which each show a feature.
+These scenes are made on demand. They are not in scenes/, where each scene shows a feature.
 """
 
 import math

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The sphereflake, "balls" of Eric Haines' Standard Procedural Databases (IEEE CG&A 7(11), 1987).
+"""Makes the sphereflake, "balls" of Eric Haines' Standard Procedural Databases (IEEE CG&A 7(11), 1987).
 
-Every sphere carries nine of a third of its radius: six around its equator and three above, where the corners of a
-cuboctahedron lie; 1 + 9 + ... + 9^level spheres. Camera, sources and colours are the database's, turned to Y up.
+Every sphere carries nine spheres of a third of its radius: six around its equator and three above, at the corners of a
+cuboctahedron. There are 1 + 9 + ... + 9^level spheres. Camera, sources and colours are the database's, turned to Y up.
 """
 
 import math

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// make_ray.glsl without what makes it robust: boxes as they are.
+// This is make_ray.glsl without the parts that make it robust: boxes keep their exact size.
 
 // The textbook's rays are never moved: they start at their own origin.
 bool is_far_away(Ray ray) { return false; }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The intersections of the textbook (docs/model.md), as written there, in world space and without care for rounding:
-// the methods that promin's own are measured against.
+// The intersections of the textbook (docs/model.md), as written there, in world space and without care for rounding.
+// promin's own methods are compared with them.
 
 struct SurfacePoint {
   vec3 position;
