@@ -31,7 +31,7 @@ Real fifth_power(Real x) {
   return x * x * x * x * x;
 }
 
-/// Returns D. glTF's (N.H)^2 (alpha^2 - 1) + 1 equals 1 - (1 - alpha^2) (N.H)^2, and so the sum below.
+/// Returns D. The sum below is another form of glTF's (N.H)^2 (alpha^2 - 1) + 1, with less rounding.
 Real density_of_sine_square(Real sine_square, Real alpha) {
   const Real sum = alpha * alpha * (1 - sine_square) + sine_square;
   return alpha * alpha / (kPi * sum * sum);

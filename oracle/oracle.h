@@ -58,7 +58,7 @@ bool can_hit(const Ray& ray);
 
 /// Rules that distinguish a ray of a picture from a cast ray.
 struct Sight {
-  /// Whether the ray ignores the backs of triangles that their material does not show, and triangles that a mask cuts
+  /// True if the ray ignores the backs of triangles that their material does not show, and triangles that a mask cuts
   /// out completely. Shadow rays hit both, and pass through the second kind.
   bool passes_backs = false;
   /// The last hit that the ray has passed. The ray ignores all nearer hits, and hits at the same distance whose order

@@ -198,9 +198,9 @@ struct Way {
   uint32_t layers = 0;
   /// The fraction of the ray's radiance that the pixel receives.
   Vector weight{1};
-  /// Whether a mirror has reflected the ray.
+  /// True if a mirror has reflected the ray.
   bool is_mirrored = false;
-  /// Whether one of the mirrors has a metallic-roughness material.
+  /// True if one of the mirrors has a metallic-roughness material.
   bool is_of_metal = false;
   /// The largest roughness of the mirrors.
   Real roughness = 0;

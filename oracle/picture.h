@@ -24,7 +24,7 @@ struct Pixel {
   Real explained_error = 0;
   /// The permitted error of a device's colour because its skies are maps (Surroundings::map_error).
   Real map_error = 0;
-  /// Whether the ray passes so close to the edge of a mask that a device may see either the surface or the surface
+  /// True if the ray passes so close to the edge of a mask that a device may see either the surface or the surface
   /// behind it.
   bool is_at_cutoff = false;
 

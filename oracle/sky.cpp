@@ -63,7 +63,7 @@ struct Radiance {
   }
 
   dvec3 operator()(const Studio& studio) const {
-    // How far a direction lies towards the back of the studio.
+    // `back` is 0 for the direction to the studio's front, and 1 for the opposite direction.
     const double front = static_cast<double>(studio.front);
     const double back = (1 - d.x * std::sin(front) - d.z * std::cos(front)) / 2;
     const double horizon = 0.20 + 0.16 * back;

@@ -434,7 +434,7 @@ class MetallicRoughnessSurface {
   Sheen sheen_;
   ClearCoat coat_;
   bool has_coat_;
-  /// Whether the material reflects only the environment, because the mirror ray belongs to a coat with another normal.
+  /// True if the material reflects only the environment, because the mirror ray belongs to a coat with another normal.
   bool is_dull_below_;
   /// The light of the environment that material and coat would reflect if they were white, and the light of the
   /// environment that the body scatters.

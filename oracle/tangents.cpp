@@ -26,7 +26,7 @@ struct Face {
   bool is_degenerate = false;
   /// Sign of the area of the triangle's coordinates; 0 if they have no area, until a group sets it.
   int hand = 0;
-  /// Whether the coordinates have an area and equations 18 and 19 give vectors with a length. If the corners lie on a
+  /// True if the coordinates have an area and equations 18 and 19 give vectors with a length. If the corners lie on a
   /// line, one of the vectors may have no length.
   bool has_area = false;
   /// The direction in which u increases, of any length, and the error of its components.

@@ -34,7 +34,7 @@ struct Reach {
   /// For an open shape, the kind of boundary at the entry and at the exit: the side, or a missing disk.
   Wall entry_wall = Wall::kSurface;
   Wall exit_wall = Wall::kSurface;
-  /// Whether the line crosses the primitive for every displacement of the surface.
+  /// True if the line crosses the primitive for every displacement of the surface.
   bool is_certain = false;
 };
 

@@ -25,7 +25,7 @@ struct Answer {
 
 struct Verdict {
   Hit exact;
-  /// Whether both answers are misses or name the same end of the same primitive. Entering and leaving a solid are
+  /// True if both answers are misses or name the same end of the same primitive. Entering and leaving a solid are
   /// different answers.
   bool is_same = false;
   /// If the answers are the same: |dt| |d| cos / (u S), where cos belongs to the exact hit.

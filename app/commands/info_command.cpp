@@ -163,7 +163,7 @@ struct InfoOptions {
   std::filesystem::path file;
   LoadOptions load;
   EnvironmentOptions environment;
-  /// Whether images are not decoded.
+  /// True if images are not decoded.
   bool skips_texels = false;
   bool is_json = false;
 };

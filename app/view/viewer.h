@@ -50,7 +50,7 @@ struct ViewerStart {
   std::optional<double> target_ms;
   /// The scale of first pictures, in the form that ProgressivePicture::fix_scale() takes.
   std::optional<double> scale;
-  /// Whether the window stays open after a replay.
+  /// True if the window stays open after a replay.
   bool stays_open = false;
   /// The file for recording the camera's flight. It is written when the window closes.
   std::optional<std::filesystem::path> record;
@@ -165,33 +165,33 @@ class Viewer {
   Window& window_;
   std::shared_ptr<const gpu::Device> device_;
   const Console& console_;
-  /// What the window was opened with.
+  /// The options with which the window was opened.
   const ViewerStart start_;
-  /// Whether the target is the refresh interval of the display that the window is on.
+  /// True if the target is the refresh interval of the display that the window is on.
   bool follows_display_;
   double target_ms_;
 
   /// The file of the scene that is being opened, or is open.
   std::filesystem::path file_;
   Background<OpenedScene> opening_;
-  /// Has no scene before the first is open.
+  /// The open scene; it is empty before the first scene is open.
   OpenedScene opened_;
   std::unique_ptr<ScenePreparer> preparer_;
   std::shared_ptr<ShownScene> scene_;
   /// The mode of the picture.
   RenderMode mode_;
   bool is_draft_ = false;
-  /// Null before the first picture; older ones are destroyed in parallel.
+  /// The current picture; null before the first one. Older pictures are destroyed in parallel.
   std::unique_ptr<TracedPicture> traced_;
   std::vector<std::unique_ptr<TracedPicture>> retired_;
   std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
-  /// Returns true when the environment is on the devices.
+  /// The work that copies the environment to the devices. Its result is true.
   Background<bool> putting_;
-  /// Whether to start an orbit when its center is found.
+  /// True if an orbit starts when its center is found.
   bool wants_orbit_ = false;
-  /// Whether it is that of the picture, for which the middle of the scene stands in.
+  /// True if the center is that of the picture. On a miss, the middle of the scene replaces it.
   bool is_of_middle_ = false;
   CameraControl control_{Camera(), Bounds(), vec3(0.0F, 1.0F, 0.0F)};
   Background<Camera> framing_;
@@ -202,7 +202,7 @@ class Viewer {
   FlightRecorder recorder_;
 
   Swapchain swapchain_;
-  /// The size that the swapchain was made for; 0 before it is.
+  /// The window size for which the swapchain was made; 0 before it is made.
   uvec2 asked_size_{0};
   DisplayPass display_;
   std::unique_ptr<ImguiRenderer> imgui_;
@@ -215,7 +215,7 @@ class Viewer {
   std::string saved_command_;
   FileDialog dialog_;
   std::optional<PathEntry> path_entry_;
-  /// Whether to print the command as soon as there is a picture.
+  /// True if the command is printed as soon as there is a picture.
   bool wants_command_ = false;
   /// Called when the frame that copies a screenshot is finished.
   std::function<void(const FinishedFrame&)> on_copied_;

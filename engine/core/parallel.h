@@ -34,8 +34,8 @@ void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task
                  [&](size_t i) { task(i * size, std::min(count, (i + 1) * size)); });
 }
 
-/// Returns a part for each piece of for_each_chunk(), in order. A part is a copy of `initial` that work(begin, end, part)
-/// has changed. A result that is computed from the parts in order does not depend on the number of threads.
+/// Returns a part for each piece of for_each_chunk(), in order. work(begin, end, part) changes a part, which is a copy
+/// of `initial`. A result that is computed from the parts in order does not depend on the number of threads.
 template <typename Part, typename Work>
 std::vector<Part> make_parts(size_t count, size_t size, unsigned thread_count, const Part& initial, const Work& work) {
   std::vector<Part> parts((count + size - 1) / size, initial);

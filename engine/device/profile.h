@@ -9,7 +9,7 @@ namespace promin::gpu {
 
 /// The properties of a device that determine its profile.
 struct DeviceTraits {
-  /// Whether the host's processor does the device's work.
+  /// True if the host's processor does the device's work.
   bool is_cpu = false;
   /// The VkDriverId; 0 if the driver reports none.
   uint32_t driver_id = 0;
@@ -27,7 +27,7 @@ struct TraversalForm {
   /// Number of node steps that all lanes of a packet take before the lanes that have reached leaves test them. With 0
   /// each lane steps until it reaches a leaf.
   uint32_t steps_together = 0;
-  /// Whether solids in the leaves of a tree with more triangles wait until no lane can continue without them.
+  /// True if solids in the leaves of a tree with more triangles wait until no lane can continue without them.
   bool waits_with_solids = false;
 };
 
@@ -39,7 +39,7 @@ struct DeviceProfile {
   // buffer is larger, the scene is read from storage buffers. A CPU driver loads storage buffers word by word, but a
   // texel in one step.
   uint64_t most_texel_bytes = 0;
-  /// Whether the stream of a picture is read as texels. This needs a texel buffer that can hold a film.
+  /// True if the stream of a picture is read as texels. This needs a texel buffer that can hold a film.
   bool fetches_film_texels = false;
 
   // The form of traversal for packets of rays.
@@ -54,7 +54,7 @@ struct DeviceProfile {
   double most_silence_s = 120.0;
   /// Largest number of rows of workgroups in a dispatch (trace/kernels/group_rows.h).
   uint32_t most_group_rows = 1;
-  /// Whether the driver may end loops after too many iterations (trace/kernels/cut_loops.h). Code that traces then
+  /// True if the driver may end loops after too many iterations (trace/kernels/cut_loops.h). Code that traces then
   /// checks whether it did.
   bool may_cut_loops = false;
 
@@ -70,15 +70,15 @@ struct DeviceProfile {
   // Settings for casting rays. Number of neighbouring rays that a lane traces together: 1, or RayTiler::kPacketSize.
   // For packets, rays are ordered in tiles.
   uint32_t ray_packet_size = 1;
-  /// Whether rays without similar neighbours are sorted.
+  /// True if rays without similar neighbours are sorted.
   bool sorts_rays = false;
 
   // Settings for the frames of a window. Largest number of frames in flight. One is enough if nothing would run in
   // parallel and the next frame would only show an older camera.
   uint32_t most_frames_in_flight = 2;
-  /// Whether a frame is presented only after the device has finished it, because presenting would otherwise wait.
+  /// True if a frame is presented only after the device has finished it, because presenting would otherwise wait.
   bool presents_late = false;
-  /// Whether frames usually take less time than the display's refresh interval.
+  /// True if frames usually take less time than the display's refresh interval.
   bool keeps_up_with_display = true;
 
   // Settings for measurements. Number of rays in a dispatch whose speed is measured. It must be large enough to fill

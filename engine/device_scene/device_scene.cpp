@@ -208,8 +208,8 @@ gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
   // The buffer has space for some more lights, so that switching them on needs no larger buffer.
   constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
   const uint64_t bytes = tail_end + kSpareBytes;
-  // Texels of images are single words, so a view of them holds a quarter of the bytes of a view with texels of four
-  // words.
+  // Texels of images are single words. A view of them therefore holds fewer bytes than one with texels of four words:
+  // a quarter.
   const vk::PhysicalDeviceLimits& limits = device_->limits();
   const uint64_t most_words_bytes =
       std::max<uint64_t>(limits.maxStorageBufferRange, limits.maxTexelBufferElements * sizeof(uint32_t));

@@ -32,7 +32,7 @@ struct SceneConstants {
   /// volume.
   std::shared_ptr<const GlassSolids> glass_solids;
   std::vector<uint32_t> media;
-  /// Whether any material transmits light.
+  /// True if any material transmits light.
   bool has_glass = false;
   /// Index of the first unbounded primitive; the unbounded primitives follow those of the tree.
   uint32_t first_unbounded = 0;
@@ -40,7 +40,7 @@ struct SceneConstants {
   uint32_t light_count = 0;
   vec3 ambient{0.0F};
   vec3 background{0.0F};
-  /// Whether the sky is visible in place of the background.
+  /// True if the sky is visible in place of the background.
   bool shows_sky = false;
   /// The backdrop; it replaces sky and background.
   std::optional<Backdrop> backdrop;

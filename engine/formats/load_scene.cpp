@@ -34,7 +34,7 @@ struct SceneFormat {
   std::string_view ending;
   Scene (*load)(const LoadOptions&, LoadReport&);
   bool has_variants = false;
-  /// Whether files of the format contain only a mesh.
+  /// True if files of the format contain only a mesh.
   bool is_mesh = false;
 };
 

@@ -20,7 +20,7 @@ namespace promin {
 struct PictureSource {
   /// The image. Decoding sets its size and texels; the reader sets all other members.
   std::shared_ptr<TextureImage> image = std::make_shared<TextureImage>();
-  /// Whether to decode the texels; otherwise only the size is read.
+  /// If true, the texels are decoded; otherwise only the size is read.
   bool takes_texels = true;
   /// The file's bytes, in a buffer that outlives this object or in `own`.
   std::span<const std::byte> file = {};
@@ -29,7 +29,7 @@ struct PictureSource {
   std::string title = {};
   /// The reason why the picture cannot be used, if there is one.
   std::optional<Fault> problem = std::nullopt;
-  /// Whether the file is damaged or missing; false if the file is valid but not supported.
+  /// True if the file is damaged or missing; false if the file is valid but not supported.
   bool is_file_at_fault = true;
 };
 

@@ -307,7 +307,7 @@ class BandWalk {
   Place zero_{};
   Place along_{};
   float mean_step_ = 0.0F;
-  /// Whether the rows have the same length and begin and end side by side. Such rows are assumed to be side by side
+  /// True if the rows have the same length and begin and end side by side. Such rows are assumed to be side by side
   /// everywhere, so none of their other rays is read.
   bool is_regular_ = false;
 };

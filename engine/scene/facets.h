@@ -16,7 +16,7 @@ namespace promin {
 /// bounds.
 struct Facet {
   std::array<dvec3, 3> corners;
-  /// Whether the facet is also visible from behind.
+  /// True if the facet is also visible from behind.
   bool shows_back = true;
 };
 

@@ -128,7 +128,7 @@ struct Opening {
   double distance;
 };
 
-/// Returns two planes that open with a slope to both sides of the look, and touch the hull from both sides.
+/// Returns two planes that touch the hull from both sides. They diverge from the look direction with this slope.
 Opening touch(const SceneHull& hull, const dvec3& side, const dvec3& look, double slope) {
   const auto reach = [&](const dvec3& direction) { return glm::dot(hull.farthest(direction), direction); };
   const double right = reach(side - slope * look);

@@ -29,7 +29,7 @@ struct Object {
   Shape shape;
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Whether the object is a mesh whose triangles have their second and third corners exchanged (place).
+  /// True if the object is a mesh whose triangles have their second and third corners exchanged (place).
   bool is_rewound = false;
 };
 

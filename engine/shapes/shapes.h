@@ -20,7 +20,7 @@ struct Primitive;
 struct NamedSize {
   const char* name = "";
   double size = 0.0;
-  /// Whether the size may be 0, as for an apex.
+  /// True if the size may be 0, as for an apex.
   bool may_be_zero = false;
 };
 
@@ -46,12 +46,12 @@ class NamedSizes {
 template <class Shape>
 Shape unpack(const layout::Primitive& primitive);
 
-// What each shape of promin/kinds/primitives.def defines in engine/shapes/<shape>.cpp:
-//   place      the shape in the world; none where it does not keep its form under the transform
-//   sizes_of   the sizes that it has there
-//   center_of  where it lies there, in double
-//   pack       its numbers in a device record; order, kind and hashes are the caller's
-//   unpack     the same numbers back
+// Each shape of promin/kinds/primitives.def defines these functions in engine/shapes/<shape>.cpp:
+//   place      returns the shape in the world; nullopt if the transform does not keep its form
+//   sizes_of   returns the sizes of the placed shape
+//   center_of  returns the center of the placed shape, in double
+//   pack       writes the shape's numbers to a device record; the caller sets order, kind and hashes
+//   unpack     reads the same numbers back
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)               \
   std::optional<world::TYPE> place(const TYPE& shape, const Placement& placement); \
   NamedSizes sizes_of(const TYPE& shape, const Placement& placement);              \

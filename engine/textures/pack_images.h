@@ -23,8 +23,8 @@ struct TextureFit {
   uint64_t bytes = 0;
 };
 
-/// Halves the largest image until all images fit in `most_bytes` and in the 8 GiB that word indices can address. Of
-/// equally large images, the first is halved. Throws RunError if they do not fit even as single texels.
+/// Halves the largest image until all images fit in `most_bytes` and in the 8 GiB that word indices can address. If
+/// images are equally large, the first is halved. Throws RunError if they do not fit even as single texels.
 TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                       uint64_t most_bytes);
 

@@ -34,7 +34,7 @@ inline constexpr size_t kCoverageRanks = 6;
 /// The ids and shares of one pixel, sorted as kCoverageRanks describes.
 using CoverageRanks = std::array<Coverage, kCoverageRanks>;
 
-/// How an AOV is computed, which determines its cost. kSurface reads the surface at the middle sample and costs little.
+/// The source of an AOV, which determines its cost. kSurface reads the surface at the middle sample and costs little.
 /// kParts sums one component of the light (e.g. direct light) over all samples. kSteps needs a pass of its own.
 /// kSampling describes the sampling and costs nothing. kUnlit sums the share of unlit surfaces over all samples and
 /// costs less than kParts.

@@ -8,7 +8,7 @@
 
 namespace promin {
 
-/// How a camera maps the scene to its picture.
+/// The projection of the scene to a picture.
 enum class Projection {
   /// Rays start at the eye.
   kPerspective,

@@ -29,7 +29,7 @@ struct DeviceInfo {
   std::vector<std::string> obstacles;
   /// Optional features that the device lacks, and what promin does without them.
   std::vector<std::string> lacks;
-  /// Whether open_device opens this device by default.
+  /// True if open_device opens this device by default.
   bool is_default = false;
 };
 

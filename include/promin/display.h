@@ -11,7 +11,7 @@
 
 namespace promin {
 
-/// How radiance is mapped into the range of a display (docs/model.md, "Showing a picture"). kNone clips the radiance.
+/// A mapping of radiance to the range of a display (docs/model.md, "Showing a picture"). kNone clips the radiance.
 /// kNeutral, Khronos PBR Neutral, keeps base colours and compresses only brighter values. kAces, Narkowicz's fit of a
 /// film curve, has more contrast and changes hues. kReinhard compresses only luminance and keeps hues. kAgx, Sobotka's
 /// curve, fades bright colours softly to white. tone_mapping_names() returns the names.

@@ -60,12 +60,12 @@ class ProblemCode {
 struct PROMIN_EXPORT Problem {
   /// The kind of the problem.
   ProblemCode code;
-  /// What is wrong: a sentence without its final full stop.
+  /// The problem, as a sentence without its final full stop.
   std::string what;
   /// Where the problem is: a file, then ": " and a place in the file, such as a JSON path or a line; or a member of a
   /// Scene. May be empty.
   std::string where;
-  /// What the user can do about the problem. May be empty.
+  /// The way for the user to solve the problem. It may be empty.
   std::string cure;
   /// The setting that `where` or `cure` refers to.
   Setting setting = Setting::kNone;

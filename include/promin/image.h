@@ -34,11 +34,11 @@ struct Image {
 struct Channel {
   /// The channel's name in an EXR, e.g. "Z" or "N.X".
   std::string name;
-  /// Whether the values are 32-bit integers and not floats.
+  /// True if the values are 32-bit integers and not floats.
   bool is_integer = false;
   /// The integers, or the bits of the floats; one for each pixel.
   std::vector<uint32_t> values;
-  /// Whether only the display of the picture uses the channel. An EXR does not store such a channel.
+  /// True if only the display of the picture uses the channel. An EXR does not store such a channel.
   bool is_hidden = false;
 };
 
@@ -69,7 +69,7 @@ PROMIN_EXPORT std::span<const std::string_view> exr_compression_names();
 
 /// Options for writing an EXR.
 struct ExrOptions {
-  /// Whether an EXR stores colours, normals and coverage as 16-bit floats, with a relative error of at most 2^-11 and a
+  /// True if an EXR stores colours, normals and coverage as 16-bit floats, with a relative error of at most 2^-11 and a
   /// largest value of 65504. Distances, positions, errors and ids keep 32 bits.
   bool is_half = false;
   /// The compression of the pixels.

@@ -33,15 +33,15 @@ PROMIN_EXPORT std::span<const std::string_view> light_choice_names();
 
 /// The lights and surroundings that light_scene() has added to a scene.
 struct AssumedLight {
-  /// Whether the studio surrounds the scene.
+  /// True if the studio surrounds the scene.
   bool has_studio = false;
-  /// Whether the studio's directional light was added.
+  /// True if the studio's directional light was added.
   bool has_studio_light = false;
-  /// Whether a headlight was added.
+  /// True if a headlight was added.
   bool has_headlight = false;
-  /// Whether ambient light was added.
+  /// True if ambient light was added.
   bool has_ambient = false;
-  /// Whether a grey backdrop has replaced a black background.
+  /// True if a grey backdrop has replaced a black background.
   bool has_background = false;
 };
 

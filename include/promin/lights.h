@@ -20,7 +20,7 @@ enum class LightKind : uint32_t {
   /// @endcond
 };
 
-/// How a light's power decreases with the distance d to the lit point.
+/// The decrease of a light's power with the distance d to the lit point.
 enum class Attenuation {
   /// The power does not decrease, as in classic lights.
   kNone,
@@ -55,7 +55,7 @@ struct Light {
   /// Half the angle of the cone outside which a spot light contributes nothing, in radians, inner_cone_angle <
   /// outer_cone_angle <= pi / 2.
   float outer_cone_angle = 0.785398163F;
-  /// Whether the light is on. A light that is off keeps its index, costs nothing and contributes nothing.
+  /// True if the light is on. A light that is off keeps its index, costs nothing and contributes nothing.
   bool is_on = true;
 };
 

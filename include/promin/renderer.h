@@ -77,7 +77,7 @@ struct RendererOptions {
   /// The mode of the first pictures. The constructor compiles the pipeline of this mode. Pipelines of other modes are
   /// compiled at their first use.
   RenderMode mode = {};
-  /// Whether the first pictures have an error target. Pictures with and without an error target need different
+  /// True if the first pictures have an error target. Pictures with and without an error target need different
   /// pipelines. render_within() starts without an error target.
   bool has_error_target = false;
   /// The approximate number of samples of all pixels of all pictures together. If it is small, promin uses kernels that
@@ -87,7 +87,7 @@ struct RendererOptions {
   /// largest images until all images fit, and adds a warning to SetupStats::warnings. Pictures depend on this limit but
   /// not on the size of the device's memory: if the device has no room for the images, the constructor throws RunError.
   uint64_t texture_bytes = kDefaultTextureBytes;
-  /// Whether render() returns AovSet::of_surfaces() in RenderResult::aovs. The image keeps its bits.
+  /// True if render() returns AovSet::of_surfaces() in RenderResult::aovs. The image keeps its bits.
   bool with_aovs = false;
   /// Further AOVs that render() returns in RenderResult::aovs. With `alpha` the image has no background; otherwise it
   /// keeps its bits.

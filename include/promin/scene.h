@@ -42,9 +42,9 @@ struct Object {
 struct FileExtension {
   /// The extension's name, e.g. "KHR_materials_ior".
   std::string name;
-  /// Whether promin applies the extension or ignores it.
+  /// True if promin applies the extension or ignores it.
   bool is_used = true;
-  /// Whether the file declares the extension as required.
+  /// True if the file declares the extension as required.
   bool is_required = false;
 };
 
@@ -69,13 +69,13 @@ struct Scene {
   std::vector<std::shared_ptr<const TextureImage>> images;
   /// The textures that materials refer to.
   std::vector<Texture> textures;
-  /// The lights; there may be none: see light_scene (promin/lighting.h) and add_default_lights.
+  /// The lights. May be empty: light_scene (promin/lighting.h) and add_default_lights add lights.
   std::vector<Light> lights;
   /// The cameras in depth-first order of their nodes. Empty if the file has none: see frame_scene (promin/framing.h).
   std::vector<Camera> cameras;
   /// The surroundings of the scene: ambient light, background, sky and backdrop.
   Environment environment;
-  /// Whether the scene was made for classic light: an NFF file, or a glTF file whose materials are all declared as
+  /// True if the scene was made for classic light: an NFF file, or a glTF file whose materials are all declared as
   /// Phong materials (PROMIN_materials_phong). If a scene has no lights, light_scene() adds a headlight to a classic
   /// scene and a studio to any other scene.
   bool is_classic = false;
@@ -106,9 +106,9 @@ PROMIN_EXPORT uint32_t default_max_depth(const Scene& scene);
 
 /// The lights that add_default_lights() has added.
 struct AddedLights {
-  /// Whether a headlight was added.
+  /// True if a headlight was added.
   bool has_headlight = false;
-  /// Whether ambient light was added.
+  /// True if ambient light was added.
   bool has_ambient = false;
 };
 

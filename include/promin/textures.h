@@ -51,13 +51,13 @@ struct Texture {
   TextureWrap wrap_u = TextureWrap::kRepeat;
   /// Wrap mode at the edges v = 0 and 1.
   TextureWrap wrap_v = TextureWrap::kRepeat;
-  /// Whether texels are interpolated if they are larger than pixels.
+  /// True if texels are interpolated if they are larger than pixels.
   bool is_magnified_linearly = true;
-  /// Whether texels are interpolated if they are smaller than pixels.
+  /// True if texels are interpolated if they are smaller than pixels.
   bool is_minified_linearly = true;
-  /// Whether promin uses the image's smaller levels if texels are smaller than pixels.
+  /// True if promin uses the image's smaller levels if texels are smaller than pixels.
   bool has_levels = true;
-  /// Whether promin interpolates between two levels.
+  /// True if promin interpolates between two levels.
   bool are_levels_linear = true;
 };
 

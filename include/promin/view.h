@@ -27,7 +27,7 @@ struct PixelWindow {
 struct RenderMode {
   /// The property that the picture shows; light by default.
   DebugView debug_view = DebugView::kNone;
-  /// Whether lights cast shadows. Without shadows every light reaches every point that faces it.
+  /// True if lights cast shadows. Without shadows every light reaches every point that faces it.
   bool has_shadows = true;
 
   /// Returns whether both modes need the same pipeline.

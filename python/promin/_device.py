@@ -36,7 +36,7 @@ class DeviceInfo:
     lacks: tuple[str, ...] = ()
     """Optional features that the device lacks, and what promin does without them."""
     is_default: bool = False
-    """Whether it is the default device."""
+    """True if it is the default device."""
 
 
 class Device:

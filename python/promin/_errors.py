@@ -14,11 +14,11 @@ class Problem(NamedTuple):
     code: str
     """The kind of the problem, such as "job.piece.cut". Codes do not change between versions; sentences may."""
     where: str
-    """Where the problem is: a file, then ": " and a place in the file; or a member of a scene. May be empty."""
+    """The place of the problem: a file, then ": " and a place in the file; or a member of a scene. May be empty."""
     what: str
-    """What is wrong, as a sentence without its full stop."""
+    """The problem, as a sentence without its full stop."""
     cure: str
-    """What to do about the problem, as a sentence without its full stop. May be empty."""
+    """The way to solve the problem, as a sentence without its full stop. May be empty."""
 
     def __str__(self) -> str:
         return (self.where and self.where + ": ") + self.what + (self.cure and "; " + self.cure)

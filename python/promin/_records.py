@@ -48,7 +48,7 @@ class Light:
     outer_cone_angle: float = 0.785398163
     """Half the angle of the cone outside which a spot light contributes nothing, at most pi / 2."""
     is_on: bool = True
-    """Whether the light is on. A light that is off keeps its index."""
+    """True if the light is on. A light that is off keeps its index."""
     name: str = ""
     """A name for people."""
 
@@ -84,7 +84,7 @@ class Material:
     alpha_cutoff: float = 0.5
     """The smallest alpha at which a surface with alpha_mode "mask" is present."""
     is_double_sided: bool = True
-    """Whether pictures show both sides of the material's triangles."""
+    """True if pictures show both sides of the material's triangles."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +106,7 @@ class Phong(Material):
     ior: float = 1.0
     """Index of refraction."""
     fresnel: bool = False
-    """Whether Fresnel's reflectance multiplies `reflection`, and 1 minus the reflectance multiplies `transmission`."""
+    """True if Fresnel's reflectance multiplies `reflection`, and 1 minus the reflectance multiplies `transmission`."""
     diffuse_texture: TextureSlot | None = None
     """Texture whose values multiply `ambient` and `diffuse`."""
     specular_texture: TextureSlot | None = None
@@ -291,7 +291,7 @@ class Environment:
     sky: Union[Studio, GradientSky, Panorama, None] = None
     """The sky, which replaces ambient light."""
     shows_sky: bool = False
-    """Whether the camera sees the sky in place of the background."""
+    """True if the camera sees the sky in place of the background."""
     rotation: float = 0.0
     """Rotation of the sky about +Y, in radians."""
     intensity: float = 1.0
@@ -309,7 +309,7 @@ class Display:
     tone_mapping: str = "none"
     """The tone mapping: "none", "neutral", "aces", "reinhard" or "agx"."""
     dithers: bool = False
-    """Whether 8-bit values get noise before they are rounded."""
+    """True if 8-bit values get noise before they are rounded."""
 
 
 def change(record: Record, fields: Mapping[str, Any]) -> Record:

@@ -75,7 +75,7 @@ class View:
     """The property that the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth" or
     "steps"."""
     shadows: bool = True
-    """Whether lights cast shadows."""
+    """True if lights cast shadows."""
 
     # The following fields change the camera, as the options of `promin render` with the same names do.
 

@@ -103,9 +103,9 @@ class Comparison:
     """The result of comparing an existing piece with the same piece made again, perhaps on another device."""
 
     is_equal: bool
-    """Whether both pieces have the same bits."""
+    """True if both pieces have the same bits."""
     is_within: bool
-    """Whether both pieces are equal or differ only within the bounds between devices: at most 0.5 % of pixels or rays
+    """True if both pieces are equal or differ only within the bounds between devices: at most 0.5 % of pixels or rays
     are mismatches."""
     largest: float
     """The largest difference of pixels or rays that are not mismatches. For a pixel's numbers it is at most 0.004

@@ -29,7 +29,7 @@ PROOF = -1
 _SHORT_MS = 1000.0
 _MOST_IN_A_ROW = 10
 _MOST_ALIKE = 3
-"""Number of different pieces. If at least so many pieces fail in a row, the job and not a piece is at fault."""
+"""Number of different pieces. If at least this many pieces fail in a row, the job and not a piece is at fault."""
 _MOST_DEATHS_PROVING = 5
 _MOST_LOST_PROOFS = 5
 _REFUSED_S = 2.0

@@ -24,7 +24,7 @@ class Settings:
     outputs: list[str] = field(default_factory=list)
     """Absolute paths of the output files."""
     allow_mixed: bool = False
-    """Whether frames may be made by devices of different fingerprints."""
+    """True if frames may be made by devices of different fingerprints."""
     retries_from: float = 0.0
     """Time (seconds since 1970) of the last `render`, `cast` or `resume`. Only failures after this time count."""
 

@@ -64,7 +64,7 @@ void put_record(Path path, Hit hit) {
   if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 
-// Whether shading points are computed. Debug views show no light, but their AOVs need shading points.
+// True if shading points are computed. Debug views show no light, but their AOVs need shading points.
 const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | uint(DEBUG_VIEW == DEBUG_VIEW_NONE);
 
 // Returns the texture coordinates of a hit in set 0; 0 if the surface has no texture.

@@ -76,7 +76,7 @@ void add_backdrop(Path path, vec3 seen) {
   add_to_unlit(path.pixel, mix(vec3(0.0), path.weight, is_shown), mix(vec3(0.0), seen, is_shown));
 }
 
-// Whether rays of the stream belong to several parts. If not, all of them are mirror rays.
+// True if rays of the stream belong to several parts. If not, all of them are mirror rays.
 const uint STREAM_HAS_PARTS = FEATURE_BIT(FEATURE_LIGHT_AOVS) & KEEPS_PROGRESS;
 
 // Shift in w of PART_SEEN: the lower bits are the part of the current point; the bits from this one on are the part of

@@ -33,7 +33,7 @@ void enter_part(inout Path path, uint part) {
   if (has(FEATURE_LIGHT_AOVS) && path.part == PART_BACKGROUND) path.part = part;
 }
 
-// Whether each path stores its own number of bounces, which may differ from the number of the turn.
+// True if each path stores its own number of bounces, which may differ from the number of the turn.
 const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 
 #include "picture/light_parts.glsl"

@@ -69,7 +69,7 @@ struct ShadingPoint {
 
 #include "shade/glass.glsl"
 
-// Whether the reflection and transmission of some faces depend on the angle.
+// True if the reflection and transmission of some faces depend on the angle.
 const bool HAS_FACES = (FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_FRESNEL)) != 0u;
 
 #include "shade/materials.glsl"

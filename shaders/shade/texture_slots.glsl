@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The textures of a material at a point.
 
-// Whether materials may have layers above them, or other rare properties (ExtensionRecord).
+// True if materials may have layers above them, or other rare properties (ExtensionRecord).
 const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
 const uint RARE_FEATURES = FEATURE_BIT(FEATURE_SPECULAR_TEXTURES) | FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION) |
                            FEATURE_BIT(FEATURE_IRIDESCENCE) | FEATURE_BIT(FEATURE_ANISOTROPY);

@@ -14,9 +14,9 @@ layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
 // is the number of node steps that all lanes take before the lanes that have reached leaves test them. With 0 each lane
 // steps until it reaches a leaf.
 layout(constant_id = CONSTANT_STEPS_TOGETHER) const uint STEPS_TOGETHER = 0u;
-// Whether solids wait until no lane can continue without them.
+// True if solids wait until no lane can continue without them.
 layout(constant_id = CONSTANT_WAITS_WITH_SOLIDS) const uint WAITS_WITH_SOLIDS = 0u;
-// Whether all of the kernel's rays are any-hit rays.
+// True if all of the kernel's rays are any-hit rays.
 layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 
 // A constant that is 1 if the pipeline has the feature FEATURE_*, and otherwise 0.
@@ -44,7 +44,7 @@ const uint MATERIAL_KIND_COUNT = 0u
 #define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) +FEATURE_BIT(BIT)
 #include "promin/kinds/materials.def"
     ;
-// Whether mirror rays that leave the scene may see something other than the background.
+// True if mirror rays that leave the scene may see something other than the background.
 const bool SEES_ENVIRONMENT = (FEATURE_BIT(FEATURE_METALLIC_ROUGHNESS) | FEATURE_BIT(FEATURE_SKY)) != 0u;
 
 // VIEW holds the constants that all dispatches of a view share. CAMERA is the same block, for reading the camera. A

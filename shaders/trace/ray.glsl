@@ -69,7 +69,7 @@ struct Inside {
   float exit;
   uint exit_part;
 };
-// Whether the kernel finds all crossings (crossings.comp). Surfaces that a ray only touches do not count then.
+// True if the kernel finds all crossings (crossings.comp). Surfaces that a ray only touches do not count then.
 #ifndef ASKS_FOR_ALL
 #define ASKS_FOR_ALL false
 #endif

@@ -9,7 +9,7 @@
 // the branch, older versions of lavapipe overwrite variables of lanes that have left with results of later turns, whose
 // loads return 0 for them; variables changed inside a branch keep their values.
 
-// Whether the solids of a leaf wait until no lane can continue without them. If all primitives are solids, no solid
+// True if the solids of a leaf wait until no lane can continue without them. If all primitives are solids, no solid
 // waits.
 const uint SOLIDS_WAIT = WAITS_WITH_SOLIDS * FEATURE_BIT(FEATURE_TRIANGLES) * uint(TREE_KIND_COUNT > 1u);
 

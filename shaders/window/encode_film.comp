@@ -11,7 +11,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 // The display transform: TONE_MAPPING_*.
 layout(constant_id = 0) const uint TONE_MAPPING = 0u;
 layout(constant_id = 2) const uint DITHERS = 0u;
-// Whether the film has FEATURE_UNLIT_SHARE.
+// True if the film has FEATURE_UNLIT_SHARE.
 layout(constant_id = 3) const uint HAS_UNLIT = 0u;
 
 // This is the buffer of film.glsl. Its head was written by the picture's last dispatch.

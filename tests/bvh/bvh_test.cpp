@@ -195,7 +195,7 @@ TEST_P(BvhTest, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// The boxes may be cut, until no plane can cut what is left.
+// The boxes may be cut, until no plane can cut the rest.
 TEST_P(BvhTest, PartsOfBoxesCoverThem) {
   const Boxes input = boxes();
   const Bvh bvh = build_bvh(builder(), {input, [](uint32_t, const Bounds& window) { return window; }});
@@ -225,7 +225,7 @@ struct Ray {
   dvec3 direction;
 };
 
-/// The slab test. If a ray meets a box, it also meets every box around it.
+/// The slab test. If a ray hits a box, it also hits every box around it.
 bool is_met(const Bounds& box, const Ray& ray) {
   const dvec3 below = (dvec3(box.lo) - ray.origin) / ray.direction;
   const dvec3 above = (dvec3(box.hi) - ray.origin) / ray.direction;

@@ -48,7 +48,7 @@ TEST(DropCopiesTest, ManyLeaveTheTreeAndFewStay) {
   }
 }
 
-/// What lies behind such copies is seen through them.
+/// Surfaces behind such copies are seen through them.
 TEST(DropCopiesTest, WhatIsNotOpaqueStays) {
   Material blend;
   blend.alpha_mode = AlphaMode::kBlend;
@@ -70,7 +70,7 @@ TEST(CopiedHitsTest, CopiesAreListedInTheOrderOfHits) {
     made.primitive = primitive;
     return made;
   };
-  // Two rays meet the copies; one between these rays does not.
+  // Two rays hit the copies; one between these rays does not.
   const std::vector<Hit> hits = {hit(1, 0, 1), hit(1, 1, 0), hit(2, 1, 5), hit(3, 1, 5), hit(4, 0, 1)};
   const std::vector<uint64_t> offsets = {0, 3, 4, 5};
   const auto list = [&](uint64_t budget) {

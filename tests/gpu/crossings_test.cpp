@@ -597,7 +597,7 @@ TEST_F(CrossingsTest, TheIntervalIsOpen) {
 
 // The ray's unit, its start beyond 1024 radii, and its t are at the limits of floats.
 TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
-  // The mesh has the size of a thousandth of the unit.
+  // The mesh's size is a thousandth of a world unit.
   Mesh mesh = make_icosphere(2);
   for (vec3& position : mesh.positions) position *= 1e-3F;
   const world::Scene scene = scene_of({mesh, world::Sphere{vec3(0.0F), 5e-4F}});

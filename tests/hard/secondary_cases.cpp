@@ -146,8 +146,7 @@ void run_contact(Lab& lab) {
       if (!oracle::is_occluded(scene, exact_shadow)) continue;
       ++shadowed;
       if (blockers[i].t == 0.0F) continue;
-      // The point is lit, though the exact answer is shadow. The depth tells how far the exact ray passes inside the
-      // blocker.
+      // The point is lit, though the exact answer is shadow. The depth is that of the exact ray in the blocker.
       const Real depth = oracle::judge(scene, exact_shadow, {}).margin * kU * 2;  // S = |o - c| + r is about 2
       if (depth > glm::distance(point, Vector(bounces[i].origin)) + 2 * kU * 2) ++leaks;
     }

@@ -66,7 +66,7 @@ TEST(Verdict, DisksThatAreMissingHideNothing) {
 }
 
 TEST(Verdict, ErrorsOfTCountByTheAngleAndTheScale) {
-  // The ray meets the sphere at (0.6, 0, 0.8) with a cosine of 0.8, at t = 4.2; the direction of length 2 halves t.
+  // The ray hits the sphere at (0.6, 0, 0.8) with a cosine of 0.8, at t = 4.2; the direction of length 2 halves t.
   const Ray ray{{0.6L, 0, 5}, {0, 0, -2}};
   const Real scale = std::hypot(Real(5), 0.6L) + 1;
   for (const Real units : {3.0L, 7.0L, 100.0L}) {

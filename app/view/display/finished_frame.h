@@ -17,13 +17,13 @@ struct StageTimes {
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
-  /// Whether the driver has cut loops (trace/film/film.h), so that pixels are wrong.
+  /// True if the driver has cut loops (trace/film/film.h), so that pixels are wrong.
   bool has_cut_loops = false;
   /// The amount of tracing, in units (ProgressivePicture::record).
   double units = 0.0;
-  /// Whether the frame traced samples of refinement (ProgressivePicture::has_recorded_list).
+  /// True if the frame traced samples of refinement (ProgressivePicture::has_recorded_list).
   bool has_list = false;
-  /// Whether the frame shows the next camera of a flight.
+  /// True if the frame shows the next camera of a flight.
   bool is_of_flight = false;
   /// Milliseconds from the frame's first request, or from the end of the previous frame if that was later, to the
   /// frame's end. Idle time does not count.

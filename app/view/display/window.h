@@ -131,9 +131,9 @@ class Window {
   /// The effect of moving the pointer while a button is down.
   enum class Drag { kNone, kOrbit, kPan, kLight };
   Drag drag_ = Drag::kNone;
-  /// Whether the pointer has not moved since the button went down.
+  /// True if the pointer has not moved since the button went down.
   bool is_click_ = false;
-  /// Whether the overlay has drawn a frame since a button went down.
+  /// True if the overlay has drawn a frame since a button went down.
   bool is_press_judged_ = true;
   bool is_captured_ = false;
   dvec2 pointer_{0.0};

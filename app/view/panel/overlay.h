@@ -56,7 +56,7 @@ struct Switches {
 struct PathEntry {
   FileUse use = FileUse::kOpen;
   std::array<char, 4096> text{};
-  /// Whether the entry has not been shown yet. It then gets the keyboard focus.
+  /// True if the entry has not been shown yet. It then gets the keyboard focus.
   bool is_new = true;
 };
 
@@ -97,9 +97,9 @@ struct OverlayAnswer {
   std::optional<double> speed;
   /// The purpose for which the user requests a file.
   std::optional<FileUse> asked;
-  /// Whether the typed path is complete.
+  /// True if the typed path is complete.
   bool has_typed = false;
-  /// Whether the user has cancelled the entry of the path.
+  /// True if the user has cancelled the entry of the path.
   bool gives_up = false;
   /// The area of the overlay's panel.
   WindowArea area;

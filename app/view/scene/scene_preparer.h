@@ -122,7 +122,7 @@ struct PictureRequest {
   RenderMode mode;
   /// The size of the window for which memory is allocated.
   uvec2 size{1};
-  /// Whether the picture is a draft, which is shown until a better one is compiled. It leaves out features that compile
+  /// True if the picture is a draft, which is shown until a better one is compiled. It leaves out features that compile
   /// slowly.
   bool is_draft = false;
 };

@@ -30,7 +30,7 @@ struct JsonRule {
   /// If true, a value that breaks the rule is removed with a warning; if false, it is refused. If the value is
   /// required, the object that contains it is removed.
   bool is_repaired = false;
-  /// Whether a repaired number out of range is clamped. There is no warning if the number is out of range only by
+  /// True if a repaired number out of range is clamped. There is no warning if the number is out of range only by
   /// rounding.
   bool is_clamped = true;
   /// The part to remove in place of the value: a prefix of `path`. If empty, `is_repaired` describes which part is

@@ -18,7 +18,7 @@ struct PlacedNode {
   /// The product of the rotations of the node and its ancestors, for objects that have a direction but no size. Empty
   /// if one of the matrices has no rotation.
   std::optional<dmat3> rotation{dmat3(1.0)};
-  /// Whether the node is visible, according to KHR_node_visibility of the node and its ancestors.
+  /// True if the node is visible, according to KHR_node_visibility of the node and its ancestors.
   bool is_visible = true;
 };
 

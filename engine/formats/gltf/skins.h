@@ -18,7 +18,7 @@ struct GltfPose {
   /// The transform of objects that show posed meshes. It is the identity, or a reflection in x if all joints mirror.
   /// The reflection reverses the winding of triangles, as a mirroring node does for a mesh without a skin.
   dmat4 world_from_mesh{1.0};
-  /// Whether every joint reduces areas to 0. Such a scale of 0 hides the mesh.
+  /// True if every joint reduces areas to 0. Such a scale of 0 hides the mesh.
   bool is_hidden = false;
 };
 

@@ -42,7 +42,7 @@ class NffParser {
     /// The values that follow the statement, for messages.
     const char* form;
     void (NffParser::*read)();
-    /// Whether the statement is a shape. After a shape, the next statement begins behind the words that the shape
+    /// True if the statement is a shape. After a shape, the next statement begins behind the words that the shape
     /// needs.
     bool is_shape = true;
   };
@@ -300,7 +300,7 @@ class NffParser {
   const Statement* statement_ = nullptr;
   /// The last word that was read as a number; empty if there was none.
   std::string_view word_;
-  /// Whether the position of the statement is valid in the words read so far.
+  /// True if the position of the statement is valid in the words read so far.
   bool is_placed_ = true;
   std::optional<NffMaterial> material_;
   bool is_group_open_ = false;

@@ -14,7 +14,7 @@ struct HeightMap {
   dvec2 height{1.0};
   /// Channel of RGBA, counted from 0. The number 4 stands for the Rec. 709 luminance of the stored values.
   int channel = 4;
-  /// Whether the picture is clamped at its edges; otherwise it repeats.
+  /// True if the picture is clamped at its edges; otherwise it repeats.
   bool is_clamped = false;
 };
 

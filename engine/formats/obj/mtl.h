@@ -24,7 +24,7 @@ struct MtlMap {
   double strength = 1.0;
   /// The option -imfchan: the channel of RGBA, counted from 0, or 4 for the luminance.
   int channel = 4;
-  /// Whether its picture could be read.
+  /// True if its picture could be read.
   bool is_usable = true;
 };
 

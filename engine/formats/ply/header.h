@@ -20,7 +20,7 @@ size_t size_of(PlyType type);
 struct PlyProperty {
   std::string name = {};
   PlyType type = PlyType::kFloat32;
-  /// Whether each value is a list: a count, followed by that many numbers of `type`.
+  /// True if each value is a list: a count, followed by that many numbers of `type`.
   bool is_list = false;
   PlyType count_type = PlyType::kUint8;
 

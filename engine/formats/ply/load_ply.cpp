@@ -255,7 +255,7 @@ class MeshMaker {
   bool has_normals_;
   bool has_colors_;
   bool has_uvs_;
-  /// Whether faces have attributes of corners, so that vertices must be split.
+  /// True if faces have attributes of corners, so that vertices must be split.
   bool is_split_;
   Mesh mesh_;
   /// The current polygon, and the index of its first corner.

@@ -138,7 +138,7 @@ class StlParser {
   LoadReport& report_;
   std::vector<StlSolid> solids_;
   bool is_in_facet_ = false;
-  /// Whether all corners of the facet have valid positions.
+  /// True if all corners of the facet have valid positions.
   bool is_placed_ = true;
   /// The corners of the current facet.
   std::vector<vec3> corners_;

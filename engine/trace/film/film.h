@@ -23,7 +23,7 @@ namespace promin {
 
 struct FilmCounts {
   RayCounts rays;
-  /// Whether the driver has cut loops; see were_loops_cut().
+  /// True if the driver has cut loops; see were_loops_cut().
   bool has_cut_loops = false;
 };
 

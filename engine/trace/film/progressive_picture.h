@@ -148,16 +148,16 @@ class ProgressivePicture {
   std::function<ListFilm()> make_list_film_;
   ListFilm list_film_;
   std::future<ListFilm> list_film_to_come_;
-  /// Whether long work of the host runs on other threads. Only for callers that record their own frames.
+  /// True if long work of the host runs on other threads. Only for callers that record their own frames.
   bool works_beside_ = false;
   /// The picture that is being refined, for the view with the number refined_version_. Null while another thread
   /// prepares its next samples.
   std::unique_ptr<RefiningPicture> refined_;
   uint64_t refined_version_ = 0;
   std::future<std::unique_ptr<RefiningPicture>> refined_to_come_;
-  /// Whether refined_ has prepared samples to record or a picture to show.
+  /// True if refined_ has prepared samples to record or a picture to show.
   bool is_prepared_ = false;
-  /// Whether the samples of refined_ are being traced.
+  /// True if the samples of refined_ are being traced.
   bool is_list_under_way_ = false;
   /// The traced fraction of refined_'s next picture.
   double refined_fraction_ = 0.0;

@@ -32,7 +32,7 @@ struct StreamShape {
   /// Largest number of waiting rays of a path; only with glass.
   uint32_t waiting_rays = 0;
   bool has_glass = false;
-  /// Whether shadow rays may begin behind a surface.
+  /// True if shadow rays may begin behind a surface.
   bool scatters_through = false;
 
   /// Returns the number of records of a path, including its light sources.

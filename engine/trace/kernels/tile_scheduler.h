@@ -49,7 +49,7 @@ struct TileOptions {
   /// The range of the view's samples of each pixel to trace: [first, end).
   uint32_t first_sample = 0;
   uint32_t end_sample = kMaxSamplesPerPixel;
-  /// Whether each pixel is a sample of a list (FEATURE_LISTED_SAMPLES). Such a sample is traced once.
+  /// True if each pixel is a sample of a list (FEATURE_LISTED_SAMPLES). Such a sample is traced once.
   bool is_listed = false;
   /// A fixed number of blocks per piece, for tests that tiles do not change bits. If 0, the requested units determine
   /// the number.

@@ -324,7 +324,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   FeatureMask features;
   SetupStats stats;
   SceneCube cube;
-  /// Whether a ray may cross a primitive twice in the tree.
+  /// True if a ray may cross a primitive twice in the tree.
   bool repeats_primitives = false;
   /// The kernels, indexed by HitQuery, and by whether they trace packets.
   std::array<std::array<std::optional<RayKernel>, 2>, 4> kernels;

@@ -48,7 +48,7 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
   AssumedLight assumed = light_up(scene, view.look, surroundings);
-  if (options.aovs.alpha) assumed.has_background = false;  // No picture shows it.
+  if (options.aovs.alpha) assumed.has_background = false;  // With alpha, no picture shows a background.
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
   // If errors are measured as displayed, the display also affects the bits of an EXR.

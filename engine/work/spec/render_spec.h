@@ -38,9 +38,9 @@ inline constexpr double kMaxZoom = 1e3;
 
 /// The background that camera rays see.
 struct BackgroundChoice {
-  /// Whether camera rays see the environment; otherwise they see the colour.
+  /// True if camera rays see the environment; otherwise they see the colour.
   bool is_environment = false;
-  /// Whether the colour is linear light, which is exposed and tone mapped. Otherwise it is sRGB, 0 to 1, which is
+  /// True if the colour is linear light, which is exposed and tone mapped. Otherwise it is sRGB, 0 to 1, which is
   /// displayed unchanged.
   bool is_linear = false;
   vec3 color{0.0F};
@@ -54,7 +54,7 @@ struct LookOptions {
   std::optional<BackgroundChoice> background = std::nullopt;
   /// Exposure in stops; empty if it is chosen automatically.
   std::optional<float> exposure_ev = std::nullopt;
-  /// Whether the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
+  /// True if the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
   bool averages_exposure = false;
   std::optional<ToneMapping> tone_mapping = std::nullopt;
   bool dithers = false;
@@ -105,7 +105,7 @@ struct ViewOptions {
   std::vector<uint32_t> lights_off;
   /// The name or number of a camera of the scene.
   std::optional<std::string> camera;
-  /// Whether a camera frames the scene. The scene's cameras are then ignored, unless one is named.
+  /// True if a camera frames the scene. The scene's cameras are then ignored, unless one is named.
   bool frames_scene = false;
   /// A camera that replaces those of the scene.
   std::optional<Camera> given_camera;
@@ -177,7 +177,7 @@ struct RenderSpec {
   TracingOptions tracing;
   /// The files of the pictures. If the user names none, name_pictures() determines them.
   std::vector<std::filesystem::path> pictures;
-  /// Whether to skip frames whose pictures exist.
+  /// True if frames whose pictures exist are skipped.
   bool skips_existing = false;
   ViewOptions view;
   std::optional<Quality> quality;
@@ -185,10 +185,10 @@ struct RenderSpec {
   JobOptions job;
   /// Channels of an EXR in addition to R, G and B.
   AovSet aovs;
-  /// Whether AovSet::unlit is only needed to display the pictures. This is known after the scene is read.
+  /// True if AovSet::unlit is only needed to display the pictures. This is known after the scene is read.
   bool hides_unlit = false;
   ExrOptions exr;
-  /// Whether the user has chosen the compression of EXRs, even if it is the default.
+  /// True if the user has chosen the compression of EXRs, even if it is the default.
   bool names_compression = false;
   /// A camera path, and the frames to render; if `frames` is empty, all frames.
   std::optional<std::filesystem::path> path;

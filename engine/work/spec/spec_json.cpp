@@ -274,7 +274,7 @@ struct Traits {
   Json usual = {};
   bool affects_bits = true;
   bool is_file = false;
-  /// Whether pieces depend on the member; false for members that are chosen when pieces are merged.
+  /// True if pieces depend on the member; false for members that are chosen when pieces are merged.
   bool is_of_pieces = true;
   /// The members that this member replaces if it is given in addition to a specification.
   std::vector<std::string_view> replaces = {};

@@ -20,7 +20,7 @@ struct Cone {
   double radius_bottom = 0.25;
   /// Radius at `center` + half_height along the axis.
   double radius_top = 0.0;
-  /// Whether the cone consists only of its side, without disks.
+  /// True if the cone consists only of its side, without disks.
   bool is_open = false;
 };
 
@@ -38,7 +38,7 @@ struct Cone {
   float radius_bottom = 0.25F;
   /// Radius at center + axis * half_height.
   float radius_top = 0.0F;
-  /// Whether the cone consists only of its side, without disks.
+  /// True if the cone consists only of its side, without disks.
   bool is_open = false;
 
   /// Returns whether both cones are equal.

@@ -17,7 +17,7 @@ struct Cylinder {
   double half_height = 0.25;
   /// Radius of the disks.
   double radius = 0.25;
-  /// Whether the cylinder consists only of its side: a tube without disks.
+  /// True if the cylinder consists only of its side: a tube without disks.
   bool is_open = false;
 };
 
@@ -33,7 +33,7 @@ struct Cylinder {
   float half_height = 0.25F;
   /// Radius of both disks.
   float radius = 0.25F;
-  /// Whether the cylinder consists only of its side: a tube without disks.
+  /// True if the cylinder consists only of its side: a tube without disks.
   bool is_open = false;
 
   /// Returns whether both cylinders are equal.

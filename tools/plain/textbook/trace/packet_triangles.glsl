@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// This is packet_triangles.glsl without the fast test: the textbook's test alone decides whether a ray meets a
+// This is packet_triangles.glsl without the fast test: the textbook's test alone decides whether a ray hits a
 // triangle.
 
 void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
