@@ -101,7 +101,7 @@ class GltfCompressionTest : public SceneFolder {
   }
 };
 
-// meshoptimizer
+// The next tests check streams of meshoptimizer.
 
 Stream compress_attributes(const void* elements, size_t count, size_t stride) {
   Stream stream(meshopt_encodeVertexBufferBound(count, stride));
@@ -299,7 +299,7 @@ TEST_F(GltfCompressionTest, BrokenMeshoptLoadsOrIsRefused) {
   expect_mutants_to_load_or_be_refused(gltf, 0, first, 1000);
 }
 
-// Draco
+// The next tests check streams of Draco.
 
 struct Compressed {
   std::string bytes;

@@ -198,7 +198,7 @@ TEST_F(GltfExtensionsTest, TexturesOfLayersAreRead) {
   EXPECT_EQ(use_of(model.anisotropy_texture), ImageUse::kData);
 }
 
-// Specular-glossiness
+// The next tests check the specular-glossiness model.
 
 /// Two pixels: red and blue are 80 hexadecimal with a glossiness of 1; blue is 80 with a glossiness of 1/5.
 const std::string kGlossyPixels =
@@ -269,7 +269,7 @@ TEST_F(GltfExtensionsTest, GlossinessHoldsWhereItsTextureIsMissing) {
   EXPECT_EQ(model_of(scene).specular_color, vec3(1));
 }
 
-// Variants
+// The next tests check variants.
 
 /// Returns the triangle with material 0; the variant "dawn" has material 1 and "night" has 2.
 GltfBuilder varied_gltf() {
@@ -332,7 +332,7 @@ TEST_F(GltfExtensionsTest, MappingsToVariantsThatAreNotThereAreIgnored) {
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("an index is out of range (index 3)")));
 }
 
-// Instances
+// The next tests check instances.
 
 /// Returns the triangle, shown by a node at (1, 0, 0).
 GltfBuilder instanced_gltf(const json& attributes) {

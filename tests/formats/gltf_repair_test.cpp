@@ -84,7 +84,7 @@ TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
 #define PROMIN_LIGHT "extensions.KHR_lights_punctual.lights[0]"
 
 const Repair kRepairs[] = {
-    // The document
+    // The next rows are faults of the document.
     {"NoAsset", [](auto& g) { g.json.erase("asset"); },
      "asset.version: the version is missing; it is read as glTF 2.0"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
@@ -99,7 +99,7 @@ const Repair kRepairs[] = {
      },
      "extensionsUsed[1]: another value is given where a string is expected (3); the object that contains it is "
      "ignored"},
-    // Materials
+    // The next rows are faults of materials.
     {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; },
      "meshes[0].primitives[0].material: an index is out of range (index 1); it is ignored"},
     {"MaterialIsNoObject", [](auto& g) { g.json["materials"][0] = "red"; },
@@ -194,7 +194,7 @@ const Repair kRepairs[] = {
        g.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
      },
      "images[0]: the buffer view of an image extends beyond its buffer (10 bytes); the image is left out"},
-    // Lights and cameras
+    // The next rows are faults of lights and cameras.
     {"LightIndex", [](auto& g) { g.json["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 1; },
      "nodes[3].extensions.KHR_lights_punctual.light: an index is out of range (index 1); the light is left out"},
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; },
@@ -226,7 +226,7 @@ const Repair kRepairs[] = {
      },
      "extensions.OMI_environment_sky.skies[0].type: another value is given where a string is expected (3); the object "
      "that contains it is ignored"},
-    // Vertices
+    // The next rows are faults of vertices.
     {"NegativeColor",
      [](auto& g) {
        primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, 0, 0, 0, -1, 0, 0, 0, 0}, "VEC3");
@@ -267,7 +267,7 @@ const Repair kRepairs[] = {
      "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (14); it is used as it is"},
     {"NoStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 0; },
      "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (0); the elements are read as packed"},
-    // Nodes
+    // The next rows are faults of nodes.
     {"TwoParents",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2};
@@ -315,7 +315,7 @@ const Repair kRepairs[] = {
 INSTANTIATE_TEST_SUITE_P(Table, GltfRepairsTest, testing::ValuesIn(kRepairs),
                          [](const auto& repair) { return std::string(repair.param.name); });
 
-// Numbers off by rounding
+// The next tests check numbers with rounding errors.
 
 TEST_F(GltfRepairTest, RoundedFactorsAreClampedInSilence) {
   GltfBuilder gltf = triangle_gltf();
@@ -354,7 +354,7 @@ TEST_F(GltfRepairTest, RoundedMatricesAreAffine) {
   EXPECT_THAT(corners_of(mesh_of(scene))[1], vec3(4, 0, 0));
 }
 
-// Nodes
+// The next tests check faults of nodes.
 
 TEST_F(GltfRepairTest, AListedNodeIsARootWhereItsParentIsInNoScene) {
   GltfBuilder gltf = triangle_gltf();
@@ -416,7 +416,7 @@ TEST_F(GltfRepairTest, TheMatrixCountsAlone) {
   EXPECT_THAT(scene.warnings, SizeIs(1));
 }
 
-// Scales of 0
+// The next tests check scales of 0.
 
 TEST_F(GltfRepairTest, NodesOfScaleZeroAreNotDrawnAndKeepTheirNumber) {
   GltfBuilder gltf = rich_gltf();
@@ -517,7 +517,7 @@ TEST_F(GltfRepairTest, TheDraftOfLightsIsRead) {
   EXPECT_EQ(scene.lights[0].outer_cone_angle, 0.5F);
 }
 
-// Bytes
+// The next tests check faults of bytes.
 
 TEST_F(GltfRepairTest, DataUrisHaveManyForms) {
   GltfBuilder gltf = triangle_gltf();

@@ -33,7 +33,7 @@ class GltfTest : public SceneFolder {
 
 const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 
-// Meshes
+// The next tests check meshes.
 
 TEST_F(GltfTest, TrianglesComeOutInTheWorld) {
   GltfBuilder gltf = triangle_gltf();
@@ -176,7 +176,7 @@ TEST_F(GltfTest, VertexColorsComeInEveryFormat) {
   EXPECT_EQ(second_color(std::vector<uint16_t>{0, 0, 0, 65535, 0, 0, 0, 0, 0}, "VEC3", true), vec4(1, 0, 0, 1));
 }
 
-// Nodes
+// The next tests check nodes.
 
 TEST_F(GltfTest, ObjectsAreNumberedDepthFirst) {
   GltfBuilder gltf = triangle_gltf();  // node 0
@@ -214,7 +214,7 @@ TEST_F(GltfTest, DeepHierarchiesDoNotOverflowTheStack) {
   EXPECT_EQ(load_scene(folder_ / "scene.gltf").center + dvec3(corner), dvec3(kDepth, 0, 0));
 }
 
-// Shapes
+// The next tests check shapes.
 
 /// Returns a document of one implicit shape, with a triangle as its fallback.
 GltfBuilder shape_gltf(const json& shape, const json& node = json::object()) {
@@ -347,7 +347,7 @@ TEST_F(GltfTest, CollidersAreNotDrawn) {
   EXPECT_THAT(scene.warnings, ElementsAre("the extension KHR_physics_rigid_bodies is ignored"));
 }
 
-// Materials
+// The next tests check materials.
 
 /// Returns a document whose triangle has this material.
 GltfBuilder material_gltf(const json& material) {
@@ -747,7 +747,7 @@ TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
                                    testing::AllOf(HasSubstr("leaves the scene's folder"), HasSubstr("--root DIR"))));
 }
 
-// Lights and sky
+// The next tests check lights and sky.
 
 GltfBuilder light_gltf(const json& light, const json& node = json::object()) {
   GltfBuilder gltf = triangle_gltf();
@@ -931,7 +931,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular: ")));
 }
 
-// Cameras
+// The next tests check cameras.
 
 TEST_F(GltfTest, CamerasComeInNodeOrderWithoutScale) {
   GltfBuilder gltf = triangle_gltf();
@@ -964,7 +964,7 @@ TEST_F(GltfTest, CamerasComeInNodeOrderWithoutScale) {
   EXPECT_EQ(scene.cameras[2].aspect_ratio, 0);
 }
 
-// Files
+// The next tests check files.
 
 TEST_F(GltfTest, GlbAndTextAreToldApartByTheirBytes) {
   GltfBuilder gltf = triangle_gltf();

@@ -237,7 +237,7 @@ TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
   }
 }
 
-// What is forgiven
+// The next tests check faults that cost only a warning.
 
 /// A fault in a file, and the warning that it gives.
 struct Repair {
@@ -324,7 +324,7 @@ TEST_F(NffTest, AFileWhoseShapesAreAllLeftOutIsRefused) {
   EXPECT_THAT(refusal("s 0 0 0 0\np 1 0 0 0\n"), HasProblem("scene.geometry.none \"s\" radius"));
 }
 
-// Refusals
+// The next tests check refusals.
 
 class BadNffTest : public BadFileTest {};
 

@@ -70,7 +70,7 @@ TEST_F(ObjTest, TellsOfItsFilesAsTheyWereBeforeReading) {
   EXPECT_THAT(names_of(sources), Contains("scene.obj")) << "also of a broken scene";
 }
 
-// Faces
+// The next tests check faces.
 
 TEST_F(ObjTest, FacesCountFromTheFrontOrTheBack) {
   const std::vector<vec3> wanted = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
@@ -192,7 +192,7 @@ TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
   EXPECT_THAT(refusal(kSquare + "f 1 2\nf 3 4\n"), HasProblem("obj.faces.none"));
 }
 
-// These faults only lose colours, shading or something that no face shows
+// The next tests check faults that lose only colours, shading or something that no face shows.
 
 TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");
@@ -292,7 +292,7 @@ TEST_F(ObjTest, ZeroBytesAtTheEndAreCutOff) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
-// Materials
+// The next tests check materials.
 
 TEST_F(ObjTest, FactorsAreTakenAsTheyStand) {
   const Material m = material("Ka 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 2 1 0\nNs 96\nKe 3 0 0\nillum 2\n");
@@ -427,7 +427,7 @@ TEST_F(ObjTest, WhatIsInvisibleByDIsSaid) {
   EXPECT_THAT(warnings, IsEmpty()) << "glass";
 }
 
-// Names
+// The next tests check names.
 
 TEST_F(ObjTest, CommentsMayFollowNames) {
   write("a.mtl",
@@ -537,7 +537,7 @@ TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
   EXPECT_EQ(load(kSquare + "mtllib a.mtl b.mtl\nusemtl b\nf 1 2 3\n").materials.at(0).phong().diffuse, vec3(0, 1, 0));
 }
 
-// Texture maps
+// The next tests check texture maps.
 
 /// Loads a square with texture coordinates at all corners, and a material with these lines.
 class ObjMapTest : public ObjTest {
@@ -692,7 +692,7 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not a relative path")));
 }
 
-// Maps of heights
+// The next tests check height maps.
 
 /// Returns the normal of a texel, without the rounding error of its 8 bits.
 vec3 normal_at(const TextureImage& image, uint32_t x, uint32_t y) {
@@ -924,7 +924,7 @@ TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
               ElementsAre(0xFF0501FFU, 0xFF0502FFU, 0xFF0603FFU, 0xFF0604FFU));
 }
 
-// Refusals
+// The next tests check refusals.
 
 /// Each text follows the square's text.
 class BadObjTest : public BadFileTest {};
@@ -956,7 +956,7 @@ TEST_F(ObjTest, BrokenFilesSayWhy) {
               testing::ResultOf([](const std::string& list) { return std::ranges::count(list, '\n'); }, 4));
 }
 
-// Polygons
+// The next tests check polygons.
 
 double area_of(const std::vector<vec3>& corners, const std::vector<uvec3>& triangles) {
   double area = 0.0;

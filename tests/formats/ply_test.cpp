@@ -198,7 +198,7 @@ TEST_F(PlyTest, NumbersBeyondDoubleAreThoseOfTheirSide) {
   EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasProblem("scene.geometry.none 1e15"));
 }
 
-// Normals and colours
+// The next tests check normals and colours.
 
 /// Returns a triangle with further properties; `vertices` has those of each of its three vertices.
 std::string triangle(const std::string& properties, const std::vector<std::string>& vertices) {
@@ -353,7 +353,7 @@ TEST_F(PlyTest, ColorsOfVerticesComeBeforeThoseOfFaces) {
   EXPECT_THAT(scene.warnings, ElementsAre("colours of faces are ignored because the vertices have colours"));
 }
 
-// Textures
+// The next tests check textures.
 
 /// The texture files lie in the test's folder.
 class PlyTextureTest : public PlyTest {
@@ -475,7 +475,7 @@ TEST_F(PlyTextureTest, SizesAreReadAloneWhereAskedFor) {
   EXPECT_THAT(scene.images.at(0)->texels, IsEmpty());
 }
 
-// Refusals
+// The next tests check refusals.
 
 class BadPlyTest : public BadFileTest {};
 

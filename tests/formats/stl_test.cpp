@@ -223,7 +223,7 @@ TEST_F(StlTest, WithoutFacetsThereIsNothingToShow) {
   }
 }
 
-// Refusals
+// The next tests check refusals.
 
 class BadStlTest : public BadFileTest {};
 

@@ -109,7 +109,7 @@ Board make_coordinates() {
   }
   board.add(0, second, uvs);
   board.end_patch();
-  // By KHR_texture_transform with translation, rotation and scale, (s, t) of the patch goes to the green texel.
+  // KHR_texture_transform moves, rotates and scales (s, t) of the patch to the green texel.
   const auto add = [&](const vec3& to_u, const vec3& to_v) {
     Material material = make_textured(texture);
     TextureSlot& slot = std::get<Unlit>(material.model).color_texture;
@@ -119,7 +119,7 @@ Board make_coordinates() {
     board.end_patch();
   };
   add({0.25F, 0, 0.5F}, {0, 0.25F, 0.25F});
-  // For a quarter turn, u = s_v t + o_u and v = -s_u s + o_v.
+  // A quarter turn gives u = s_v t + o_u and v = -s_u s + o_v.
   add({0, 0.25F, 0.5F}, {-0.25F, 0, 0.5F});
   // This is a shear, as a rotation with unequal scales gives it.
   add({0.125F, 0.125F, 0.5F}, {0.0625F, 0.125F, 0.25F});

@@ -128,7 +128,7 @@ std::vector<dvec3> find_truth(const View& view, const Scene& scene) {
   return truth;
 }
 
-/// Returns, of the pixels with more than the first samples, how many have an error within their claim.
+/// Returns how many of the refined pixels, which have more than the first samples, have an error within their claim.
 Share judge(const Refined& refined, const View& view, const std::vector<dvec3>& truth) {
   Share share;
   size_t honest = 0;

@@ -53,6 +53,6 @@ def gap_text(gaps):
 
 
 def join(words):
-    """ "a, b and c" """
+    """Returns the words as a list like "a, b and c"."""
     words = list(words)
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"
