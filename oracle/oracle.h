@@ -43,8 +43,8 @@ struct Hit {
   /// Barycentric weights of a triangle's second and third corner; 0 on analytic shapes.
   Real u = 0;
   Real v = 0;
-  /// Unit geometric normal: by the winding of a triangle, outward on a solid, or a plane's own; never flipped to the
-  /// ray. 0 on a miss.
+  /// Unit geometric normal. It follows the winding of a triangle, points out of a solid, or is a plane's own normal; it
+  /// is never turned to the ray. 0 on a miss.
   Vector normal{0};
 
   bool exists() const { return object >= 0; }

@@ -80,7 +80,7 @@ struct Environment {
   vec3 background{0.0F};
   /// The sky, which replaces ambient light. Camera rays still see the background unless `shows_sky` is set.
   std::variant<std::monostate, Studio, GradientSky, Panorama> sky{};
-  /// True if camera rays see the sky if there is one.
+  /// True if camera rays see the sky. It has no effect in a scene without a sky.
   bool shows_sky = false;
   /// Rotation of the sky about +Y from +Z towards +X, in radians, finite.
   float rotation = 0.0F;

@@ -42,7 +42,7 @@ struct Object {
 struct FileExtension {
   /// The extension's name, e.g. "KHR_materials_ior".
   std::string name;
-  /// True if promin applies the extension or ignores it.
+  /// True if promin applies the extension, false if it ignores the extension.
   bool is_used = true;
   /// True if the file declares the extension as required.
   bool is_required = false;

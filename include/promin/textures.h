@@ -51,11 +51,11 @@ struct Texture {
   TextureWrap wrap_u = TextureWrap::kRepeat;
   /// Wrap mode at the edges v = 0 and 1.
   TextureWrap wrap_v = TextureWrap::kRepeat;
-  /// True if texels are interpolated if they are larger than pixels.
+  /// True if texels that are larger than pixels are interpolated.
   bool is_magnified_linearly = true;
-  /// True if texels are interpolated if they are smaller than pixels.
+  /// True if texels that are smaller than pixels are interpolated.
   bool is_minified_linearly = true;
-  /// True if promin uses the image's smaller levels if texels are smaller than pixels.
+  /// True if promin uses the image's smaller levels where texels are smaller than pixels.
   bool has_levels = true;
   /// True if promin interpolates between two levels.
   bool are_levels_linear = true;

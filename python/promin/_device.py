@@ -23,7 +23,7 @@ class DeviceInfo:
     name: str
     """The name that the device's driver reports."""
     type: str
-    """"discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"."""
+    """The kind of the device: "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"."""
     driver: str
     """The driver's name and version."""
     uuid: str

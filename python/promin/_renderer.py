@@ -424,7 +424,7 @@ class Renderer:
             native.set_environment(to_dict(value))
 
     def _take_back(self, native: _promin.Renderer, names: Iterable[str]) -> None:
-        """Restores the renderer's parts of these names. If that fails, the next use makes another renderer."""
+        """Restores the named values in the native renderer. If that fails, the next use makes another renderer."""
         lit = self._lit()
         try:
             for name in names:

@@ -3,7 +3,7 @@
 // The stream: the paths of a piece of a picture that continue at a mirror, and the rays that they request. It is stored
 // in the film, after the pixels. A turn first makes lists of the requested rays, sorted so that neighbours meet the
 // same nodes (place_rays.comp, list_rays.comp). It then traces the shadow rays (trace_shadow_rays.comp). At last it
-// follows the paths (follow_paths.comp): it adds the light of the shadow rays, traces the mirror ray, shades its hit and
+// follows the paths (follow_paths.comp): adds the light of the shadow rays, traces the mirror ray, shades its hit and
 // requests the rays of the next turn. Paths share no numbers, and the lane of a path adds its light in the order of
 // bounces and sources, so no bit depends on the order of the lists.
 //

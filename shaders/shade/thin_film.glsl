@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The reflectance of a surface under a thin film (KHR_materials_iridescence, "Thin film reflectance"; Belcour and Barla,
-// "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", SIGGRAPH 2017). Thicknesses and
-// path differences are in nanometres.
+// The reflectance of a surface under a thin film (KHR_materials_iridescence, "Thin film reflectance"; Belcour and
+// Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", SIGGRAPH 2017).
+// Thicknesses and path differences are in nanometres.
 
 const float LEAST_FILM_COSINE = 0.015625;  // the smallest cosine at which a film is seen
 const float SMOOTH_THICKNESS = 0.03;       // in micrometres; a film thinner than this fades out

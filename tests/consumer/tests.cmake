@@ -20,8 +20,8 @@ function(promin_add_consumer NAME)
 endfunction()
 promin_add_consumer(finds_static -DPROMIN_KIND=static -DCMAKE_PREFIX_PATH=${PROMIN_CONSUMER_DIR}/prefix)
 promin_add_consumer(finds_shared -DPROMIN_KIND=shared -DCMAKE_PREFIX_PATH=${PROMIN_CONSUMER_DIR}/prefix)
-# The library is a part of the consumer. The test checks what the consumer makes of the project; with the label `long`
-# it also checks that it works, because this compiles the whole library once more.
+# The library is a part of the consumer. A test configures the consumer; a test with the label `long` also builds and
+# runs it, which compiles the whole library once more.
 set(PROMIN_AS_PART -DPROMIN_KIND=static -DPROMIN_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DCMAKE_BUILD_TYPE=Release
     $<$<BOOL:${CCACHE}>:-DCMAKE_CXX_COMPILER_LAUNCHER=${CCACHE}>)
 add_test(NAME Consumer.takes_the_sources_in

@@ -180,7 +180,7 @@ def _compare(programs, folder, peer):
 
 
 def measure(programs, folder, runs, side, level):
-    """Measures and returns "rows" of peers, "first" for the first picture, and "gaps"."""
+    """Measures. Returns a dict: "rows" of the peers, "first" for the first picture, and "gaps" for missing peers."""
     for name, depth in (("flake", level), ("ball", 0)):
         sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
     of_scene = {"scene": f"sphereflake:{level}"}

@@ -176,7 +176,7 @@ class NffParser {
     material.shininess = static_cast<float>(take_number(0.0, kMaxCoordinate, "from 0 to 1e15"));
     material.transmittance = take_factor();
     material.ior = take_factor();
-    // Only a shape that follows starts a group with this material.
+    // A group with this material starts only if a shape follows.
     material_ = material;
     is_group_open_ = false;
   }

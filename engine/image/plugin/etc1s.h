@@ -12,7 +12,7 @@ struct Etc1sPicture {
   /// The file's global data of supercompression, and the bytes of its largest level.
   std::span<const unsigned char> globals;
   std::span<const unsigned char> level;
-  /// True if the second slice, if there is one, contains green and not alpha.
+  /// True if the second slice contains green and not alpha. It has no effect without a second slice.
   bool is_second_green;
 };
 
