@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 
-# Whoever builds by `pip install` has not run tools/setup: all that the system lacks is told at once, in one line, by
-# the names that packages have in Debian and Ubuntu.
+# Checks the system's packages. A user who builds with `pip install` has not run tools/setup. The message lists all
+# missing packages at once, in one line, with their names in Debian and Ubuntu.
 set(PROMIN_LACKING)
 find_package(PkgConfig QUIET)
 if(NOT PkgConfig_FOUND)
@@ -40,6 +40,6 @@ if(NOT PROMIN_CHECKED_SPIRV_OPT)
 endif()
 if(PROMIN_LACKING)
   list(JOIN PROMIN_LACKING " " PROMIN_LACKING)
-  # CMake breaks no line that is indented.
+  # CMake does not wrap indented lines of a message.
   message(FATAL_ERROR "promin needs system packages that are missing; as root run:\n  apt install ${PROMIN_LACKING}")
 endif()

@@ -14,15 +14,16 @@
 namespace promin::oracle {
 namespace {
 
-/// Whether a material may send a mirror ray on.
+/// Returns whether a material may have a mirror ray.
 struct IsMirror {
   bool operator()(const Phong& phong) const { return max_component(phong.reflection) > 0.0F; }
   bool operator()(const MetallicRoughness& material) const { return material.roughness < 0.4F; }
   bool operator()(const Unlit&) const { return false; }
 };
 
-/// Distance from the ray to the nearest crease around its hit. There the distance falls and rises once, so that thirds
-/// find the least; were it not so, what they find would be too much rather than too little.
+/// Returns the distance from the ray to the nearest crease around its hit. Near the hit the distance decreases and then
+/// increases, so a search by thirds finds the minimum. If it did otherwise, the result would be too large and not too
+/// small.
 Real distance_from_crease(const world::Shape& shape, const Ray& ray, const Hit& hit) {
   const Real reach = 0.01L * bounding_sphere(shape, hit.primitive).radius / glm::length(ray.direction);
   Real lo = hit.t - reach;
@@ -97,7 +98,7 @@ class Comparison {
   void compare_hit() {
     const Pixel& pixel = expected_.pixels[index_];
     const Real t = aovs_.depth[index_] / glm::length(pixel.ray.direction);
-    // kNoObject becomes -1.
+    // The conversion changes kNoObject to -1.
     const Answer answer{t, static_cast<int32_t>(aovs_.object[index_]), static_cast<int32_t>(aovs_.primitive[index_])};
     const Verdict verdict = judge(scene_, pixel.ray, pixel.hit, answer);
     if (!verdict.is_same) {
@@ -155,7 +156,7 @@ std::string name_pixel(const uvec2& pixel) {
   return format("\n  pixel (%u, %u)", pixel.x, pixel.y);
 }
 
-/// The list's title and its first lines.
+/// Returns the title of a list and its first lines.
 template <typename Item, typename Describe>
 std::string list(const std::string& title, const std::vector<Item>& items, size_t most_lines, Describe describe) {
   if (items.empty()) return "";

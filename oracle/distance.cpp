@@ -46,7 +46,8 @@ struct Bound {
   }
 };
 
-/// A point in a box's frame, by symmetry where no component is negative, from the corner: positive beyond a face.
+/// Returns a point in a box's frame relative to the corner. By symmetry, the point is moved to where no component is
+/// negative. A component is positive if the point lies beyond that face.
 Vector from_corner(const world::Box& box, const Vector& point) {
   const Vector from_center = point - Vector(box.center);
   Vector result;
@@ -68,7 +69,7 @@ struct CreaseDistance {
     return to_rims(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top);
   }
 
-  /// To the edges, each along one axis where the other two end.
+  /// Returns the distance to the edges. Each edge runs along one axis, where the faces of the other two axes meet.
   Real operator()(const world::Box& b) const {
     const Vector p = from_corner(b, point);
     Real least = kInfinity;
@@ -88,7 +89,8 @@ struct CreaseDistance {
   }
 };
 
-/// A cylinder or cone in the half plane through its axis and a point: x counts from the axis, y along it.
+/// The section of a cylinder or cone in the half plane through its axis and a point. x is the distance from the axis, y
+/// the coordinate along it.
 struct Profile {
   Vector point;
   Vector bottom_rim;
@@ -117,7 +119,7 @@ Profile profile_of(const world::Cone& c, const Vector& point) {
   return profile_of(Vector(c.center), Vector(c.axis), c.half_height, c.radius_bottom, c.radius_top, point);
 }
 
-/// That of a shape that is open.
+/// Returns the profile of an open shape; nullopt for other shapes.
 std::optional<Profile> open_profile(const world::Shape& shape, const Vector& point) {
   return std::visit(
       [&](const auto& solid) -> std::optional<Profile> {
@@ -141,7 +143,7 @@ struct SignedDistance {
   Real operator()(const world::Cylinder& c) const { return frustum(profile_of(c, point)); }
   Real operator()(const world::Cone& c) const { return frustum(profile_of(c, point)); }
 
-  /// To the segments of the profile, or from inside to the lines.
+  /// Returns the distance to the segments of the profile. For a point inside, returns the distance to their lines.
   Real frustum(const Profile& p) const {
     const Real inside = std::max(p.beyond_side(), p.beyond_ends());
     if (inside <= 0) return inside;
@@ -149,8 +151,8 @@ struct SignedDistance {
                      distance_to_segment(p.point, Vector(0, p.half_height, 0), p.top_rim)});
   }
 
-  /// In the half plane through the axis and the point: to the sphere, or to the line that touches both, by where along
-  /// that line the point lies.
+  /// Computes the distance in the half plane through the axis and the point. It is the distance to a sphere, or to the
+  /// line that touches both, depending on where along this line the point lies.
   Real operator()(const world::Capsule& c) const {
     const Vector v = glm::normalize(Vector(c.axis));
     const Real h = 2 * Real(c.half_height);

@@ -6,10 +6,11 @@
 
 #include "oracle/oracle.h"
 
-/// Distances to single primitives: triangle `primitive` of a mesh, or an analytic shape, whose only one is 0.
+/// Functions for distances to single primitives: triangle `primitive` of a mesh, or an analytic shape, whose only
+/// primitive is 0.
 namespace promin::oracle {
 
-/// fp32's unit roundoff, 2^-24.
+/// The unit roundoff of fp32, 2^-24.
 inline constexpr Real kRoundoff = 0x1p-24L;
 
 struct BoundingSphere {
@@ -17,37 +18,38 @@ struct BoundingSphere {
   Real radius = 0;
 };
 
-/// Whether the primitive exists and can be hit: a degenerate triangle cannot.
+/// Returns whether the primitive exists and can be hit. A degenerate triangle cannot be hit.
 bool is_hittable(const world::Shape& shape, int32_t primitive);
 
-/// For a plane its point and 0; for a triangle around its centroid, for a cylinder or cone around the middle of the
-/// axis, for a box around its centre. Here and below the primitive must be hittable.
+/// Returns the bounding sphere of a primitive. Its centre is a plane's point (with size 0), a triangle's centroid, the
+/// middle of the axis of a cylinder or cone, or a box's centre. In this function and below, the primitive must be
+/// hittable.
 BoundingSphere bounding_sphere(const world::Shape& shape, int32_t primitive);
 
-/// u S of docs/glossary.md, the unit of the bounds B1, B2 and BK: S = |o - c| + size, times kRoundoff.
+/// Returns u S of docs/glossary.md, the unit of the bounds B1, B2 and BK: S = |o - c| + size, times kRoundoff.
 Real scale_of(const world::Shape& shape, int32_t primitive, const Ray& ray);
 
-/// From a point to the surface. Inside a solid it is negative, so that it is a convex function of
-/// the point; disks are part of the surface, and an open shape counts as closed.
+/// Returns the distance from a point to the surface. Inside a solid it is negative, so it is a convex function of the
+/// point. Disks are part of the surface, and an open shape counts as closed.
 Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
 
-/// From a point to the surface, >= 0: of an open shape to its side.
+/// Returns the distance from a point to the surface, >= 0. For an open shape it is the distance to the side.
 Real surface_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
 
-/// The position of a point relative to an open shape: its distance from the side, extended infinitely, and from the
-/// ends; negative inside. Both are convex functions of the point.
+/// The position of a point relative to an open shape: its distance from the side, extended to infinity, and its
+/// distance from the ends. Both are negative inside and are convex functions of the point.
 struct PlaceInFrustum {
   Real beyond_side = 0;
   Real beyond_ends = 0;
 };
-/// Empty if the shape is not open.
+/// Returns the position of a point; empty if the shape is not open.
 std::optional<PlaceInFrustum> place_in_open(const world::Shape& shape, const Vector& point);
 
-/// Returns the distance of a point from the surface's nearest crease: the rims of a cylinder or cone, the apex, a box's
-/// edges; infinite for other shapes.
+/// Returns the distance of a point from the surface's nearest crease. Creases are the rims of a cylinder or cone, the
+/// apex, a box's edges; infinite for other shapes.
 Real distance_to_crease(const world::Shape& shape, const Vector& point);
 
-/// From a point to the segment between `a` and `b`, which may be the same.
+/// Returns the distance from a point to the segment between `a` and `b`, which may be equal.
 Real distance_to_segment(const Vector& point, const Vector& a, const Vector& b);
 
 }  // namespace promin::oracle

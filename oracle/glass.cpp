@@ -25,7 +25,8 @@ struct ReadGlass {
   GlassOf operator()(const Unlit&) const { return {}; }
 };
 
-/// sin(a - b) and the like of angles that Snell relates, as amplitudes: Fresnel's formulas in the angles.
+/// Returns Fresnel's reflectance from the angles a and b on both sides, which Snell's law relates. It is computed from
+/// amplitudes such as sin(a - b).
 Real fresnel_of_angles(Real a, Real b) {
   if (a + b == 0) return -1;
   const Real s = std::sin(a - b) / std::sin(a + b);
@@ -37,7 +38,7 @@ Real fresnel_of_angles(Real a, Real b) {
 
 GlassOf glass_of(const Material& material) {
   GlassOf glass = std::visit(ReadGlass(), material.model);
-  // What alpha makes transparent lets nothing through besides.
+  // A material that is transparent because of alpha transmits no further light.
   const bool has_alpha = material.alpha < 1 || slots_of(material)[kBaseSlot].exists();
   if (material.alpha_mode == AlphaMode::kBlend && has_alpha) glass.is_clear = false;
   glass.exists = glass.exists && (glass.is_clear || std::holds_alternative<Phong>(material.model));
@@ -65,14 +66,14 @@ Face Media::meet(const Material& material, bool leaves, int color, Media& beyond
   if (!glass.is_clear || glass.is_thin) return {index(color), glass.index_of(color), true};
   if (!leaves) {
     beyond.entered_.push_back(&material);
-    // The device keeps four.
+    // The device stores four media.
     if (beyond.entered_.size() > 4) beyond.entered_.erase(beyond.entered_.begin());
     return {index(color), glass.index_of(color), false};
   }
   const auto last = std::find(entered_.rbegin(), entered_.rend(), &material);
   if (last == entered_.rend()) return {glass.index_of(color), index(color), false};
   beyond.entered_.erase(std::prev(beyond.entered_.end(), 1 + std::distance(entered_.rbegin(), last)));
-  // Within what was entered later it is no face.
+  // The surface of a solid inside a solid that was entered later does not change the ray.
   if (last != entered_.rbegin()) return {index(color), index(color), false};
   return {glass.index_of(color), beyond.index(color), false};
 }
@@ -92,7 +93,7 @@ Vector Media::left_after(Real way) const {
 Refraction refract(const Vector& direction, const Vector& normal, const Vector& geometric_normal, const Face& face) {
   Refraction result;
   const auto about = [&](const Vector& n) {
-    // Snell: the part of the direction along the surface is as the indices.
+    // Snell's law: the ratio of the direction's components along the surface is the ratio of the indices.
     const Real cosine = -glm::dot(direction, n);
     const Vector along = direction + cosine * n;
     const Vector along_beyond = along * (face.from / face.to);
@@ -111,7 +112,7 @@ Refraction refract(const Vector& direction, const Vector& normal, const Vector& 
   if (!result.is_total && glm::dot(result.direction, geometric_normal) >= 0) {
     const Refraction by_shading = result;
     about(geometric_normal);
-    // What is reflected hangs on the shading normal all the same.
+    // The reflected light depends on the shading normal in any case.
     result.cosine = by_shading.cosine;
     result.cosine_beyond = by_shading.cosine_beyond;
   }
@@ -122,7 +123,7 @@ Real fresnel(const Face& face, const Refraction& at) {
   if (at.is_total) return 1;
   if (face.from == face.to) return 0;
   const Real a = std::acos(std::min(at.cosine, Real(1)));
-  // At normal incidence the angles' formula is 0 over 0.
+  // At normal incidence, the formula in the angles is 0 / 0.
   if (a < 1e-6L) {
     const Real slope = (face.to - face.from) / (face.to + face.from);
     return slope * slope;

@@ -16,27 +16,28 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-/// The cosine to the eye is at least this in the visibility, because vertex normals may turn away from the eye.
+/// The smallest cosine to the eye in the visibility term. Vertex normals may point away from the eye.
 constexpr Real kLeastCosine = 0x1p-10L;
-/// Sources are points: a smooth surface would show none of them.
+/// The smallest alpha for highlights. Sources are points, so a smooth surface would otherwise not show them.
 constexpr Real kLeastAlphaOfSources = 0.002L;
-/// The roughness up to which a mirror ray brings all that is reflected, and from which on it brings none.
+/// The roughness up to which a mirror ray contributes all reflected light, and the roughness from which it contributes
+/// none.
 constexpr Real kSharpestBlur = 0.1L;
 constexpr Real kRoughestMirror = 0.4L;
-/// The mean over the hemisphere of (1 - c)^5, weighted by the cosine c.
+/// The mean of (1 - c)^5 over the hemisphere, weighted by the cosine c.
 constexpr Real kMeanGrazing = 1.0L / 21;
 
 Real fifth_power(Real x) {
   return x * x * x * x * x;
 }
 
-/// glTF's (N.H)^2 (alpha^2 - 1) + 1 is 1 - (1 - alpha^2) (N.H)^2 and so the sum below.
+/// Returns D. The sum below is another form of glTF's (N.H)^2 (alpha^2 - 1) + 1, with less rounding.
 Real density_of_sine_square(Real sine_square, Real alpha) {
   const Real sum = alpha * alpha * (1 - sine_square) + sine_square;
   return alpha * alpha / (kPi * sum * sum);
 }
 
-/// The part of the reflected light that a mirror ray brings.
+/// Returns the fraction of the reflected light that a mirror ray contributes.
 Real sharpness_of(Real roughness) {
   const Real x = std::clamp((roughness - kSharpestBlur) / (kRoughestMirror - kSharpestBlur), Real(0), Real(1));
   return 1 - x * x * (3 - 2 * x);
@@ -46,7 +47,8 @@ Real alpha_of_sources_of(Real roughness) {
   return std::max(roughness * roughness, kLeastAlphaOfSources);
 }
 
-/// What facets that reflect all send of a source with an irradiance of 1 across its way.
+/// Returns the radiance of a source's light that facets with a reflectance of 1 reflect. The source causes an
+/// irradiance of 1 perpendicular to its direction.
 Real facet_radiance(const LobeAngles& angles, Real alpha) {
   return angles.l * visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) *
          microfacet_density(angles.theta, alpha);
@@ -56,13 +58,13 @@ LobeShares mix(const LobeShares& a, const LobeShares& b, Real weight) {
   return {(1 - weight) * a.all + weight * b.all, (1 - weight) * a.grazing + weight * b.grazing};
 }
 
-/// The numbers of the device's table, which is data: entries of 16 bits in cells of four.
+/// The numbers of the device's table. They are entries of 16 bits in cells of four.
 class LobeTable {
  public:
   explicit LobeTable(std::vector<glm::uvec4> cells)
       : cells_(std::move(cells)), side_(static_cast<size_t>(std::lround(std::sqrt(cells_.size()))) + 1) {}
 
-  /// Between the entries.
+  /// Returns shares that are interpolated between the entries.
   LobeShares look_up(Real v, Real roughness) const {
     const Real last = static_cast<Real>(side_ - 1);
     const Real x = last * std::sqrt(std::clamp(v, Real(0), Real(1)));
@@ -86,7 +88,8 @@ class LobeTable {
   size_t side_;
 };
 
-/// Edges of panels on [a, b] that grow by 3 from `finest` at a, and with `is_two_sided` at b too.
+/// Returns edges of panels on [a, b]. The sizes of panels grow by a factor of 3, starting from `finest` at a and, if
+/// `is_two_sided`, also at b.
 std::vector<Real> make_panels(Real a, Real b, Real finest, bool is_two_sided) {
   std::vector<Real> edges = {a};
   const Real reach = is_two_sided ? (b - a) / 2 : b - a;
@@ -135,17 +138,17 @@ LobeShares integrate_lobe_shares(Real v, Real roughness) {
   const Real alpha = roughness * roughness;
   const Real sine = std::sqrt(1 - v * v);
   const Real tilt = std::acos(v);
-  // Directions to the light in polar coordinates around the mirrored direction, azimuths from where it rises; the eye
-  // is at (sine, 0, v), the normal at (0, 0, 1).
+  // Directions to the light have polar coordinates around the mirrored direction. Azimuths are counted from the highest
+  // point. The eye is at (sine, 0, v), and the normal is (0, 0, 1).
   LobeShares sum{0, 0};
   const auto add_ring = [&](Real angle, Real ring_weight) {
     const Real along = std::cos(angle);
     const Real across = std::sin(angle);
-    // Above the horizon.
+    // Only directions above the horizon count.
     const Real highest_cosine = across * sine > 0 ? -along * v / (across * sine) : -kInfinity;
     const Real last = std::acos(std::clamp(highest_cosine, Real(-1), Real(1)));
     integrate(make_panels(0, last, 1e-3L, true), [&](Real azimuth, Real weight) {
-      // Nodes to double's precision are exact enough, and much faster.
+      // Nodes in double are exact enough and much faster.
       const Real forth = across * Real(std::cos(static_cast<double>(azimuth)));
       const Real aside = across * Real(std::sin(static_cast<double>(azimuth)));
       const Vector to_light(-along * sine + forth * v, aside, along * v + forth * sine);
@@ -153,14 +156,14 @@ LobeShares integrate_lobe_shares(Real v, Real roughness) {
       const Vector sum_of_ways = to_light + Vector(sine, 0, v);
       const Real sine_square =
           (sum_of_ways.x * sum_of_ways.x + sum_of_ways.y * sum_of_ways.y) / glm::dot(sum_of_ways, sum_of_ways);
-      // Both halves of the ring.
+      // The factor 2 stands for both halves of the ring.
       const Real share = 2 * ring_weight * weight * across * to_light.z * visibility(v, to_light.z, alpha) *
                          density_of_sine_square(sine_square, alpha);
       sum.all += share;
       sum.grazing += share * fifth_power(1 - glm::length(sum_of_ways) / 2);
     });
   };
-  // Whole rings, then those that the horizon cuts.
+  // First come the whole rings, then the rings that the horizon cuts.
   const Real whole = kPi / 2 - tilt;
   integrate(make_panels(0, whole, alpha / 4, false), add_ring);
   integrate(make_panels(whole, whole + 2 * tilt, std::min(alpha, tilt) / 4, false), add_ring);
@@ -176,7 +179,8 @@ Real sheen_alpha_of(Real roughness) {
   return held * held;
 }
 
-/// The curve L of the extension's text, "Sheen visibility", whose numbers hang on alpha between two sets.
+/// Returns the curve L of the extension's text, "Sheen visibility". Its coefficients are interpolated between two sets,
+/// depending on alpha.
 Real fitted_curve(Real x, Real alpha) {
   const Real smooth = (1 - alpha) * (1 - alpha);
   const auto between = [&](Real at_one, Real at_zero) { return (1 - smooth) * at_one + smooth * at_zero; };
@@ -206,21 +210,21 @@ Real integrate_sheen_share(Real v, Real roughness) {
   const Real sine = std::sqrt(1 - v * v);
   Real sum = 0;
   for (int ring = 0; ring < kRings; ++ring) {
-    // Rings crowd at the horizon, near which visibility changes fastest.
+    // Rings are denser at the horizon, near which visibility changes fastest.
     const Real place = (ring + 0.5L) / kRings;
     const Real l = place * place * place;
     const Real across = std::sqrt(1 - l * l);
     Real density = 0;
     for (int i = 0; i < kAzimuths; ++i) {
       const double azimuth = static_cast<double>(kPi) * (i + 0.5) / kAzimuths;
-      // From the eye's azimuth; to double's precision, which is enough and much faster.
+      // The azimuth is counted from the eye's. The computation in double is exact enough and much faster.
       const double forth = static_cast<double>(sine) + static_cast<double>(across) * std::cos(azimuth);
       const double aside = static_cast<double>(across) * std::sin(azimuth);
       const double up = static_cast<double>(v + l);
       const double across2 = forth * forth + aside * aside;
       density += std::pow(across2 / (across2 + up * up), static_cast<double>(1 / (2 * alpha)));
     }
-    // Both halves of the ring.
+    // The factor 2 stands for both halves of the ring.
     density *= (2 + 1 / alpha) / (2 * kPi) * 2 * kPi / kAzimuths;
     sum += density * sheen_visibility(v, l, alpha) * l * 3 * place * place / kRings;
   }
@@ -252,7 +256,8 @@ Vector Lobe::Part::fresnel(Real v_h) const {
 
 namespace {
 
-/// KHR_materials_ior and KHR_materials_specular; an index of 0 makes the quotient 1.
+/// Returns the reflectance at normal incidence (KHR_materials_ior and KHR_materials_specular). For an index of 0, the
+/// quotient is 1.
 Vector reflectance_at_normal(const MetallicRoughness& material) {
   const Real quotient = (Real(material.ior) - 1) / (Real(material.ior) + 1);
   return glm::min(quotient * quotient * Vector(material.specular_color), Vector(1)) * Real(material.specular);
@@ -262,8 +267,8 @@ Vector base_of(const MetallicRoughness& material, const Vector& vertex_color) {
   return glm::min(Vector(material.base_color) * vertex_color, Vector(1));
 }
 
-/// Schlick's reflectance at normal incidence that gives the film's at this cosine, or at the least at which films are
-/// seen.
+/// Returns the reflectance at normal incidence for which Schlick's formula gives the film's reflectance at this cosine,
+/// or at the smallest cosine at which films are seen.
 Vector under_film(const MetallicRoughness& material, const Vector& f0, Real f90, Real cosine) {
   const bool is_total = f90 >= 1 && std::min({f0.x, f0.y, f0.z}) >= 1;
   if (material.iridescence == 0 || is_total) return f0;
@@ -274,7 +279,8 @@ Vector under_film(const MetallicRoughness& material, const Vector& f0, Real f90,
   return glm::mix(f0, at_normal, Real(material.iridescence));
 }
 
-/// Section "Spectral sensitivity" of Belcour and Barla's model, in the extension's text.
+/// Returns the eye's sensitivity, from section "Spectral sensitivity" of Belcour and Barla's model in the extension's
+/// text.
 Vector sensitivity(Real path_difference, const Vector& shift) {
   const Real phase = 2 * kPi * path_difference * 1e-9L;
   const auto lobe = [&](Real value, Real place, Real variance, Real shifted) {
@@ -361,7 +367,7 @@ Vector Lobe::highlight(const LobeAngles& angles) const {
   return facets(angles.v_h) * facet_radiance(angles, alpha_of_sources());
 }
 
-// The extension's D and V, as they stand in its text.
+// Returns a highlight, with the extension's D and V written as in its text.
 Vector Lobe::highlight(const GrainWays& ways, const GrainAlphas& alphas) const {
   const Real at = std::max(alphas.along, kLeastAlphaOfSources);
   const Real ab = std::max(alphas.across, kLeastAlphaOfSources);
@@ -377,7 +383,7 @@ Vector Lobe::highlight(const GrainWays& ways, const GrainAlphas& alphas) const {
 }
 
 ClearCoat::ClearCoat(const MetallicRoughness& material, Real cosine_to_eye)
-    // A vertex normal may turn away from the eye.
+    // A vertex normal may point away from the eye, so the cosine is limited.
     : weight_(material.clearcoat * (0.04L + 0.96L * fifth_power(1 - std::max(cosine_to_eye, Real(0))))),
       roughness_(material.clearcoat_roughness),
       reflectance_(look_up_lobe_shares(cosine_to_eye, roughness_).all) {}

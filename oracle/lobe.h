@@ -15,11 +15,11 @@ Real microfacet_density(Real theta, Real alpha);
 /// l to the light (Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2)).
 Real visibility(Real v, Real l, Real alpha);
 
-/// What a lobe reflects of light of radiance 1 from all directions.
+/// The fractions of light of radiance 1 from all directions that a lobe reflects.
 struct LobeShares {
-  /// E1: the radiance to the eye if facets reflect everything once.
+  /// E1: the radiance to the eye if facets reflect all light once.
   Real all = 1;
-  /// B: the part of it with the factor (1 - V.H)^5.
+  /// B: the same integral with the factor (1 - V.H)^5.
   Real grazing = 0;
 };
 
@@ -31,42 +31,43 @@ LobeShares look_up_lobe_shares(Real v, Real roughness);
 LobeShares integrate_lobe_shares(Real v, Real roughness);
 
 /// Returns the radiance that a sheen of colour 1 sends to the eye under light of radiance 1 from all directions
-/// (KHR_materials_sheen), from the device's table. It may be more than 1.
+/// (KHR_materials_sheen), from the device's table. The result may exceed 1.
 Real look_up_sheen_share(Real v, Real roughness);
 
-/// Computes the same by the midpoint rule over directions to the light, for v >= 2^-10. The error is below 2e-4.
+/// Computes the radiance of look_up_sheen_share by the midpoint rule over directions to the light, for v >= 2^-10. The
+/// error is below 2e-4.
 Real integrate_sheen_share(Real v, Real roughness);
 
-/// The angles that a lobe depends on. All but theta are cosines.
+/// The angles on which a lobe depends. All except theta are cosines.
 struct LobeAngles {
-  /// The angle between normal and half vector in radians.
+  /// The angle between the normal and the half vector, in radians.
   Real theta = 0;
-  /// N.V to the eye and N.L to the light.
+  /// The cosines N.V to the eye and N.L to the light.
   Real v = 1;
   Real l = 1;
-  /// V.H between eye and half vector.
+  /// The cosine V.H between the directions of eye and half vector.
   Real v_h = 1;
 };
 
 LobeAngles angles_of(const Vector& normal, const Vector& to_eye, const Vector& to_light);
 
-/// The reflectance of a thin film on a base, in linear Rec. 709 (KHR_materials_iridescence, "Thin film reflectance"):
-/// of the base's reflectance at normal incidence beside air, the film's index of refraction, its thickness in
-/// nanometres, and the cosine to the eye.
+/// Returns the reflectance of a thin film on a base, in linear Rec. 709 (KHR_materials_iridescence, "Thin film
+/// reflectance"). The arguments are the base's reflectance at normal incidence in air, the film's index of refraction,
+/// its thickness in nanometres, and the cosine to the eye.
 Vector film_reflectance(const Vector& f0, Real ior, Real thickness, Real cosine);
 
-/// The directions of light at a surface with a grain, which stretches highlights: unit vectors with x along the grain
-/// and z along the normal.
+/// The directions of light at a surface with a grain, which stretches highlights. They are unit vectors in a frame with
+/// x along the grain and z along the normal.
 struct GrainWays {
   Vector to_eye{0};
   Vector to_light{0};
 };
 
-/// The alphas of a surface with a grain (KHR_materials_anisotropy).
+/// The alphas along and across the grain (KHR_materials_anisotropy).
 struct GrainAlphas {
   Real along = 1;
   Real across = 1;
-  /// Returns the perceptual roughness with the same mean slope, for uses that need one number.
+  /// Returns the perceptual roughness with the same mean slope, for formulas that need a single number.
   Real mean_roughness() const;
 };
 GrainAlphas grain_alphas(Real roughness, Real strength);
@@ -74,23 +75,25 @@ GrainAlphas grain_alphas(Real roughness, Real strength);
 /// A material at one point, seen from one direction.
 class Lobe {
  public:
-  /// The vertex colour is a factor of the base colour, which stays at most 1. The shares are those of the cosine to the
-  /// eye, at which the eye sees the film too, whose thickness is the maximum.
+  /// Creates a lobe. The vertex colour multiplies the base colour, which stays at most 1. `shares` are the shares for
+  /// the cosine to the eye. The film is seen at the same cosine, and its thickness is the maximum.
   Lobe(const MetallicRoughness& material, const Vector& vertex_color, const LobeShares& shares, Real cosine_to_eye = 1);
 
-  /// The reflected part of uniform light of radiance 1, and the part that the body under the surface sends.
+  /// Returns the fraction of uniform light that the lobe reflects; albedo() returns the fraction that the body below
+  /// the surface scatters.
   const Vector& reflectance() const { return reflectance_; }
   const Vector& albedo() const { return albedo_; }
-  /// The share of light that enters the dielectric.
+  /// Returns the fraction of light that enters the dielectric.
   Real let_in() const { return let_in_; }
-  /// The part of the reflected light that a mirror ray brings, 0...1.
+  /// Returns the fraction of the reflected light that a mirror ray contributes, 0...1.
   Real sharpness() const;
-  /// Returns the radiance reflected from a source whose irradiance perpendicular to its direction is 1.
+  /// Returns the radiance that the lobe reflects from a source whose irradiance perpendicular to its direction is 1.
   Vector highlight(const LobeAngles& angles) const;
   Vector highlight(const GrainWays& ways, const GrainAlphas& alphas) const;
-  /// Returns the sum of the highlights of sources of radiance 1 in all directions, for these shares of the lobe.
+  /// Returns the sum of the highlights of sources of radiance 1 in all directions, computed from these shares of the
+  /// lobe.
   Vector highlights_of_all(const LobeShares& shares) const;
-  /// The alpha by which sources are reflected.
+  /// Returns the alpha with which sources are reflected.
   Real alpha_of_sources() const;
 
  private:
@@ -115,17 +118,17 @@ class Lobe {
   Real let_in_ = 0;
 };
 
-/// A clear coat at one point, seen from one direction (KHR_materials_clearcoat), without textures: it has the
+/// A clear coat at one point, seen from one direction (KHR_materials_clearcoat), without textures. It has the
 /// material's normal.
 class ClearCoat {
  public:
   ClearCoat(const MetallicRoughness& material, Real cosine_to_eye);
 
-  /// The coat's weight in the sum of coat and material.
+  /// Returns the coat's weight in the sum of coat and material.
   Real weight() const { return weight_; }
-  /// The part of uniform light of radiance 1 that the coat reflects, before its weight.
+  /// Returns the fraction of uniform light that the coat reflects, without its weight.
   Real reflectance() const { return reflectance_; }
-  /// The same as Lobe::sharpness().
+  /// Returns the fraction of the reflected light that a mirror ray contributes, like Lobe::sharpness().
   Real sharpness() const;
   Real highlight(const LobeAngles& angles) const;
   Real alpha_of_sources() const;
@@ -142,12 +145,13 @@ class Sheen {
   Sheen(const MetallicRoughness& material, Real cosine_to_eye);
 
   bool exists() const { return largest_ > 0; }
-  /// The radiance that the sheen sends under uniform light of radiance 1.
+  /// Returns the radiance that the sheen sends under uniform light of radiance 1.
   Vector reflectance() const;
-  /// The share of light that is left for the layers below: of uniform light, and of a source at this cosine.
+  /// Returns the fraction of uniform light that remains for the layers below; left_of_source() returns the fraction of
+  /// the light of a source at this cosine.
   Real left() const;
   Real left(Real cosine_to_light) const;
-  /// The radiance that it sends of a source with an irradiance of 1 across its way.
+  /// Returns the radiance that the sheen reflects from a source whose irradiance perpendicular to its direction is 1.
   Vector highlight(const LobeAngles& angles) const;
 
  private:

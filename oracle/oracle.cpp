@@ -18,14 +18,15 @@ bool is_finite(const Vector& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// The solutions of a t^2 + 2 b t + c = 0; NaN or infinite where there are fewer. Adding what has the same sign
-/// (Press et al., "Numerical Recipes", 5.6) keeps both accurate, and holds for a = 0.
+/// Returns the solutions of a t^2 + 2 b t + c = 0; NaN or infinite if there are fewer than two. The formula only adds
+/// numbers of the same sign (Press et al., "Numerical Recipes", 5.6), which keeps both solutions accurate and works for
+/// a = 0.
 std::array<Real, 2> solve_quadratic(Real a, Real b, Real c) {
   const Real q = -(b + std::copysign(std::sqrt(b * b - a * c), b));
   return {q / a, c / q};
 }
 
-/// Collects what one ray meets and keeps the nearest, or all.
+/// Collects the hits of one ray and keeps the nearest, or all.
 class Search {
  public:
   Search(const world::Scene& scene, const Ray& ray, const Sight& sight) : scene_(scene), ray_(ray), sight_(sight) {
@@ -59,7 +60,7 @@ class Search {
     const Material& material = material_of(scene_, hit);
     const bool is_back = glm::dot(hit.normal, ray_.direction) > 0;
     const bool is_absent = material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff;
-    // What bounds a volume of glass is seen from within.
+    // A surface that bounds a volume of glass is also visible from inside.
     const GlassOf glass = glass_of(material);
     const bool is_one_sided = !material.is_double_sided && (!glass.is_clear || glass.is_thin);
     return is_absent || (is_back && is_one_sided);
@@ -69,13 +70,13 @@ class Search {
 
   void intersect(const world::NotDrawn&) {}
 
-  /// t of the ray's closest approach to `center`. Quadratics are solved from there: from far away a small solid drowns
-  /// in the square of the distance, in long double too.
+  /// Returns t of the ray's closest approach to `center`. Quadratics are solved relative to this point. Otherwise the
+  /// square of a large distance would swamp the terms of a small solid, even in long double.
   Real approach(const Vector& center) const {
     return glm::dot(center - ray_.origin, ray_.direction) / glm::dot(ray_.direction, ray_.direction);
   }
 
-  /// |P - C|^2 = r^2
+  /// Solves |P - C|^2 = r^2.
   void intersect(const world::Sphere& sphere) {
     const Vector& d = ray_.direction;
     const Real near = approach(sphere.center);
@@ -86,7 +87,7 @@ class Search {
     }
   }
 
-  /// (P - C) . N = 0
+  /// Solves (P - C) . N = 0.
   void intersect(const world::Plane& plane) {
     const Vector n(plane.normal);
     offer(glm::dot(Vector(plane.point) - ray_.origin, n) / glm::dot(ray_.direction, n), n);
@@ -101,12 +102,13 @@ class Search {
     intersect_frustum(cone.center, cone.axis, cone.half_height, cone.radius_bottom, cone.radius_top, cone.is_open);
   }
 
-  /// |P - C - m V| = r + s m, m = (P - C) . V in [0, h], between two disks: s = tan of the half angle. With s = 0 this
-  /// is the thesis' cylinder, with r = 0 its cone (C the apex), k = 1 + s^2. An open one has no disks.
+  /// Solves |P - C - m V| = r + s m with m = (P - C) . V in [0, h], between two disks; s is the tangent of the half
+  /// angle. With s = 0 this is the thesis' cylinder, with r = 0 its cone, whose apex is C; k = 1 + s^2. An open shape
+  /// has no disks.
   void intersect_frustum(const Vector& center, const Vector& axis, Real half_height, Real bottom, Real top,
                          bool is_open) {
     const Vector w = glm::normalize(axis);
-    // From the narrow end, so that a cone is solved from its apex.
+    // The axis starts at the narrow end, so that a cone is solved relative to its apex.
     const Vector v = bottom <= top ? w : -w;
     const Real h = 2 * half_height;
     const Real r = std::min(bottom, top);
@@ -130,15 +132,16 @@ class Search {
     intersect_disk(near, oc - h * v, v, r + s * h);
   }
 
-  /// `oc` leads from the disk's centre to the ray at `near`.
+  /// Intersects a disk. `oc` leads from the disk's centre to the ray's point at `near`.
   void intersect_disk(Real near, const Vector& oc, const Vector& normal, Real radius) {
     const Real t = -glm::dot(oc, normal) / glm::dot(ray_.direction, normal);
     const Vector p = oc + t * ray_.direction;
     if (radius > 0 && glm::dot(p, p) <= radius * radius) offer(near + t, normal);
   }
 
-  /// |P - C| = r of both spheres and n . (P - C) = r of the cone that touches both, each where it is the hull's: n is a
-  /// generator's normal, of which s is the part along the axis, and at a sphere's point that part of its own normal.
+  /// Solves |P - C| = r for both spheres and n . (P - C) = r for the cone that touches both, each where it is a part of
+  /// the hull. n is the normal of a generator, whose component along the axis is s. A point of a sphere belongs to the
+  /// hull depending on the component of its own normal along the axis.
   void intersect(const world::Capsule& capsule) {
     const Vector v = glm::normalize(Vector(capsule.axis));
     const Real h = 2 * Real(capsule.half_height);
@@ -161,7 +164,7 @@ class Search {
     const Real c2 = (1 - s) * (1 + s);
     const Real dv = glm::dot(d, v);
     const Real ov = glm::dot(oc, v);
-    // The cone's radius is (r - s m) / cos at the height m over the bottom's centre.
+    // At the height m above the bottom's centre, the cone's radius is (r - s m) / cos.
     const Real w = bottom - s * ov;
     const Real a = glm::dot(d, d) - dv * dv - s * s * dv * dv / c2;
     const Real b = glm::dot(d, oc) - dv * ov + s * dv * w / c2;
@@ -174,7 +177,7 @@ class Search {
     }
   }
 
-  /// |(P - C) . A| = h for each axis A, where the other two are within theirs.
+  /// Solves |(P - C) . A| = h for each axis A, where the coordinates along the two other axes are within their limits.
   void intersect(const world::Box& box) {
     const Real near = approach(box.center);
     const Vector oc = ray_.origin - Vector(box.center) + near * ray_.direction;
@@ -200,7 +203,7 @@ class Search {
     }
   }
 
-  /// Möller-Trumbore; edges belong to the triangle.
+  /// Intersects a triangle by the method of Möller and Trumbore. Edges belong to the triangle.
   void intersect_triangle(int32_t primitive, const Vector& corner_a, const Vector& corner_b, const Vector& corner_c) {
     const Vector t0 = ray_.origin - corner_a;
     const Vector e1 = corner_b - corner_a;
@@ -209,7 +212,7 @@ class Search {
     const Real det = glm::dot(p, e1);
     if (det == 0) return;
     const Real u = glm::dot(p, t0) / det;
-    if (!(u >= 0 && u <= 1)) return;  // most triangles: this decides the time of a picture
+    if (!(u >= 0 && u <= 1)) return;  // Most triangles end here, so this test determines the time of a picture.
     const Vector q = glm::cross(t0, e1);
     const Real v = glm::dot(q, ray_.direction) / det;
     const Vector normal = glm::cross(e1, e2);
@@ -227,7 +230,7 @@ class Search {
 }  // namespace
 
 Vector axis_of(const world::Box& box, int i) {
-  // The rotation matrix of a unit quaternion (w, q).
+  // Returns a column of the rotation matrix of a unit quaternion (w, q).
   const Vector q(box.turn);
   const Real w = std::sqrt(1 - glm::dot(q, q));
   const Vector rows[] = {{1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y - w * q.z), 2 * (q.x * q.z + w * q.y)},

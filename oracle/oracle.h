@@ -10,8 +10,8 @@
 
 #include "scene/world_scene.h"
 
-/// The reference for checks of the renderer: the formulas of the thesis in long double (64 bits of mantissa on x86), by
-/// brute force over every primitive. It shares no formula with the shaders, and normalises axes itself.
+/// The reference for checks of the renderer. It uses the formulas of the thesis in long double (64 bits of mantissa on
+/// x86), by brute force over every primitive. It shares no formula with the shaders, and normalises axes itself.
 namespace promin::oracle {
 
 using Real = long double;
@@ -23,8 +23,9 @@ inline Real largest(const Vector& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-/// P(t) = origin + t * direction. The direction has any length; a hit has tmin < t < tmax, and a negative tmin counts
-/// as 0. A ray with NaN anywhere, with infinity in origin or direction, or with a direction of 0 hits nothing.
+/// A ray with the points P(t) = origin + t * direction. The direction may have any length. A hit has tmin < t < tmax,
+/// and a negative tmin counts as 0. A ray with NaN anywhere, with infinity in origin or direction, or with a direction
+/// of 0 hits nothing.
 struct Ray {
   Vector origin{0};
   Vector direction{0};
@@ -33,48 +34,49 @@ struct Ray {
 };
 
 struct Hit {
-  /// In units of the direction; infinite on a miss.
+  /// Parameter of the hit in units of the ray's direction; infinite on a miss.
   Real t = kInfinity;
   /// Index into Scene::objects; -1 on a miss.
   int32_t object = -1;
-  /// Triangle of the object, 0 on analytic shapes; -1 on a miss.
+  /// Index of the triangle in its object, 0 on analytic shapes; -1 on a miss.
   int32_t primitive = -1;
-  /// Weights of a triangle's second and third corner; 0 on analytic shapes.
+  /// Barycentric weights of a triangle's second and third corner; 0 on analytic shapes.
   Real u = 0;
   Real v = 0;
-  /// Unit geometric normal: as wound, or outward, a plane's own; never flipped to the ray. 0 on a miss.
+  /// Unit geometric normal. It follows the winding of a triangle, points out of a solid, or is a plane's own normal; it
+  /// is never turned to the ray. 0 on a miss.
   Vector normal{0};
 
   bool exists() const { return object >= 0; }
 };
 
-/// A box's axis in the world, a unit vector.
+/// Returns a box's axis in the world, a unit vector.
 Vector axis_of(const world::Box& box, int i);
 
-/// Whether a ray may meet anything at all: see Ray.
+/// Returns whether a ray can hit anything at all; see Ray.
 bool can_hit(const Ray& ray);
 
-/// How a ray of a picture differs from a cast ray.
+/// Rules that distinguish a ray of a picture from a cast ray.
 struct Sight {
-  /// Whether the ray passes backs of triangles that their material does not show, and triangles that a mask cuts out
-  /// completely. Shadow rays hit both, and pass through the latter.
+  /// True if the ray ignores the backs of triangles that their material does not show, and triangles that a mask cuts
+  /// out completely. Shadow rays hit both, and pass through the second kind.
   bool passes_backs = false;
-  /// The last hit that the ray has passed: it ignores all nearer hits, and those at the same distance up to this one in
-  /// order.
+  /// The last hit that the ray has passed. The ray ignores all nearer hits, and hits at the same distance whose order
+  /// is not higher.
   Hit passed{.t = -1};
 };
 
-/// The nearest hit; of hits at the same t the one with the lower (object, primitive).
+/// Returns the nearest hit. If several hits have the same t, it is the hit with the lowest (object, primitive).
 Hit find_nearest_hit(const world::Scene& scene, const Ray& ray, const Sight& sight = {});
 
-/// Returns all crossings, sorted by t, then by (object, primitive); both of a solid. If the ray meets a triangle's edge
-/// or a solid's rim, each of the adjacent faces has a crossing.
+/// Returns all crossings, sorted by t, then by (object, primitive). A solid has two crossings. If the ray hits a
+/// triangle's edge or a solid's rim, each of the adjacent faces has a crossing.
 std::vector<Hit> find_all_hits(const world::Scene& scene, const Ray& ray);
 
-/// The material of the hit.
+/// Returns the material of the hit.
 const Material& material_of(const world::Scene& scene, const Hit& hit);
 
-/// Whether anything is met at all.
+/// Returns whether the ray hits anything.
 bool is_occluded(const world::Scene& scene, const Ray& ray);
 
 }  // namespace promin::oracle

@@ -19,8 +19,9 @@
 namespace promin::oracle {
 namespace {
 
-/// Rounding puts the point of a hit off its primitive, and a ray from behind the surface would meet it again: by a few
-/// 2^-64 of the lengths that the hit was computed from. A thousandfold of that is still 1e-16 of them, less than
+/// Returns the distance by which secondary rays start off the surface. Rounding moves the point of a hit off its
+/// primitive by a few 2^-64 of the lengths from which the hit was computed, and a ray that starts behind the surface
+/// would hit it again. The result is a thousand times larger, which is still only 1e-16 of these lengths and less than
 /// anything that a picture shows.
 Real lift_of(const world::Shape& shape, const Ray& ray, const Hit& hit, const Vector& position) {
   const BoundingSphere bound = bounding_sphere(shape, hit.primitive);
@@ -40,13 +41,13 @@ struct Corners {
   }
 };
 
-/// Vertex normals face the ray as the triangle does, by the side of its plane that is seen.
+/// Sets the vertex normals on the side that is visible: they face the ray as the triangle's plane does.
 void apply_vertex_normals(const Mesh& mesh, const Corners& corners, Real side, SurfacePoint& point) {
   const Vector sum = side * corners.interpolate<Vector>(mesh.normals);
   if (sum == Vector(0)) return;
   point.normal = glm::normalize(sum);
-  // Hanika, "Hacking the Shadow Terminator": where the point lies below the tangent plane of a corner, it is projected
-  // onto it; the three results are weighted like the corners.
+  // Hanika, "Hacking the Shadow Terminator": if the point lies below the tangent plane of a corner, it is projected
+  // onto this plane. The three results are weighted like the corners.
   point.shadow_position = Vector(0);
   for (int i = 0; i < 3; ++i) {
     const uint32_t corner = corners.indices[i];
@@ -57,11 +58,11 @@ void apply_vertex_normals(const Mesh& mesh, const Corners& corners, Real side, S
   }
 }
 
-/// The share of a source's power that its shape and distance leave, and where it lies.
+/// The fraction of a source's power that its shape and distance leave, and the source's direction and distance.
 struct Illumination {
   Vector to_light{0};
   Real strength = 1;
-  /// Infinite for a source without a place.
+  /// Distance of the source; infinite for a source without a position.
   Real distance = kInfinity;
 };
 
@@ -72,12 +73,12 @@ Illumination illuminate(const Light& light, const Vector& position) {
   const Real distance = glm::length(offset);
   Illumination result{offset / distance, 1, distance};
   if (light.attenuation == Attenuation::kInverseSquare) {
-    // KHR_lights_punctual, "Range Property".
+    // The formula of KHR_lights_punctual, "Range Property".
     const Real window = 1 - std::pow(distance / light.range, Real(4));
     result.strength = std::clamp(window, Real(0), Real(1)) / (distance * distance);
   }
   if (light.kind == LightKind::kSpot) {
-    // The same, "Inner and Outer Cone Angles".
+    // The formula of KHR_lights_punctual, "Inner and Outer Cone Angles".
     const Real outer = std::cos(Real(light.outer_cone_angle));
     const Real width = std::max(1e-5L, std::cos(Real(light.inner_cone_angle)) - outer);
     const Real ramp = std::clamp((-glm::dot(result.to_light, axis) - outer) / width, Real(0), Real(1));
@@ -86,37 +87,40 @@ Illumination illuminate(const Light& light, const Vector& position) {
   return result;
 }
 
-/// A ray goes through so many surfaces that blend, and on where it sees so much of what is behind them.
+/// The largest number of surfaces that blend along a ray, and the smallest fraction of the light from behind for which
+/// a ray continues.
 constexpr uint32_t kMostLayers = 64;
 constexpr Real kLeastShareBehind = 1.0L / 1024;
 
-/// A mirror ray of less weight is not traced where the environment can stand for what it would bring.
+/// The smallest weight of a mirror ray that is traced if the environment can replace it.
 constexpr Real kLeastMirrorWeight = 1.0L / 256;
 
-/// Where there is glass, a sample follows so many rays from surfaces, and none of less weight.
+/// With glass: the largest number of rays from surfaces that a sample follows, and the smallest weight of such a ray.
 constexpr uint32_t kMostTreeRays = 64;
 constexpr Real kLeastTreeWeight = 1.0L / 512;
 
-/// Of d = look + (x right - y up) each product, the difference and the sum are rounded, and d is normalised.
+/// In d = look + (x right - y up), each product, the difference and the sum are rounded, and d is normalised.
 constexpr Real kCameraRayError = 8 * kRoundoff;
 
-/// The error of what may show one thing or quite another.
+/// The error of a pixel that may show one of two very different things.
 constexpr Real kUnknown = 1000;
 
-/// About the shading normal; what that would send into the surface, the surface itself mirrors back.
+/// Returns the direction mirrored at the shading normal. If it would point into the surface, it is mirrored again at
+/// the surface itself.
 Vector mirror(const SurfacePoint& point, const Vector& normal, const Vector& direction) {
   const Vector mirrored = glm::reflect(direction, normal);
   const bool is_inward = glm::dot(mirrored, point.geometric_normal) < 0;
   return is_inward ? glm::reflect(mirrored, point.geometric_normal) : mirrored;
 }
 
-/// How far off a device's ray may be, at its origin and in its direction.
+/// The errors of a device's ray: of its origin and of its direction.
 struct RayError {
   Real position = 0;
   Real direction = 0;
 };
 
-/// Of a mesh with vertex normals: that of the bent surface.
+/// Returns the radius of curvature for shading. For a mesh with vertex normals it is the radius of the curved surface
+/// that they describe.
 Real radius_of_shading(const world::Shape& shape, const Ray& ray, const Hit& hit) {
   const Mesh* mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr || mesh->normals.empty()) return radius_of_curvature(shape, ray, hit);
@@ -131,8 +135,8 @@ Real radius_of_shading(const world::Shape& shape, const Ray& ray, const Hit& hit
   return radius;
 }
 
-/// By how much vertex normals turn per length along the triangle's edges, outwards; 0 without them. On the corners of a
-/// sphere each edge says 1 / radius.
+/// Returns the change of the vertex normals per length along the triangle's edges, positive for a convex surface; 0
+/// without vertex normals. If the corners lie on a sphere, each edge gives 1 / radius.
 Real curvature_of(const TrianglePoint& at) {
   if (at.mesh == nullptr || at.mesh->normals.empty()) return 0;
   const glm::uvec3 corners = at.mesh->triangles[static_cast<size_t>(at.triangle)];
@@ -147,7 +151,7 @@ Real curvature_of(const TrianglePoint& at) {
   return sum;
 }
 
-/// The hit's own rounding, by the bounds that hold for hits and normals, and what the ray brings.
+/// Returns the errors of a hit: its own rounding, by the bounds for hits and normals, and the errors of the ray.
 PointError error_at(const world::Scene& scene, const Ray& ray, const Hit& hit, const RayError& of_ray) {
   const world::Shape& shape = scene.objects[static_cast<size_t>(hit.object)].shape;
   const Real cosine = std::max(std::abs(glm::dot(hit.normal, glm::normalize(ray.direction))), 1e-9L);
@@ -168,41 +172,41 @@ bool scatters_through(const Material& material) {
   return model != nullptr && model->diffuse_transmission > 0;
 }
 
-/// How much of what is behind it a surface covers, and how far a device may be off that.
+/// The opacity of a surface, and the error that a device may have.
 struct Coverage {
   Real value = 1;
   Real error = 0;
 };
 
-/// Of a source's light, the share that reaches a point.
+/// The fraction of a source's light that reaches a point.
 struct ArrivingShare {
   Vector value{1};
   Real error = 0;
 };
 
-/// What a ray sees first, and whether a device may see something else because a mask ends there.
+/// The first hit of a ray, and whether a device may see another one because the edge of a mask is near.
 struct Seen {
   Hit hit;
   bool is_at_cutoff = false;
 };
 
-/// Where a ray is on its way from the eye.
+/// The state of a ray on its way from the eye.
 struct Way {
-  /// How many mirrors may follow.
+  /// The number of mirrors that may still follow.
   uint32_t bounces = 0;
-  /// How many surfaces it went through.
+  /// The number of surfaces that the ray has passed through.
   uint32_t layers = 0;
-  /// The part of what it brings that a pixel sees.
+  /// The fraction of the ray's radiance that the pixel receives.
   Vector weight{1};
-  /// Whether a mirror has reflected the ray.
+  /// True if a mirror has reflected the ray.
   bool is_mirrored = false;
-  /// Whether one of these mirrors has a metallic-roughness material.
+  /// True if one of the mirrors has a metallic-roughness material.
   bool is_of_metal = false;
-  /// The largest roughness of these mirrors.
+  /// The largest roughness of the mirrors.
   Real roughness = 0;
   Cone cone;
   RayError error;
-  /// With glass: what it is in, and how many rays its sample has followed.
+  /// With glass: the media that contain the ray, and the number of rays that its sample has followed.
   Media media;
   uint32_t* rays = nullptr;
 };
@@ -216,7 +220,7 @@ class Tracer {
         has_glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const Material& m) { return glass_of(m).is_clear; })) {}
 
-  /// The nearest hit that is not where a mask has cut its triangle out.
+  /// Returns the nearest hit where no mask has cut out the triangle.
   Seen find(const Ray& ray, const Way& way, Sight sight) const {
     Seen seen;
     for (;;) {
@@ -233,8 +237,8 @@ class Tracer {
   }
 
   /// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends
-  /// contributes alpha * (what it sends, with the environment in place of a mirror ray) + (1 - alpha) * (what is behind
-  /// it).
+  /// contributes alpha * (what it sends, with the environment in place of a mirror ray) + (1 - alpha) * (the radiance
+  /// from behind).
   Radiance trace(const Ray& ray, const Seen& seen, const Way& way) const {
     Radiance sum = trace_hit(ray, seen.hit, way);
     if (seen.is_at_cutoff) sum.error += kUnknown;
@@ -282,7 +286,8 @@ class Tracer {
     return point;
   }
 
-  /// The factor, times that of the base colour's texture, times that of the vertices (glTF 2.0, 3.9.4).
+  /// Returns alpha: the factor, times the alpha of the base colour's texture, times the alpha of the vertices (glTF
+  /// 2.0, 3.9.4).
   Coverage alpha_of(const Material& material, const TrianglePoint& at) const {
     const Shown shown = textures_.look_up(slots_of(material)[kBaseSlot], at);
     Real factor = material.alpha;
@@ -293,13 +298,13 @@ class Tracer {
     return {factor * shown.value.a, factor * shown.error.a};
   }
 
-  /// How much of what is behind it is covered where a ray has found a hit.
+  /// Returns the opacity of a surface where a ray has found a hit.
   Coverage coverage_of(const Material& material, const TrianglePoint& at) const {
     if (material.alpha_mode == AlphaMode::kBlend) return alpha_of(material, at);
     return {material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff ? Real(0) : Real(1)};
   }
 
-  /// The coverage at a hit of a shadow ray. Unlike coverage_of it also evaluates masks, at the finest level.
+  /// Returns the opacity at a hit of a shadow ray. Unlike coverage_of it also evaluates masks, at the finest level.
   Coverage coverage_in_shadow(const Ray& ray, const Hit& hit, const RayError& of_ray) const {
     const Material& material = material_of(scene_, hit);
     const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
@@ -309,7 +314,7 @@ class Tracer {
     return {alpha.value >= material.alpha_cutoff ? Real(1) : Real(0), is_at_cutoff ? Real(1) : Real(0)};
   }
 
-  /// What a surface of glass lets through of light that goes straight on, and the media behind it.
+  /// Returns the fraction of straight light that a surface of glass transmits, and the media behind it.
   Vector share_of_glass(const Ray& ray, const Hit& hit, const RayError& of_ray, Media& media) const {
     const Material& material = material_of(scene_, hit);
     const Real along = glm::dot(hit.normal, glm::normalize(ray.direction));
@@ -337,7 +342,7 @@ class Tracer {
     return straight_share(material, face, std::min(std::abs(along), Real(1)), tint, transmission, metal);
   }
 
-  /// The share of the source's light that reaches a point through glass, one surface after the other.
+  /// Returns the fraction of the source's light that reaches a point through glass, one surface after the other.
   ArrivingShare share_through_glass(const Ray& ray, const RayError& of_ray, Media media) const {
     const Real length = glm::length(ray.direction);
     ArrivingShare share;
@@ -357,7 +362,7 @@ class Tracer {
       }
       share.error = std::max(largest(share.value), share.error) * covered.error + share.error * largest(left);
       share.value = layer < kMostLayers ? share.value * left : Vector(0);
-      // Next to the least share a device may see the other.
+      // Near the smallest fraction, a device may decide differently.
       if (std::abs(largest(share.value) - kLeastShareBehind) < 1e-4L * kLeastShareBehind)
         share.error += kLeastShareBehind;
       if (largest(share.value) < kLeastShareBehind) share.value = Vector(0);
@@ -366,10 +371,10 @@ class Tracer {
     }
   }
 
-  /// The share of the source's light that reaches the point, and how far a device may be off it.
+  /// Returns the fraction of the source's light that reaches the point, and the error that a device may have.
   ArrivingShare arriving_share(const SurfacePoint& point, const Light& light, const Vector& to_light,
                                const PointError& error, const Media& media) const {
-    // Light that is scattered through the surface is sought on its own side of it.
+    // If the surface scatters light to its other side, the shadow ray starts on the side of the light.
     const bool begins_behind = scatters_through(*point.material) && glm::dot(point.geometric_normal, to_light) < 0;
     const Vector origin = begins_behind ? point.position - point.lift * point.geometric_normal
                                         : point.shadow_position + point.lift * point.geometric_normal;
@@ -393,7 +398,7 @@ class Tracer {
 
   std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error,
                                              const Media& media) const {
-    // With a texture of normals a light slightly behind the geometric surface can light the front.
+    // With a normal texture, a light slightly behind the geometric surface can light the front.
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
     for (const Light& light : scene_.lights) {
@@ -409,7 +414,8 @@ class Tracer {
     return arriving;
   }
 
-  /// What the surface does with light, and with the error that its textures bring: that of each by itself.
+  /// The response of a surface to light, with the errors that its textures cause. The error of each texture is computed
+  /// separately.
   struct BoundedResponse : Response {
     Real weight_error = 0;
     Real normal_error = 0;
@@ -440,13 +446,13 @@ class Tracer {
     }
     return bounded;
   }
-  /// How far the angle between a ray and the normal may be off, as what the normal is then off to one side.
+  /// Returns the error of the angle between a ray and the normal, as a normal that is tilted to one side.
   static Vector tilt_of(const SurfacePoint& point, const Vector& direction, const PointError& error) {
     const Vector across = direction - glm::dot(direction, point.normal) * point.normal;
     if (!(glm::length(across) > 1e-9L)) return Vector(0);
     return (error.normal + error.to_eye + 8 * kRoundoff) * glm::normalize(across);
   }
-  /// A face answers another angle otherwise: near that of total reflection much so.
+  /// Adds errors of a face. Its reflection depends on the angle, strongly near total reflection.
   void add_errors_of_face(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction,
                           const PointError& error, BoundedResponse& bounded) const {
     const Vector tilt = tilt_of(point, direction, error);
@@ -458,7 +464,7 @@ class Tracer {
       bounded.weight_error =
           std::max(bounded.weight_error, largest_difference(other.mirror_weight, whole.mirror_weight));
       bounded.through_error = std::max(bounded.through_error, largest_difference(other.through, whole.through));
-      // Where it is reflected totally no ray goes on.
+      // On total reflection there is no refracted ray.
       const bool go_both = !other.beyond.is_total && !whole.beyond.is_total;
       const Real apart = go_both ? glm::distance(other.beyond.direction, whole.beyond.direction) : Real(0);
       bounded.direction_error = std::max(bounded.direction_error, apart);
@@ -473,7 +479,7 @@ class Tracer {
     bounded.direction_error += glm::distance(other.beyond.direction, whole.beyond.direction);
   }
 
-  /// What a ray brings that meets nothing.
+  /// Returns the radiance of a ray that hits nothing.
   Radiance beyond(const Ray& ray, const Way& way) const {
     const Environment& environment = scene_.environment;
     if (!way.is_mirrored && !(surroundings_.has_sky() && environment.shows_sky)) {
@@ -527,7 +533,7 @@ class Tracer {
     return sum;
   }
 
-  /// A ray that leads on from a point.
+  /// A ray that continues from a point.
   struct Sent {
     Ray ray;
     Way way;
@@ -546,7 +552,7 @@ class Tracer {
     on.is_of_metal = way.is_of_metal || is_of_metal;
     on.roughness = std::max(way.roughness, response.mirror_roughness);
     on.cone.width = way.cone.width + way.cone.spread * hit.t * glm::length(ray.direction);
-    // An interpolated normal may face away.
+    // An interpolated normal may face away from the eye.
     const Real cosine = std::max(-glm::dot(point.normal, direction), kLeastCosine);
     on.cone.spread += 2 * point.side * curvature_of(point.on_triangle) * on.cone.width / cosine;
     on.error = {error.position, way.error.direction + 2 * (error.normal + response.normal_error)};
@@ -567,7 +573,7 @@ class Tracer {
     const Real bend = point.face->is_thin ? Real(1) : point.face->from / point.face->to;
     on.cone.width = way.cone.width + way.cone.spread * hit.t * glm::length(ray.direction);
     on.cone.spread = bend * way.cone.spread + (bend - 1) * point.side * curvature_of(point.on_triangle) * on.cone.width;
-    // As far as what comes aside is bent itself, and the face turns.
+    // The error of the direction grows as the refraction bends a bundle of rays, and as the normal of the face changes.
     on.error = {error.position, way.error.direction * bend_of_angles(response.beyond, bend) + response.direction_error};
     return {Ray{point.position - point.lift * point.geometric_normal, response.beyond.direction}, on};
   }
@@ -575,7 +581,7 @@ class Tracer {
     return std::max(Real(1), bend * at.cosine / std::max(at.cosine_beyond, 1e-6L));
   }
 
-  /// One of the rays that lead on from a point in a scene with glass, and the weight of what it brings.
+  /// One of the rays that continue from a point in a scene with glass, and the weight of its radiance.
   struct Child {
     Sent sent;
     Vector weight;
@@ -583,7 +589,7 @@ class Tracer {
     bool is_followed = false;
   };
 
-  /// The refracted ray, or one of each color where the face parts them.
+  /// Adds the refracted ray, or one ray of each colour if the face separates them.
   void add_refracted(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error, const Way& way,
                      const BoundedResponse& response, const Media& beyond, std::vector<Child>& children) const {
     const auto face_of = [&](int color) {
@@ -613,13 +619,13 @@ class Tracer {
       for (const Real sign : {-1, 1}) {
         const Vector turned = glm::normalize(response.refracting_normal + sign * tilt);
         const Refraction other = refract(direction, turned, point.geometric_normal, *with_face.face);
-        // Next to the angle of total reflection a device may do the other.
+        // Near the angle of total reflection, a device may decide differently.
         if (other.is_total != colored.beyond.is_total) through_error += kUnknown;
         colored.direction_error =
             std::max(colored.direction_error, glm::distance(other.direction, colored.beyond.direction));
       }
       if (colored.beyond.is_total) {
-        // Of the others some are not.
+        // Colours that are reflected totally continue in the mirror ray while others do not.
         colored.mirror_weight = colored.through;
         colored.weight_error = through_error;
         children.push_back({send_mirrored(ray, hit, point, error, way, colored), colored.through, through_error});
@@ -630,7 +636,7 @@ class Tracer {
     }
   }
 
-  /// In a scene with glass: what both rays bring, within the limits of the tree.
+  /// Returns the radiance of both rays of a scene with glass, within the limits of the tree.
   Radiance trace_glass(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
                        const Way& way, const Media& beyond) const {
     const BoundedResponse response = respond_with_textures(point, glm::normalize(ray.direction), error, way.media);
@@ -648,12 +654,12 @@ class Tracer {
           {send_mirrored(ray, hit, point, error, here, response), response.mirror_weight, response.weight_error});
     }
     if (response.through != Vector(0)) add_refracted(ray, hit, point, error, here, response, beyond, children);
-    // All are counted before any is followed.
+    // All rays are counted before any of them is followed.
     for (Child& child : children) {
       const Real least = largest(child.sent.way.weight);
       child.is_followed = way.bounces > 0 && *way.rays < kMostTreeRays && least >= kLeastTreeWeight;
       if (child.is_followed) ++*way.rays;
-      // Next to the least weight a device may do the other.
+      // Near the smallest weight, a device may decide differently.
       if (std::abs(least - kLeastTreeWeight) < 1e-4L * kLeastTreeWeight) sum.error += kUnknown;
     }
     for (const Child& child : children) {
@@ -678,7 +684,7 @@ class Tracer {
   bool has_glass_;
 };
 
-/// A mesh's that of its box.
+/// Returns the size of a shape. For a mesh it is the size of its box.
 Real size_of(const world::Shape& shape) {
   const Mesh* mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr)
@@ -692,8 +698,8 @@ Real size_of(const world::Shape& shape) {
   return glm::distance(lo, hi) / 2;
 }
 
-/// The solids of glass around the camera, the largest first: of each a ray along an odd direction leaves once more than
-/// it enters.
+/// Returns the media around the camera: the solids of glass that contain it, the largest first. A ray from inside a
+/// solid in an irregular direction leaves the solid once more than it enters it.
 Media media_around(const world::Scene& scene, const Vector& eye) {
   struct Around {
     Real size;
@@ -729,7 +735,7 @@ Media media_around(const world::Scene& scene, const Vector& eye) {
   return media;
 }
 
-/// How a pixel's cone begins.
+/// Returns the cone of a pixel at the camera.
 Cone camera_cone(const Camera& camera, const uvec2& size) {
   if (camera.projection == Projection::kOrthographic) return {2 * Real(camera.ymag) / size.y, 0};
   return {0, 2 * std::tan(Real(camera.yfov) / 2) / size.y};
@@ -745,7 +751,7 @@ Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) 
   const vec3 right(pixel * glm::cross(dvec3(camera.look), dvec3(camera.up)));
   const vec3 up(pixel * dvec3(camera.up));
   const Vector on_film = (x + 0.5L - size.x / 2.0L) * Vector(right) + (size.y / 2.0L - y - 0.5L) * Vector(up);
-  // The interval is open: it begins just before the viewport.
+  // The interval is open, so it begins just before the viewport.
   const Real tmin = std::nextafter(Real(camera.near), -kInfinity);
   const Vector eye(camera.eye);
   const Vector look(camera.look);

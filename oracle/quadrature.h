@@ -10,14 +10,14 @@
 
 namespace promin::oracle {
 
-/// A position in an interval, and the weight of the value there.
+/// A position in an interval, and the weight of the function's value there.
 struct QuadratureNode {
   Real place = 0;
   Real weight = 0;
 };
 
-/// The nodes of Gauss and Legendre on [0, 1]: exact up to the degree 2 kOrder - 1. The places are the roots of
-/// Legendre's polynomial, found by Newton's method (Abramowitz and Stegun, 25.4.29).
+/// Returns the nodes of Gauss and Legendre on [0, 1], which are exact up to the degree 2 kOrder - 1. The positions are
+/// the roots of Legendre's polynomial, found by Newton's method (Abramowitz and Stegun, 25.4.29).
 template <int kOrder>
 std::array<QuadratureNode, kOrder> make_gauss_nodes() {
   std::array<QuadratureNode, kOrder> nodes;
@@ -40,7 +40,7 @@ std::array<QuadratureNode, kOrder> make_gauss_nodes() {
   return nodes;
 }
 
-/// The same on [a, b].
+/// Returns the nodes of Gauss and Legendre on [a, b].
 template <int kOrder>
 std::array<QuadratureNode, kOrder> gauss_nodes(Real a, Real b) {
   static const std::array<QuadratureNode, kOrder> kNodes = make_gauss_nodes<kOrder>();

@@ -14,7 +14,8 @@
 namespace promin::oracle {
 namespace {
 
-// Skies are integrated over thousands of directions for each pixel: in double, which errs by far less than quadrature.
+// Skies are integrated over thousands of directions for each pixel, so the computation is in double. Its rounding
+// errors are far smaller than the errors of the quadrature.
 constexpr double kPi = std::numbers::pi;
 
 double radians(double degrees) {
@@ -30,7 +31,7 @@ double elevation_of(const dvec3& d) {
   return std::atan2(d.y, std::hypot(d.x, d.z));
 }
 
-/// A lamp of the studio, in degrees from its viewer to the right.
+/// A lamp of the studio. Angles are in degrees, to the right as seen by the viewer.
 struct Lamp {
   double azimuth;
   double elevation;
@@ -40,14 +41,15 @@ struct Lamp {
 };
 constexpr Lamp kLamps[] = {{-45, 38, 46, 36, 1.7}, {70, 12, 30, 64, 0.8}, {165, 32, 60, 16, 1.8}, {0, 72, 60, 34, 0.7}};
 
-/// Of an angle from a lamp's middle: 1 within, 0 beyond, by smoothstep within 15 % of the half size from its edge.
+/// Returns the weight for an angle from a lamp's middle: 1 inside, 0 outside, and a smoothstep within 15 % of the half
+/// size at its edge.
 double within(double angle, double size_deg) {
   const double half = radians(size_deg) / 2;
   return 1 - smoothstep(0.85 * half, 1.15 * half, std::abs(angle));
 }
 
-/// What comes from a direction of the sky as it is before it is turned: +Z is 0, +X a quarter to the right of a viewer
-/// who stands there and looks at the scene.
+/// Returns the radiance from a direction of the sky before the sky is rotated: azimuth 0 is +Z, and +X is a quarter to
+/// the right for a viewer who stands at +Z and looks at the scene.
 struct Radiance {
   const dvec3& d;
 
@@ -61,7 +63,7 @@ struct Radiance {
   }
 
   dvec3 operator()(const Studio& studio) const {
-    // How far a direction lies to the back of the studio.
+    // `back` is 0 for the direction to the studio's front, and 1 for the opposite direction.
     const double front = static_cast<double>(studio.front);
     const double back = (1 - d.x * std::sin(front) - d.z * std::cos(front)) / 2;
     const double horizon = 0.20 + 0.16 * back;
@@ -82,7 +84,7 @@ struct Radiance {
     return dvec3(sum);
   }
 
-  /// Pixels are the radiance of their middles, between which it is interpolated.
+  /// A pixel's value is the radiance at its centre. Between the centres the radiance is interpolated.
   dvec3 operator()(const Panorama& panorama) const {
     const Image& image = *panorama.image;
     const double column = (0.5 + std::atan2(d.x, -d.z) / (2 * kPi)) * image.size.x - 0.5;
@@ -103,14 +105,14 @@ struct Radiance {
 };
 
 dvec3 radiance_of(const Environment& environment, const dvec3& direction) {
-  // The sky is turned from +Z towards +X, so what is seen lies as far the other way in it.
+  // The sky is rotated from +Z towards +X, so the direction is rotated by the same angle the other way.
   const double sine = std::sin(static_cast<double>(environment.rotation));
   const double cosine = std::cos(static_cast<double>(environment.rotation));
   const dvec3 in_sky(direction.x * cosine - direction.z * sine, direction.y, direction.x * sine + direction.z * cosine);
   return static_cast<double>(environment.intensity) * std::visit(Radiance{in_sky}, environment.sky);
 }
 
-/// Coefficients of the bands by what they multiply, and the constants of docs/model.md.
+/// Returns the functions of the bands, indexed like the coefficients, with the constants of docs/model.md.
 std::array<double, 9> band_functions(const dvec3& n) {
   return {1, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3 * n.z * n.z - 1, n.z * n.x, n.x * n.x - n.y * n.y};
 }
@@ -166,9 +168,9 @@ Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
   const dvec3 aside =
       glm::normalize(std::abs(axis.y) < 0.9 ? glm::cross(axis, dvec3(0, 1, 0)) : glm::cross(axis, dvec3(1, 0, 0)));
   const dvec3 other = glm::cross(axis, aside);
-  // With V = N the light is at twice the half vector's angle: tau, of which s = sin^2(tau / 2) goes from 0 to 1/2 and
-  // dw = 2 ds d(azimuth). D is alpha^2 / (pi (alpha^2 + (1 - alpha^2) s)^2), so its integral q over s, in parts of the
-  // whole, is a quotient, and nodes in q have the same share of D each.
+  // With V = N, the angle tau of the light is twice that of the half vector. s = sin^2(tau / 2) runs from 0 to 1/2, and
+  // dw = 2 ds d(azimuth). D is alpha^2 / (pi (alpha^2 + (1 - alpha^2) s)^2), so its integral q over s, as a fraction of
+  // the whole, is a quotient, and each node in q stands for the same fraction of D.
   const double end = alpha2 + (1 - alpha2) / 2;
   constexpr double kPanels[] = {0, 0.17, 0.33, 0.5, 0.65, 0.8, 0.9, 0.98, 1};
   constexpr int kAzimuths = 64;
@@ -184,7 +186,7 @@ Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
       ++ring;
       dvec3 of_ring(0);
       for (int i = 0; i < kAzimuths; ++i) {
-        // Rings are turned against each other.
+        // Each ring is rotated relative to the previous one.
         const double azimuth = 2 * kPi * (i + 0.618 * ring) / kAzimuths;
         const dvec3 way = cosine * axis + sine * (std::cos(azimuth) * aside + std::sin(azimuth) * other);
         of_ring += radiance_of(environment_, way);
@@ -198,7 +200,7 @@ Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
 }
 
 Real Surroundings::map_error(Real roughness) const {
-  // As tests/gpu/oracle_picture_test.cpp measures it, and some more.
+  // The errors that tests/gpu/oracle_picture_test.cpp measures, rounded up.
   if (std::holds_alternative<Studio>(environment_.sky)) {
     return range_ * (roughness < 0.1L ? 0.13L : 0.065L);
   }

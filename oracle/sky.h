@@ -11,7 +11,7 @@ namespace promin::oracle {
 
 class Surroundings {
  public:
-  /// The environment outlives this.
+  /// The environment must outlive this object.
   explicit Surroundings(const Environment& environment);
 
   bool has_sky() const { return environment_.has_sky(); }
@@ -19,19 +19,20 @@ class Surroundings {
   /// Returns the unfiltered radiance L from a direction. All directions here are unit vectors.
   Vector radiance(const Vector& direction) const;
 
-  /// The irradiance of a surface over pi, by the bands 0 to 2: E(N) / pi.
+  /// Returns the irradiance of a surface divided by pi, E(N) / pi, computed from the bands 0 to 2.
   Vector irradiance(const Vector& normal) const;
 
   /// Returns P, the mean radiance over the lobe of a roughness about a direction. It is computed by quadrature over
   /// half vectors, with an error below 0.002 of the brightest radiance.
   Vector lobe_mean(const Vector& direction, Real roughness) const;
 
-  /// Between the darkest and the brightest of a channel; 0 without a sky.
+  /// Returns the difference between the darkest and the brightest value of a channel; 0 without a sky.
   Real range() const { return range_; }
 
-  /// The permitted error of a device's P, which comes from maps with texels and for a few roughnesses, as a share of
-  /// the range: for the studio, whose lamps have edges, 0.13 for smooth surfaces and 0.065 for others; for a gradient
-  /// 0.02; and for a panorama without small lights 0.035.
+  /// Returns the permitted error of a device's P as a fraction of the range. The error occurs because the device's P
+  /// comes from maps with texels, and only for a few roughnesses. It is 0.13 for the studio, whose lamps have edges,
+  /// with smooth surfaces, and 0.065 with other surfaces; 0.02 for a gradient; and 0.035 for a panorama without small
+  /// lights.
   Real map_error(Real roughness) const;
 
  private:

@@ -17,13 +17,13 @@ Vector rgb(const Texel& texel) {
   return Vector(texel);
 }
 
-/// A direction in which a texture's first coordinate grows, and the side of the bitangent; 0 where there is none.
+/// A direction in which a texture's first coordinate increases, and the side of the bitangent; 0 if there is none.
 struct Tangent {
   Vector direction{0};
   Real side = 1;
 };
 
-/// As baking tools have it, of (u, 1 - v) before the slot's transform.
+/// Returns the tangent of a triangle, as baking tools compute it from (u, 1 - v) before the slot's transform.
 Tangent tangent_of_triangle(const SurfacePoint& point, const TextureSlot& slot) {
   const TrianglePoint& at = point.on_triangle;
   TextureSlot plain;
@@ -33,7 +33,7 @@ Tangent tangent_of_triangle(const SurfacePoint& point, const TextureSlot& slot) 
   const Vector a(at.mesh->positions[corners.x]);
   const Vector to_b = Vector(at.mesh->positions[corners.y]) - a;
   const Vector to_c = Vector(at.mesh->positions[corners.z]) - a;
-  // The first coordinate grows along the combination of the edges in which 1 - v stays.
+  // The first coordinate increases along the combination of the edges for which 1 - v is constant.
   const Real area = -(uv.to_b.x * uv.to_c.y - uv.to_c.x * uv.to_b.y);
   if (area == 0) return {};
   return {(uv.to_b.y * to_c - uv.to_c.y * to_b) / area, area > 0 ? Real(1) : Real(-1)};
@@ -52,10 +52,11 @@ Tangent tangent_at(const SurfacePoint& point, const TextureSlot& slot) {
   return tangent;
 }
 
-/// From which roughness and direction the environment is reflected: the mirrored one, turned to the normal.
+/// Returns the direction from which a rough surface reflects the environment: the mirrored direction, rotated towards
+/// the normal.
 Vector off_mirror(const Vector& direction, const Vector& normal, const Vector& geometric_normal, Real roughness) {
   Vector mirrored = glm::reflect(direction, normal);
-  // A normal that leans far would look into the surface.
+  // A strongly tilted normal would lead into the surface.
   if (glm::dot(mirrored, geometric_normal) < 0) mirrored = glm::reflect(mirrored, geometric_normal);
   return glm::normalize(mirrored + (normal - mirrored) * std::pow(roughness, Real(4)));
 }
@@ -66,14 +67,15 @@ Radiance environment_of(const Surroundings& surroundings, const Vector& directio
           surroundings.map_error(roughness)};
 }
 
-/// By how much any of a lobe's angles may be off.
+/// Returns the largest error of any of a lobe's angles.
 Real angle_error(const ArrivingLight& arriving, const PointError& error, Real apart) {
   const Real to_light = 4 * kRoundoff + error.position / arriving.distance;
   return std::min(error.normal + (error.to_eye + to_light) / std::min(apart, Real(1)), Real(1));
 }
 
-/// The lobe grows as the half vector nears the normal, l grows, v falls and V.H falls, so its largest and least values
-/// within the angles' errors are at the ends. Beside that fp32 errs by 64 u + 8 u / alpha.
+/// Returns the lobe's value and its error. The lobe increases if the half vector comes nearer to the normal, if l
+/// increases, and if v or V.H decreases, so its largest and smallest values within the angles' errors are at the ends.
+/// In addition, fp32 has an error of 64 u + 8 u / alpha.
 template <class AnyLobe>
 Radiance bound_highlight(const AnyLobe& lobe, const LobeAngles& at, Real error) {
   const auto highlight_at = [&](Real step) {
@@ -87,8 +89,8 @@ Radiance bound_highlight(const AnyLobe& lobe, const LobeAngles& at, Real error) 
   return {color, largest(sum)};
 }
 
-/// A sheen has no angle at which all that it hangs on is at an end, so all corners within the errors are tried. fp32
-/// errs by a few u of exponents up to 25 and of powers.
+/// Returns a sheen's value and its error. There is no angle at which all terms of a sheen are at an end of their
+/// ranges, so all corners within the errors are tried. In fp32, exponents up to 25 and powers have errors of a few u.
 Radiance bound_sheen(const Sheen& sheen, const LobeAngles& at, Real error) {
   const Vector color = sheen.highlight(at);
   Real off = 0;
@@ -102,8 +104,9 @@ Radiance bound_sheen(const Sheen& sheen, const LobeAngles& at, Real error) {
   return {color, off + 512 * kRoundoff * largest(color)};
 }
 
-/// The highlight may be off in five ways: the frame of eye and light may be tilted along the grain, across it, or spun,
-/// and the eye alone tilted either way. Small errors add up.
+/// Returns the value and error of a stretched highlight. The highlight may have five errors: the frame of eye and light
+/// may be tilted along the grain, tilted across it, or rotated, and the eye alone may be tilted in either way. Small
+/// errors add up.
 Radiance bound_stretched(const Lobe& lobe, const GrainWays& ways, const GrainAlphas& alphas, Real error) {
   const Vector color = lobe.highlight(ways, alphas);
   const auto turn = [](const Vector& way, int axis, Real by) {
@@ -124,7 +127,7 @@ Radiance bound_stretched(const Lobe& lobe, const GrainWays& ways, const GrainAlp
   return {color, sum};
 }
 
-/// All that a model needs to know.
+/// All data that a material model needs.
 struct Glimpse {
   const SurfacePoint& point;
   const SlotTexels& texels;
@@ -137,7 +140,7 @@ struct Glimpse {
   Vector vertex_color() const { return rgb(point.vertex_color); }
 };
 
-/// How a material answers the light at one point, seen from one eye. Each model has these functions.
+/// The response of a material to light at one point, seen from one eye. Each model has these functions.
 class PhongSurface {
  public:
   PhongSurface(const Phong& phong, const Glimpse& at)
@@ -209,8 +212,8 @@ class UnlitSurface {
   Vector color_;
 };
 
-/// With what its textures show, but for normals, occlusion and emission; of the base colour they are factors of the
-/// vertices'.
+/// Returns the material with the values of its textures, except normals, occlusion and emission. The base colour's
+/// texture multiplies the vertices' colours.
 MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& texels) {
   const auto scale = [](float& number, Real factor) { number = static_cast<float>(number * factor); };
   scale(material.roughness, texels[kMetallicRoughnessSlot].g);
@@ -233,10 +236,10 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
   return material;
 }
 
-/// As the dielectric reflects beside another medium than air: by the quotient of the indices.
+/// Returns the material as its dielectric reflects in a medium other than air: with the quotient of the indices.
 MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_total) {
   if (is_total) {
-    // Total reflection: an index of 0 reflects all light at every angle (KHR_materials_ior).
+    // On total reflection, an index of 0 reflects all light at every angle (KHR_materials_ior).
     material.ior = 0.0F;
     material.specular = 1.0F;
     material.specular_color = vec3(1.0F);
@@ -248,19 +251,21 @@ MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_t
   return material;
 }
 
-/// The grain of an anisotropic surface at a point: directions along and across it, and the normal that mirrors the sky.
+/// The grain of an anisotropic surface at a point: the directions along and across it, and the normal at which the sky
+/// is mirrored.
 struct Grain {
   Vector along{0};
   Vector across{0};
   Vector normal{0};
   GrainAlphas alphas;
-  /// About which the environment is mirrored.
+  /// The normal at which the environment is mirrored.
   Vector bent_normal{0};
 
   Vector local(const Vector& way) const { return {glm::dot(way, along), glm::dot(way, across), glm::dot(way, normal)}; }
 };
 
-/// KHR_materials_anisotropy, where texture coordinates give a tangent. The material is that at the point.
+/// Returns the grain (KHR_materials_anisotropy) if texture coordinates give a tangent. `material` is the material at
+/// the point.
 std::optional<Grain> find_grain(const MetallicRoughness& material, const Glimpse& at, const Vector& normal) {
   const Mesh* mesh = at.point.on_triangle.mesh;
   if (!(material.anisotropy > 0) || mesh == nullptr || mesh->uvs.empty()) return std::nullopt;
@@ -319,11 +324,11 @@ class MetallicRoughnessSurface {
     const Light& light = *arriving.light;
     Radiance coated;
     const Real cosine = glm::dot(normal_, arriving.to_light);
-    // From behind, as seen from the eye, there is no half vector.
+    // If the light comes from behind, as seen from the eye, there is no half vector.
     const Real apart = glm::length(at_.to_eye() + arriving.to_light);
     const bool has_highlight = apart >= 0x1p-12L;
     const Real error = angle_error(arriving, at_.error, apart);
-    // Light from the other side is scattered through, and has no highlight.
+    // Light from the other side is scattered through the surface and has no highlight.
     if (material_.diffuse_transmission > 0 && glm::dot(at_.point.geometric_normal, arriving.to_light) < 0) {
       coated.add(Vector(1 - coat_.weight()), {sheen_.left() * albedo_from_behind() / std::numbers::pi_v<Real> *
                                               Vector(light.diffuse) * std::max(-cosine, Real(0))});
@@ -383,7 +388,7 @@ class MetallicRoughnessSurface {
     return bound_stretched(lobe_, {grain_->local(at_.to_eye()), grain_->local(arriving.to_light)}, grain_->alphas,
                            error);
   }
-  /// The cosine on the face's thinner side, by which the lobe is seen.
+  /// Sets the face. Returns the cosine on its thinner side, which the lobe uses.
   Real meet_face() {
     if (grain_) material_.roughness = static_cast<float>(grain_->alphas.mean_roughness());
     const Real seen = glm::dot(normal_, at_.to_eye());
@@ -395,8 +400,9 @@ class MetallicRoughnessSurface {
     if (face.is_thin || face.from == face.to) return seen;
     return face.from <= face.to ? refraction_.cosine : refraction_.cosine_beyond;
   }
-  /// What is scattered, not let through: to this side, and of light from the other side
-  /// (KHR_materials_diffuse_transmission: mix(diffuse_brdf, diffuse_btdf, factor) in place of diffuse_brdf).
+  /// The fraction of light that is scattered and not transmitted: albedo() to this side, and the next function for
+  /// light from the other side (KHR_materials_diffuse_transmission: mix(diffuse_brdf, diffuse_btdf, factor) in place of
+  /// diffuse_brdf).
   Vector albedo() const { return (1 - share_) * (1 - Real(material_.diffuse_transmission)) * lobe_.albedo(); }
   Vector albedo_from_behind() const {
     return (1 - share_) * material_.diffuse_transmission * lobe_.let_in() *
@@ -405,7 +411,7 @@ class MetallicRoughnessSurface {
   LobeAngles angles(const Vector& normal, const ArrivingLight& arriving) const {
     return angles_of(normal, at_.to_eye(), arriving.to_light);
   }
-  /// Of light from all around, below coat and sheen.
+  /// Returns the fraction of light from all directions that is reflected below coat and sheen.
   Vector reflectance() const { return sheen_.left() * lobe_.reflectance(); }
   Real sharpness_below() const { return is_dull_below_ ? 0 : lobe_.sharpness(); }
   Radiance reflect_environment(const Vector& normal, Real roughness, Real occlusion) const {
@@ -421,16 +427,17 @@ class MetallicRoughnessSurface {
   Vector coat_normal_;
   std::optional<Grain> grain_;
   Refraction refraction_;
-  /// Of the light that comes into the dielectric, how much goes through.
+  /// The fraction of the light in the dielectric that is transmitted.
   Real share_ = 0;
   Real cosine_;
   Lobe lobe_;
   Sheen sheen_;
   ClearCoat coat_;
   bool has_coat_;
-  /// Whether the material reflects the environment alone, because the mirror ray is that of a coat of another normal.
+  /// True if the material reflects only the environment, because the mirror ray belongs to a coat with another normal.
   bool is_dull_below_;
-  /// What material and coat reflect of the environment, were they white, and what the body sends of it.
+  /// The light of the environment that material and coat would reflect if they were white, and the light of the
+  /// environment that the body scatters.
   Radiance below_;
   Radiance above_;
   Vector body_{0};
@@ -495,7 +502,7 @@ Slots slots_of(const Material& material) {
 Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Real scale, const Vector& direction) {
   if (!point.slots[slot].exists()) return point.normal;
   const Tangent tangent = tangent_at(point, point.slots[slot]);
-  // All of the texture's space is the front's, and turns with the normal where the back is seen.
+  // The texture's frame belongs to the front. If the back is visible, the frame is rotated with the normal.
   const Vector normal = point.side * point.normal;
   const Vector across = tangent.direction - glm::dot(tangent.direction, normal) * normal;
   if (across == Vector(0)) return point.normal;
@@ -503,7 +510,7 @@ Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Rea
   const Vector b = tangent.side * glm::cross(normal, t);
   const Vector in_texture = Real(2) * rgb(texel) - Real(1);
   Vector bent = point.side * glm::normalize(scale * (in_texture.x * t + in_texture.y * b) + in_texture.z * normal);
-  // What is turned away from the eye is seen edge-on.
+  // A normal that points away from the eye is rotated until the surface is seen edge-on.
   const Real away = glm::dot(bent, direction);
   if (away > 0) bent = glm::normalize(bent - away * direction);
   return bent;

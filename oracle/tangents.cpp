@@ -11,27 +11,28 @@
 namespace promin::oracle {
 namespace {
 
-/// What one rounded operation in double may be off, of its result.
+/// The largest relative error of one rounded operation in double.
 constexpr Real kDouble = 0x1p-53L;
-/// Rounding of a unit vector's components turns it by at most sqrt(3) halves of their last bits.
+/// The largest angle by which rounding of a unit vector's components rotates it: sqrt(3) halves of their last bits.
 constexpr Real kRoundingOfUnits = 0.87L * kRoundoff;
 
-/// Of sums that are less than this share of their parts a computation in double drops all.
+/// A sum that is smaller than this fraction of its terms has no valid digits in a computation in double.
 constexpr Real kDropped = 1e-12L;
 
 constexpr int kNone = -1;
 
-/// A triangle that takes part, or not.
+/// A triangle, which takes part in the computation or not.
 struct Face {
   bool is_degenerate = false;
-  /// Of its coordinates' area; 0 where it has none, until a group gives it one.
+  /// Sign of the area of the triangle's coordinates; 0 if they have no area, until a group sets it.
   int hand = 0;
-  /// In coordinates, and equations 18 and 19 have a length: where the corners lie on a line one of them may have none.
+  /// True if the coordinates have an area and equations 18 and 19 give vectors with a length. If the corners lie on a
+  /// line, one of the vectors may have no length.
   bool has_area = false;
-  /// In which u grows. Of any length, with what each of its components' computation may be off.
+  /// The direction in which u increases, of any length, and the error of its components.
   Vector along{0};
   Real along_error = 0;
-  /// For each edge, which begins at the corner of that number, the face across it.
+  /// For each edge, which has the number of the corner at which it begins, the face on its other side.
   int neighbors[3] = {kNone, kNone, kNone};
   int groups[3] = {kNone, kNone, kNone};
 };
@@ -88,14 +89,14 @@ class Tangents {
     const vec4& uvs = mesh_.uvs[index(f, i)];
     return uv_set_ == 0 ? Vector2(uvs.x, 1 - Real(uvs.y)) : Vector2(uvs.z, 1 - Real(uvs.w));
   }
-  /// Across which the triangle lies, of any length.
+  /// Returns the normal of the triangle's plane, of any length.
   Vector across(int f) const { return glm::cross(position(f, 1) - position(f, 0), position(f, 2) - position(f, 0)); }
   Vector normal(int f, int i) const {
     const Vector n = mesh_.normals.empty() ? across(f) : Vector(mesh_.normals[index(f, i)]);
     return n == Vector(0) ? n : glm::normalize(n);
   }
 
-  /// Equations 18 and 19 of the implementation, without their common divisor, which is positive.
+  /// Computes equations 18 and 19 of the implementation, without their common divisor, which is positive.
   void measure(int f) {
     Face& face = faces_[static_cast<size_t>(f)];
     for (int i = 0; i < 3; ++i) face.is_degenerate = face.is_degenerate || position(f, i) == position(f, i + 1);
@@ -121,7 +122,7 @@ class Tangents {
     return (a == Vector(0)) == (b == Vector(0)) && glm::cross(a, b) == Vector(0) && glm::dot(a, b) >= 0;
   }
 
-  /// Each corner's vertex is the first corner that is one with it.
+  /// Sets the vertex of each corner: the first corner that is equal to it.
   void weld() {
     for (int f = 0; f < count(); ++f) {
       for (int i = 0; i < 3; ++i) {
@@ -132,7 +133,8 @@ class Tangents {
     }
   }
 
-  /// An edge goes with the first one after it that runs the other way between its vertices and has no face across yet.
+  /// Pairs edges. An edge is paired with the first later edge that runs in the opposite direction between its vertices
+  /// and has no face on its other side yet.
   void find_neighbors() {
     for (int f = 0; f < count(); ++f) {
       for (int i = 0; i < 3; ++i) find_neighbor(f, i);
@@ -151,8 +153,8 @@ class Tangents {
     }
   }
 
-  /// Puts the corner into the group, and those at its vertex of the faces across its edges, and so on. What has no area
-  /// takes the hand of the first group that comes to it.
+  /// Adds the corner to the group, then the corners at its vertex of the faces across its edges, and so on. A face
+  /// without an area gets the hand of the first group that reaches it.
   void assign(int f, int i, int group) {
     Face& face = faces_[static_cast<size_t>(f)];
     if (face.groups[i] != kNone) return;
@@ -169,22 +171,22 @@ class Tangents {
     }
   }
 
-  /// A unit vector and what it may be off.
+  /// A unit vector and its error.
   struct Direction {
     Vector value{0};
     Real error = 0;
   };
-  /// Of what of `v`, which is off by `error`, is across a unit normal.
+  /// Returns the direction of the component of `v`, which has the error `error`, perpendicular to a unit normal.
   static Direction project(const Vector& v, const Vector& normal, Real error) {
     const Vector flat = v - glm::dot(v, normal) * normal;
     const Real length = glm::length(flat);
     const Real off = error + 8 * kDouble * glm::length(v);
-    // Nothing but rounding.
+    // The component is only rounding.
     if (length <= 0x1p-58L * glm::length(v)) return {};
     return {flat / length, off / length};
   }
 
-  /// The mean of the faces' directions, weighted by their angles at the vertex.
+  /// Returns the mean of the faces' directions, weighted by their angles at the vertex.
   CornerTangent average(int group) const {
     Vector sum(0);
     Real off = 0;
@@ -199,7 +201,8 @@ class Tangents {
         const Direction last = project(position(f, i + 2) - position(f, i), n, 0);
         const Real cosine = std::clamp(glm::dot(next.value, last.value), Real(-1), Real(1));
         const Real weight = std::acos(cosine);
-        // The arc cosine of what is off is off by that over the sine, and near 0 and pi by its root.
+        // The error of an arc cosine is the error of its argument divided by the sine; near 0 and pi it is the square
+        // root of the error.
         const Real off_cosine = next.error + last.error + 8 * kDouble;
         const Real off_weight = std::min(std::sqrt(2 * off_cosine), off_cosine / std::sqrt(1 - cosine * cosine));
         sum += weight * along.value;
@@ -212,12 +215,12 @@ class Tangents {
     tangent.hand = hands_[static_cast<size_t>(group)];
     const Real length = glm::length(sum);
     if (length <= 0x1p-55L * weights) {
-      // They cancel, or have no weight: then rounding decides what is seen.
+      // The directions cancel, or have no weight. Rounding then decides the result.
       if (off > kDropped / 8 * weights) tangent.error = kInfinity;
       return tangent;
     }
     tangent.direction = sum / length;
-    // Flat normals are rounded to fp32; what is across them turns no more than they.
+    // Flat normals are rounded to fp32. The perpendicular component rotates by no more than the normals.
     tangent.error = kRoundingOfUnits * (mesh_.normals.empty() ? 2 : 1) + (off + 8 * kDouble * weights) / length;
     return tangent;
   }
@@ -226,7 +229,7 @@ class Tangents {
   uint32_t uv_set_;
   std::vector<Face> faces_;
   std::vector<int> vertices_;
-  /// Of each group.
+  /// The hand of each group.
   std::vector<int> hands_;
 };
 

@@ -12,16 +12,17 @@
 namespace promin::oracle {
 namespace {
 
-/// The sRGB of a device errs by this much of a code's step, and the curve is at most 2.3 as steep as the codes.
+/// Largest error of a device's sRGB decoding: a fraction of the step between codes, times 2.3, the largest slope of the
+/// curve.
 constexpr Real kDecodingError = 2.3L * 0.006L / 255;
-/// A device's level errs by this, as its logarithms do, beside what the cone's width and the cosine bring.
+/// Largest error of a device's level that its logarithms cause. The cone's width and the cosine cause further errors.
 constexpr Real kLevelError = 1e-3L;
 
 Texel unpack(uint32_t texel) {
   return Texel(texel & 255U, texel >> 8 & 255U, texel >> 16 & 255U, texel >> 24) / Real(255);
 }
 
-/// The light of all codes of 8 bits.
+/// Returns the light of an 8-bit code.
 Real light_of(uint32_t code) {
   static const auto kLights = [] {
     std::array<Real, 256> lights{};
@@ -31,7 +32,7 @@ Real light_of(uint32_t code) {
   return kLights[code];
 }
 
-/// What is averaged and filtered: colours as light, alpha and numbers as they are.
+/// Returns the numbers that are averaged and filtered: colours as linear light, alpha and other numbers unchanged.
 Texel decode(uint32_t texel, ImageUse use) {
   Texel value = unpack(texel);
   if (use != ImageUse::kColor) return value;
@@ -43,7 +44,7 @@ uint32_t round_to_code(Real number) {
   return static_cast<uint32_t>(std::lround(255 * std::clamp(number, Real(0), Real(1))));
 }
 
-/// As 8 bits have it.
+/// Returns a value rounded to 8 bits.
 Texel round_texel(const Texel& value, ImageUse use) {
   uint32_t texel = 0;
   for (int i = 0; i < 4; ++i) {
@@ -53,7 +54,7 @@ Texel round_texel(const Texel& value, ImageUse use) {
   return decode(texel, use);
 }
 
-/// The texel that stands for a number beyond the edge.
+/// Returns the index of the texel for an index beyond the edge.
 size_t wrap(int64_t number, uint32_t size, TextureWrap wrap) {
   const int64_t n = size;
   const auto modulo = [](int64_t a, int64_t b) { return ((a % b) + b) % b; };
@@ -79,21 +80,22 @@ Vector corner_position(const TrianglePoint& point, int corner) {
   return Vector(mesh.positions[mesh.triangles[static_cast<size_t>(point.triangle)][corner]]);
 }
 
-/// By how much each coordinate changes at most per length along the triangle: of b p + c q at the point p B + q C.
+/// Returns the largest change of each coordinate per length along the triangle. The coordinates are b p + c q at the
+/// point p B + q C.
 Vector2 steepness(const TextureSlot& slot, const TrianglePoint& point) {
   const UvEdges uv = uv_edges(slot, point);
   const Vector b = corner_position(point, 1) - corner_position(point, 0);
   const Vector c = corner_position(point, 2) - corner_position(point, 0);
   const Vector normal = glm::cross(b, c);
   const Real area = glm::dot(normal, normal);
-  // Vectors of the plane that give a point's p and q.
+  // Vectors in the plane whose scalar products with a point are its p and q.
   const Vector to_p = glm::cross(c, normal) / area;
   const Vector to_q = glm::cross(normal, b) / area;
   return {glm::length(uv.to_b.x * to_p + uv.to_c.x * to_q), glm::length(uv.to_b.y * to_p + uv.to_c.y * to_q)};
 }
 
-/// From which alpha of its texels on what an image cuts is there: as the first mask says that has it. None where
-/// something blends with it.
+/// Returns the alpha from which texels of an image are present, according to the first mask that uses the image.
+/// Returns none if a material blends with the image.
 Real cutoff_of(const world::Scene& scene, uint32_t image) {
   Real cutoff = 0;
   for (const Material& material : scene.materials) {
@@ -110,13 +112,13 @@ int64_t alpha_code(const Texel& texel) {
   return std::llround(255 * texel.a);
 }
 
-/// How many texels have this code of alpha or a larger one.
+/// Returns the number of texels whose alpha has this code or a larger one.
 Real count_from(const std::vector<Texel>& texels, int64_t code) {
   return static_cast<Real>(std::ranges::count_if(texels, [=](const Texel& t) { return alpha_code(t) >= code; }));
 }
 
-/// Multiplies alphas, so that as nearly that share of the texels is there as any factor can do; of several the one that
-/// changes least. What was there by its factor is there after rounding, all else is not.
+/// Multiplies alphas by a factor, so that the fraction of present texels is as close as possible to `share`. Of several
+/// such factors it uses the one that changes least. Rounding does not change which texels are present.
 void keep_share(std::vector<Texel>& texels, int64_t least, Real share) {
   const Real wanted = share * static_cast<Real>(texels.size());
   std::array<Real, 3> best{kInfinity, 0, 0};
@@ -177,7 +179,8 @@ Textures::Level Textures::make_level(const TextureImage& image, uint32_t number)
     for (const uint32_t texel : image.texels) level.texels.push_back(decode(texel, image.use));
     return level;
   }
-  // How much of a texel of the image lies in a texel of the level, along one side, times the level's size.
+  // Returns the length of the overlap of an image's texel and a level's texel along one side, times the size of the
+  // level.
   const auto share = [](uint32_t from, uint32_t size, uint32_t to, uint32_t level_size) {
     const uint64_t lo = std::max<uint64_t>(uint64_t{from} * level_size, uint64_t{to} * size);
     const uint64_t hi = std::min<uint64_t>(uint64_t{from + 1} * level_size, uint64_t{to + 1} * size);
@@ -259,7 +262,7 @@ Shown Textures::look_up(const TextureSlot& slot, const TrianglePoint& point) con
     shown.error = Texel(kDecodingError, kDecodingError, kDecodingError, 0);
   }
   shown.error += Texel(4 * kRoundoff);
-  // The place is a few rounded products and sums of the coordinates.
+  // The position is computed from the coordinates with a few rounded products and sums.
   Real largest = 0;
   for (int i = 0; i < 3; ++i) {
     const Vector2 corner = glm::abs(corner_coordinates(slot, point, i));

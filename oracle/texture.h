@@ -6,14 +6,15 @@
 
 #include "oracle/oracle.h"
 
-/// Textures as docs/model.md ("Textures") and glTF 2.0, section 3.8, have them, with exact sRGB, and how far a device
-/// may be off them.
+/// Textures as defined by docs/model.md ("Textures") and glTF 2.0, section 3.8, with exact sRGB, and the errors that a
+/// device may have.
 namespace promin::oracle {
 
 using Vector2 = glm::vec<2, Real>;
 using Texel = glm::vec<4, Real>;
 
-/// IEC 61966-2-1: the light of a code, both 0...1, and the code of a light.
+/// The conversions of IEC 61966-2-1, all values 0...1: decode_srgb returns the light of a code, encode_srgb the code of
+/// a light.
 Real decode_srgb(Real code);
 Real encode_srgb(Real light);
 
@@ -26,18 +27,18 @@ struct Cone {
   Real spread = 0;
 };
 
-/// A triangle's point as textures see it.
+/// A point of a triangle, for looking up textures.
 struct TrianglePoint {
   const Mesh* mesh = nullptr;
   int32_t triangle = 0;
-  /// The weights of the second and third corner.
+  /// Barycentric weights of the second and third corner.
   Real u = 0;
   Real v = 0;
-  /// The width of the ray's cone there; 0 asks for the finest level.
+  /// The width of the ray's cone at the point; 0 selects the finest level.
   Real width = 0;
-  /// |G.D| of the geometric normal and the ray's unit direction.
+  /// The cosine |G.D| between the geometric normal and the ray's unit direction.
   Real cosine = 1;
-  /// How far off a device may have the place, in scene units along the triangle, and the cosine.
+  /// The errors that a device may have: of the position, in scene units along the triangle, and of the cosine.
   Real place_error = 0;
   Real cosine_error = 0;
 };
@@ -48,29 +49,30 @@ struct Shown {
   Texel error{0};
 };
 
-/// The point's texture coordinates of the slot, transformed.
+/// Returns the texture coordinates of the point for a slot, after the slot's transform.
 Vector2 coordinates_at(const TextureSlot& slot, const TrianglePoint& point);
 
-/// The change of the coordinates along two edges of the triangle: to the second corner and to the third.
+/// The change of the coordinates along two edges of the triangle: from the first corner to the second, and to the
+/// third.
 struct UvEdges {
   Vector2 to_b{0};
   Vector2 to_c{0};
 };
 UvEdges uv_edges(const TextureSlot& slot, const TrianglePoint& point);
 
-/// The images of a scene with their levels, decoded. Levels of masks keep the share of texels that are there.
+/// The decoded images of a scene with their levels. Levels of masks keep the fraction of texels that are present.
 class Textures {
  public:
   explicit Textures(const world::Scene& scene);
 
-  /// Whether the slot shows anything on a mesh with texture coordinates.
+  /// Returns whether the slot has a texture that is shown on a mesh with texture coordinates.
   bool shows(const TextureSlot& slot, const TrianglePoint& point) const;
 
   /// Returns the value of the texture; 1 if there is none. Its error is the change of the value within the errors of
   /// position and level.
   Shown look_up(const TextureSlot& slot, const TrianglePoint& point) const;
 
-  /// Returns the level of detail, 0 or less if texels are larger than the cone.
+  /// Returns the level of detail. It is 0 or less if texels are larger than the cone.
   Real level_at(const TextureSlot& slot, const TrianglePoint& point) const;
 
   /// Returns the value at a position and a level of detail.
@@ -81,7 +83,7 @@ class Textures {
     uvec2 size{0};
     std::vector<Texel> texels;
   };
-  /// An image is given by the number of its level 0 and its number of levels; it has none if it is absent.
+  /// The levels of an image, beginning with level 0; empty if the image is absent.
   using Levels = std::vector<Level>;
 
   static Level make_level(const TextureImage& image, uint32_t number);

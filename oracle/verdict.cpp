@@ -11,34 +11,36 @@
 namespace promin::oracle {
 namespace {
 
-/// Margins are sought between these, in u S: less is none, more is no rounding but another scene.
+/// The range in which margins are searched, in units of u S. A smaller margin counts as none; a larger one cannot come
+/// from rounding.
 constexpr Real kLeastMargin = 0x1p-10L;
 constexpr Real kMostMargin = 0x1p24L;
 
-/// Of t; by default at infinity, where nothing is reported.
+/// An interval of t. By default it lies at infinity, where no hit is reported.
 struct Interval {
   Real lo = kInfinity;
   Real hi = kInfinity;
 };
 
-/// What there is where a line crosses the hull of a shape.
+/// The kind of boundary where a line crosses the hull of a shape.
 enum class Wall { kSurface, kNothing, kEither };
 
 /// The intervals of t in which a ray's line may cross a primitive whose surface is displaced by up to an allowance.
 struct Reach {
-  /// Into a solid, or through a flat primitive.
+  /// Where the line may enter a solid, or cross a flat primitive.
   Interval entry;
-  /// Out of a solid.
+  /// Where the line may leave a solid.
   Interval exit;
-  /// Of an open shape, where its missing disks are.
+  /// For an open shape, the kind of boundary at the entry and at the exit: the side, or a missing disk.
   Wall entry_wall = Wall::kSurface;
   Wall exit_wall = Wall::kSurface;
-  /// Whether it does however the surface lies.
+  /// True if the line crosses the primitive for every displacement of the surface.
   bool is_certain = false;
 };
 
-/// A primitive and a ray's line. Along the line the distance to a convex primitive is a convex function: it falls to
-/// `deepest_` and rises again, and what is grown by x begins and ends where it is x.
+/// A primitive and a ray's line. Along the line, the distance to a convex primitive is a convex function: it decreases
+/// up to `deepest_` and then increases. The intersection with the primitive enlarged by x begins and ends where the
+/// distance is x.
 class Body {
  public:
   Body(const world::Shape& shape, int32_t primitive, const Ray& ray)
@@ -58,12 +60,12 @@ class Body {
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) depth_ = depth_in_outline(*mesh);
   }
 
-  /// Whether the line itself meets the primitive, were it not for the ray's ends.
+  /// Returns whether the line intersects the primitive, regardless of the ray's ends.
   bool is_met() const { return plane_ != nullptr || depth_ > 0; }
 
   bool is_entry(Real t) const { return is_flat() || t <= t_of(deepest_); }
 
-  /// `allowance` is in u S.
+  /// Returns the intervals for an allowance in units of u S.
   Reach reach(Real allowance) const {
     if (plane_ != nullptr) return reach_plane(allowance * kRoundoff);
     const Real offset = allowance * kRoundoff * scale_;
@@ -84,7 +86,8 @@ class Body {
   }
 
  private:
-  /// Both functions of PlaceInFrustum are convex along the line, so that they are largest at the interval's ends.
+  /// Returns the kind of boundary in an interval. Both functions of PlaceInFrustum are convex along the line, so they
+  /// are largest at the interval's ends.
   Wall wall_at(const Interval& interval, Real offset) const {
     const auto place_at = [&](Real t) { return place_in_open(shape_, ray_.origin + t * ray_.direction); };
     const std::optional<PlaceInFrustum> lo = place_at(interval.lo);
@@ -96,14 +99,15 @@ class Body {
 
   bool is_flat() const { return plane_ != nullptr || std::holds_alternative<Mesh>(shape_); }
 
-  // Along the line we count `s`, the length from the point that is closest to the centre: everything happens near 0.
+  // Returns t for `s`, the length along the line from the point that is closest to the centre. All crossings are near s
+  // = 0.
   Real t_of(Real s) const { return t_closest_ + s / speed_; }
   Real distance_at(Real s) const { return signed_distance(shape_, primitive_, closest_ + s / speed_ * ray_.direction); }
 
   void find_deepest() {
     Real lo = -size_;
     Real hi = size_;
-    for (int i = 0; i < 110; ++i) {  // (2/3)^110 is under the roundoff of Real
+    for (int i = 0; i < 110; ++i) {  // (2/3)^110 is below the roundoff of Real.
       const Real third = (hi - lo) / 3;
       if (distance_at(lo + third) <= distance_at(hi - third)) {
         hi -= third;
@@ -114,7 +118,8 @@ class Body {
     deepest_ = (lo + hi) / 2;
   }
 
-  /// Where the distance is at most `offset`, as t. It is so at `deepest_`, and nowhere beyond size_ + offset.
+  /// Returns the interval of t in which the distance is at most `offset`. It contains `deepest_` and ends within size_
+  /// + offset.
   Interval interval_within(Real offset) const {
     const auto find_end = [&](Real outside) {
       Real inside = deepest_;
@@ -128,7 +133,7 @@ class Body {
     return {find_end(-far), find_end(far)};
   }
 
-  /// How far inside a triangle's edges the line passes, seen along itself; 0 if it passes outside.
+  /// Returns the distance of the line from a triangle's edges, seen along the line; positive inside, 0 outside.
   Real depth_in_outline(const Mesh& mesh) const {
     const glm::uvec3& corners = mesh.triangles[static_cast<size_t>(primitive_)];
     const Vector along = ray_.direction / speed_;
@@ -148,7 +153,8 @@ class Body {
     return std::abs(turns) == 3 ? depth : 0;
   }
 
-  /// t >= 0 with |n.(o - q) + t n.d| <= e (|o - q| + t |d|), with the origin on the positive side.
+  /// Returns the interval of t >= 0 with |n.(o - q) + t n.d| <= e (|o - q| + t |d|). The origin is on the positive
+  /// side.
   Reach reach_plane(Real e) const {
     const Vector n = glm::normalize(Vector(plane_->normal));
     const Real signed_height = glm::dot(n, ray_.origin - Vector(plane_->point));
@@ -179,11 +185,11 @@ class Body {
   Real t_closest_ = 0;
   Vector closest_{0};
   Real deepest_ = 0;
-  /// How far a solid would have to shrink, or a triangle's edges to move, for the line to miss it.
+  /// The displacement by which a solid would have to shrink, or a triangle's edges to move, for the line to miss it.
   Real depth_ = 0;
 };
 
-/// The last t at which the ray may report the primitive; infinite if it need not report it at all.
+/// Returns the last t at which the ray may report the primitive; infinite if the ray need not report it.
 Real latest_report(const Reach& reach, const Ray& ray) {
   if (!reach.is_certain) return kInfinity;
   const bool must_enter = reach.entry_wall == Wall::kSurface && reach.entry.lo > ray.tmin;
@@ -192,7 +198,7 @@ Real latest_report(const Reach& reach, const Ray& ray) {
   return t < ray.tmax ? t : kInfinity;
 }
 
-/// The first t at which the ray may report this end of the primitive; infinite if it cannot.
+/// Returns the first t at which the ray may report this end of the primitive; infinite if it cannot report it.
 Real earliest_report(const Reach& reach, bool is_entry, const Ray& ray) {
   const bool may_skip_entry = !reach.is_certain || reach.entry.lo <= ray.tmin || reach.entry_wall != Wall::kSurface;
   if (!is_entry && !may_skip_entry) return kInfinity;
@@ -202,7 +208,8 @@ Real earliest_report(const Reach& reach, bool is_entry, const Ray& ray) {
   return end.hi > ray.tmin && t < ray.tmax ? t : kInfinity;
 }
 
-/// Least allowance for which `answer` may be true; `is_hit` says that it names a primitive which can be hit.
+/// Returns the smallest allowance for which `answer` may be true. `is_hit` is true if the answer names a primitive that
+/// can be hit.
 Real find_margin(const world::Scene& scene, const Ray& ray, const Answer& answer, bool is_hit) {
   std::vector<Body> others;
   for (size_t i = 0; i < scene.objects.size(); ++i) {
@@ -239,13 +246,13 @@ Real find_margin(const world::Scene& scene, const Ray& ray, const Answer& answer
   return yes;
 }
 
-/// Length over u S; what is 0 is 0 for an S of 0 too.
+/// Returns a length divided by u S. A length of 0 gives 0 even if S is 0.
 Real in_units(Real length, Real scale) {
   return length == 0 ? 0 : length / (kRoundoff * scale);
 }
 
-/// How far o + t d lies beyond a triangle's corners, along the ray: rounding weighs the corners wrong (the more so the
-/// thinner the triangle), but weighs them.
+/// Returns how far o + t d lies beyond a triangle's corners, along the ray. Rounding may give wrong weights of the
+/// corners, more so for thin triangles, but the point is a weighted mean of the corners.
 Real distance_beyond_corners(const Mesh& mesh, int32_t triangle, const Ray& ray, Real t) {
   Real lo = kInfinity;
   Real hi = -kInfinity;

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 
-# promin_discover_suites(TARGET [GROUPS SUITE+SUITE...] [PROPERTIES NAME VALUE...]): adds a test of ctest for each group of
-# suites of a GoogleTest program, and for each suite that is in no group. A group names the suites that use the same
-# kernels. Where gtest_discover_tests has a process for each test, here a group or a suite has one: so its tests share a
-# device, and with it every kernel that was compiled for an earlier test. The program itself runs a single test, with
-# --gtest_filter.
+# promin_discover_suites(TARGET [GROUPS SUITE+SUITE...] [PROPERTIES NAME VALUE...]): adds a test of ctest for each group
+# of suites of a GoogleTest program, and for each suite that is in no group. A group names the suites that use the same
+# kernels. gtest_discover_tests has a process for each test; here a group or a suite has one. The tests of a process
+# share a device and every kernel that an earlier test has compiled. To run a single test, give the program the option
+# `--gtest_filter`.
 function(promin_discover_suites TARGET)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "GROUPS;PROPERTIES")
   set(FOLDER ${CMAKE_CURRENT_BINARY_DIR}/suites)
   set(LIST ${FOLDER}/${TARGET}_list.cmake)
-  # The program is asked after it has been linked, and what it says is read when ctest starts.
+  # The program lists its suites after it has been linked; ctest reads the list when it starts.
   add_custom_command(TARGET ${TARGET} POST_BUILD BYPRODUCTS ${LIST}
     COMMAND ${CMAKE_COMMAND} -D "PROGRAM=$<TARGET_FILE:${TARGET}>" -D "LIST=${LIST}" -D "GROUPS=${ARG_GROUPS}"
             -D "PROPERTIES=${ARG_PROPERTIES}" -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE}
@@ -30,7 +30,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
 endif()
 
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE SAID TIMEOUT 60 COMMAND_ERROR_IS_FATAL ANY)
-# A suite stands at the beginning of a line, ends in a dot and may have its type behind it; its tests are indented.
+# A suite's name is at the beginning of a line, ends in a dot and may be followed by its type; its tests are indented.
 string(REGEX MATCHALL "(^|\n)[A-Za-z_][A-Za-z0-9_/]*\\." SUITES "${SAID}")
 if(NOT SUITES)
   message(FATAL_ERROR "${PROGRAM} --gtest_list_tests tells of no suites:\n${SAID}")

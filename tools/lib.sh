@@ -16,10 +16,11 @@ die() {
   exit 1
 }
 
-# os_release KEY: that value of this system's description; nothing where there is none.
+# os_release KEY: prints that value of this system's description; prints nothing if there is none.
 os_release() { sed --quiet --regexp-extended "s/^$1=\"?([^\"]*)\"?$/\\1/p" /etc/os-release 2>/dev/null || true; }
 
-# run_logged LOG COMMAND...: the command's output goes to build/LOG, and here only if it fails.
+# run_logged LOG COMMAND...: runs the command and writes its output to build/LOG. The output is also printed if the
+# command fails.
 run_logged() {
   local log="$repository/build/$1"
   shift
@@ -30,7 +31,7 @@ run_logged() {
   fi
 }
 
-# Passes a line on for each quarter of the steps that ninja counts as [done/all].
+# Prints a line whenever another quarter of the steps is done, which ninja counts as [done/all].
 show_quarters() {
   local line shown=0 quarter
   while IFS= read -r line; do
@@ -44,13 +45,13 @@ show_quarters() {
   done
 }
 
-# prepare TARGET...: installs what is missing and brings these targets of build/release up to date; nothing to do takes no
-# time.
+# prepare TARGET...: installs missing packages and brings these targets of build/release up to date. If there is nothing
+# to do, this takes no time.
 prepare() {
   local log="$repository/build/build.log"
   "$repository/tools/setup"
   cd -- "$repository"
-  # What CMake found depends on the packages, which may have changed since.
+  # CMake's results depend on the installed packages, which may have changed since.
   if [[ ! $build_dir/build.ninja -nt $repository/CMakePresets.json ||
     ! $build_dir/build.ninja -nt /var/lib/dpkg/status ]]; then
     say "Configuring build/release"
@@ -63,15 +64,15 @@ prepare() {
   cd -- "$OLDPWD"
 }
 
-# list_drivers: a line for the system's driver and each of tools/drivers: its name, a tab, its ICD file, of which the
-# system's has none. Fails after the first where tools/drivers does.
+# list_drivers: prints a line for the system's driver and for each driver of tools/drivers: its name, a tab, and its ICD
+# file, which the system's driver does not have. If tools/drivers fails, the function prints the first line and fails.
 list_drivers() {
   printf 'system\t\n'
   "$repository/tools/drivers"
 }
 
-# on_driver ICD COMMAND...: runs the command with the driver of this ICD file alone and the libraries beside it; without
-# one with the system's.
+# on_driver ICD COMMAND...: runs the command with only the driver of this ICD file and the libraries beside it. Without
+# an ICD file, the command uses the system's driver.
 on_driver() (
   icd="$1"
   shift
@@ -82,7 +83,7 @@ on_driver() (
   "$@"
 )
 
-# run_python SCRIPT ARGUMENT...: a script of tools/lab, by PROMIN_PYTHON or the system's Python, for which
+# run_python SCRIPT ARGUMENT...: runs a script of tools/lab with PROMIN_PYTHON or the system's Python, for which
 # matplotlib is packaged.
 run_python() {
   local python=python3
@@ -90,7 +91,8 @@ run_python() {
   "${PROMIN_PYTHON:-$python}" "$repository/tools/lab/$1" "${@:2}"
 }
 
-# describe_commit: that of the sources, with -dirty where any but docs differ from it, as no program is made of those.
+# describe_commit: prints the commit of the sources, with -dirty if any file outside docs differs from it, because no
+# program is made from docs.
 describe_commit() {
   local commit
   commit="$(git -C "$repository" describe --always 2>/dev/null)" || commit=unknown

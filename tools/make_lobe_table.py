@@ -22,17 +22,18 @@ import math
 import sys
 
 SIDE = 32
-SAMPLES = 128  # along each of the two axes of the lattice
+SAMPLES = 128  # points along each of the two axes of the lattice
 
 
 def half_vectors(v, cosine_of):
-    """Yields N.L, V.H and 4 (V.H) / (N.H) by the share of half vectors, of those whose light comes from above."""
+    """Yields N.L, V.H and 4 (V.H) / (N.H) for each half vector whose light comes from above, with the fraction it
+    stands for."""
     sine_v = math.sqrt(1.0 - v * v)
-    # The lobe lies about the plane of the eye, so half of all azimuths do.
+    # The lobe is symmetric about the plane of the eye, so half of all azimuths are enough.
     cosines = [math.cos(math.pi * (i + 0.5) / SAMPLES) for i in range(SAMPLES)]
     for i in range(SAMPLES):
-        # The share of D that lies beyond the half vector. Places crowd where the integrand has roots: at the normal,
-        # and more so at the horizon, which much of a lobe seen from the side comes from.
+        # `x` is the fraction of D that lies beyond the half vector. The points are denser where the integrand has
+        # roots: at the normal, and even more at the horizon, which gives much of a lobe that is seen from the side.
         x = (i + 0.5) / SAMPLES
         beyond = (1.0 - x * x) ** 4
         density = 8.0 * x * (1.0 - x * x) ** 3
@@ -46,7 +47,7 @@ def half_vectors(v, cosine_of):
 
 
 def lobe_shares(v, roughness):
-    """E1 and B of a cosine and a roughness."""
+    """Returns E1 and B for a cosine and a roughness."""
     if roughness == 0.0:
         return 1.0, (1.0 - v) ** 5
     a2 = roughness**4
@@ -60,7 +61,7 @@ def lobe_shares(v, roughness):
 
 
 def fitted_lambda(cosine, alpha):
-    """Lambda of KHR_materials_sheen."""
+    """Returns Lambda of KHR_materials_sheen."""
     t = (1.0 - alpha) ** 2
     a, b, c, d, e = (
         rough + t * (smooth - rough)
@@ -80,12 +81,13 @@ def fitted_lambda(cosine, alpha):
 
 
 def sheen_shares(v, roughness):
-    """A half of what a sheen of colour 1 sends of light from all around, and nothing else."""
+    """Returns half of the light that a sheen of colour 1 reflects under uniform light, and 0 for the second half of the
+    entry."""
     v = max(v, 2.0**-10)
     alpha = max(roughness, 0.07) ** 2
     to_eye = fitted_lambda(v, alpha)
     sent = 0.0
-    # The share of D up to a sine s is s^(2 + 1 / alpha).
+    # The fraction of D up to a sine s is s^(2 + 1 / alpha).
     exponent = 2.0 / (2.0 + 1.0 / alpha)
     for n_l, _, weight in half_vectors(v, lambda beyond: math.sqrt(max(1e-300, 1.0 - (1.0 - beyond) ** exponent))):
         visibility = min(1.0, 1.0 / ((1.0 + to_eye + fitted_lambda(min(n_l, 1.0), alpha)) * 4.0 * v * n_l))
@@ -94,13 +96,13 @@ def sheen_shares(v, roughness):
 
 
 def word(shares):
-    """The entry of two shares."""
+    """Returns the table entry that packs two fractions."""
     low, high = (round(65535.0 * min(max(share, 0.0), 1.0)) for share in shares)
     return low | high << 16
 
 
 def lines(shares):
-    """The lines of a table's file."""
+    """Yields the lines of a table's file."""
     yield "// SPDX-FileCopyrightText: The promin developers"
     yield "// SPDX-License-Identifier: Apache-2.0"
     yield "// Made by tools/make_lobe_table.py. Not edited by hand."
@@ -111,7 +113,7 @@ def lines(shares):
 
 
 def main():
-    """Prints the table, or holds a file against it."""
+    """Prints the table, or compares a file with it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", choices=("lobes", "sheens"))
     parser.add_argument("--check", metavar="FILE", help="print where this file differs; then exit with code 1")

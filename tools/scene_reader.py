@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Walks a promin glTF scene for the programs that write it in another renderer's language.
 
-What is not of the classic kind that those renderers share (vertex colours, metallic-roughness materials, falloff,
-spots, coloured specular factors, a source with two powers) is refused, so that a difference between the pictures is a
+Those renderers share a classic kind of scene. Anything else is refused (vertex colours, metallic-roughness materials,
+falloff, spots, coloured specular factors, a source with two powers), so that a difference between the pictures is a
 difference between the renderers.
 """
 
@@ -26,7 +26,7 @@ class Unsupported(Exception):
 
 @dataclass
 class Material:
-    """Linear RGB, but for the grey specular factor."""
+    """Holds linear RGB colours, except for the specular factor, which is grey."""
 
     index: int
     diffuse: list
@@ -35,20 +35,21 @@ class Material:
     specular: float
     shininess: float
     reflection: list
-    transmission: float  # grey
+    transmission: float  # a grey factor
     ior: float
 
 
 @dataclass
 class Triangles:
     positions: list
-    normals: list  # empty for sharp triangles
+    normals: list  # empty for flat triangles
     faces: list
 
 
 @dataclass
 class Camera:
-    """The axes are unit vectors; height is what it sees at distance 1, or of an orthographic one in all."""
+    """Holds a camera. The axes are unit vectors; height is that of the view at distance 1, or of an orthographic
+    camera's view."""
 
     is_orthographic: bool
     height: float
@@ -59,7 +60,7 @@ class Camera:
 
 
 def multiply(a, b):
-    """The product of two affine 3x4 matrices, given as rows."""
+    """Returns the product of two affine 3x4 matrices, given as rows."""
     rows = []
     for row in a:
         columns = [sum(row[k] * b[k][j] for k in range(3)) for j in range(4)]
@@ -92,7 +93,8 @@ def unit(v):
 
 
 class SceneReader:
-    """A writer derives from this and appends to `lines` what add_triangles, add_shape and the two for lights get."""
+    """Base class of writers. A writer appends to `lines` in add_triangles(), add_shape() and the two functions for
+    lights."""
 
     def __init__(self, file):
         self.folder = file.parent
@@ -105,14 +107,14 @@ class SceneReader:
         raise NotImplementedError
 
     def add_shape(self, kind, size, material, world):
-        """A shape of KHR_implicit_shapes; `size` is its object there."""
+        """Adds a shape of KHR_implicit_shapes; `size` is its object in that extension."""
         raise NotImplementedError
 
     def add_point_light(self, position, color):
         raise NotImplementedError
 
     def add_directional_light(self, back, color):
-        """`back` is the unit vector to the light."""
+        """Adds a directional light; `back` is the unit vector to it."""
         raise NotImplementedError
 
     def read(self):
@@ -121,7 +123,7 @@ class SceneReader:
             self._add_node(index, identity)
 
     def sky(self):
-        """Background and ambient brightness."""
+        """Reads the background and the ambient brightness."""
         scene = self.gltf["scenes"][self.gltf.get("scene", 0)]
         skies = self._extension(self.gltf, "OMI_environment_sky", {"skies": []})["skies"]
         if not skies:
@@ -132,7 +134,8 @@ class SceneReader:
         return color, [a * (1 - share) + c * share for a, c in zip(ambient, color)]
 
     def camera(self, wanted):
-        """The camera of this name or number, as a square picture shows what it sees: at least all of its own."""
+        """Returns the camera with this name or number. Its square picture shows at least everything that the camera
+        sees."""
         found = [c for i, c in enumerate(self._cameras) if wanted in (c[0], str(i))]
         if not found:
             raise Unsupported(f"camera {wanted}: there is none of that name or number")
@@ -242,7 +245,7 @@ class SceneReader:
 
 
 def convert(description, writer, ending):
-    """A program that writes a scene: writer(file, camera, max_depth) gives its text."""
+    """Runs a program that writes a scene; writer(file, camera, max_depth) returns its text."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=pathlib.Path, help="a .gltf file")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help=f"the {ending} file")

@@ -11,9 +11,9 @@ import math
 
 from scene_reader import SceneReader, Unsupported, convert
 
-# POV-Ray multiplies its ambient and emission terms by the pigment too, so no channel of it may be 0.
+# POV-Ray also multiplies its ambient and emission terms by the pigment, so no channel of the pigment may be 0.
 _MIN_PIGMENT = 1e-6
-# POV-Ray's directional source stands somewhere: far enough to be outside of every scene here.
+# POV-Ray's directional source has a place, which must be outside of every scene here.
 _FAR = 1e4
 
 
@@ -22,13 +22,13 @@ def vector(v):
 
 
 def matrix(m):
-    """POV-Ray multiplies row vectors: the transposed matrix."""
+    """Writes the transposed matrix, because POV-Ray multiplies row vectors."""
     return "matrix " + vector(m[row][column] for column in range(4) for row in range(3))
 
 
 def texture(material):
     pigment = [max(c, _MIN_PIGMENT) for c in material.diffuse]
-    # POV-Ray's surface scatters what it does not let through.
+    # POV-Ray's surface scatters the light that it does not transmit.
     opaque = 1 - material.transmission
     if opaque < _MIN_PIGMENT:
         raise Unsupported(f"material {material.index}: glass that lets all light through")
@@ -45,7 +45,7 @@ def texture(material):
 
 
 def _capsule_parts(size):
-    """Both spheres and the frustum of the cone that touches them, without the disks, which are inside."""
+    """Writes both spheres and the frustum of the cone that touches them, without the disks, which are inside."""
     half, bottom, top = size.get("height", 0.5) / 2, size.get("radiusBottom", 0.25), size.get("radiusTop", 0.25)
     for y, radius in ((-half, bottom), (half, top)):
         if radius > 0:
@@ -99,7 +99,7 @@ class PovWriter(SceneReader):
 
 
 def camera_block(camera):
-    """Given by its own axes, the camera is right-handed as the scene is."""
+    """Writes the camera by its own axes, so that it is right-handed like the scene."""
     kind = "orthographic" if camera.is_orthographic else "perspective"
     right = f"{camera.height:.9g} * image_width / image_height * {vector(camera.right)}"
     axes = f"right {right} up {camera.height:.9g} * {vector(camera.up)}"
@@ -107,11 +107,11 @@ def camera_block(camera):
 
 
 def write_pov(file, camera, max_depth):
-    """The scene as text. max_depth is the number of bounces, as promin counts them."""
+    """Returns the scene as text. max_depth is the number of bounces, as promin counts them."""
     scene = PovWriter(file)
     scene.read()
     background, ambient = scene.sky()
-    # Promin's least weight of a ray where there is glass.
+    # This is promin's least weight of a ray if there is glass.
     least = 1 / 512 if scene.has_glass else 0
     limits = f"max_trace_level {max_depth + 1} adc_bailout {least}"
     settings = f"assumed_gamma 1 {limits} ambient_light rgb {vector(ambient)}"

@@ -14,7 +14,7 @@ import math
 from scene_reader import SceneReader, Unsupported, convert, transform
 
 
-# Pixels of the picture each way.
+# The width and height of the picture in pixels.
 _SIDE = 1024
 
 
@@ -23,7 +23,7 @@ def numbers(v):
 
 
 def place(v):
-    """A point or a direction in Tachyon's left-handed space."""
+    """Returns a point or a direction in Tachyon's left-handed space."""
     x, y, z = v
     return numbers((x, y, -z))
 
@@ -79,7 +79,7 @@ class TachyonWriter(SceneReader):
 def camera_block(camera, max_depth, side):
     if camera.is_orthographic:
         raise Unsupported("orthographic cameras")
-    # Tachyon's rays go through the corners of pixels, so what it sees is shifted by half of one.
+    # Tachyon's rays go through the corners of pixels, so its picture is shifted by half a pixel.
     half = camera.height / 2
     shift = half / side
     low, high = -half - shift, half - shift
@@ -91,8 +91,8 @@ def camera_block(camera, max_depth, side):
 
 
 def write_tachyon(file, camera, max_depth, side=_SIDE):
-    """The scene as text. max_depth is the number of bounces, as promin counts them; `side` the picture's pixels each
-    way."""
+    """Returns the scene as text. max_depth is the number of bounces, as promin counts them; `side` is the width and
+    height of the picture in pixels."""
     scene = TachyonWriter(file)
     scene.read()
     background = f"BACKGROUND {numbers(scene.sky()[0])}"

@@ -35,7 +35,7 @@ struct BvhOptions {
   LoadOptions load;
   std::filesystem::path file;
   std::string builder{builder_names().front()};
-  /// 0 takes one thread per core.
+  /// Number of threads; 0 uses one thread per core.
   unsigned thread_count = 0;
   bool is_quiet = false;
   bool is_verbose = false;
@@ -99,7 +99,7 @@ void build(const BvhOptions& options) {
   }
 }
 
-/// Leaves by their size.
+/// Returns the numbers of leaves of each size.
 std::string describe_leaf_sizes(const TreeView& tree) {
   std::map<uint32_t, uint64_t> counts;
   for (const layout::Node& node : tree.nodes) {

@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-// The commands of promin-bvh. None needs a Vulkan device.
+// The commands of promin-bvh. No command needs a Vulkan device.
 
 /// `build SCENE -o FILE.pbvh`: writes a scene's tree to a file.
 Command add_build_command(CLI::App& program);
@@ -14,7 +14,7 @@ Command add_build_command(CLI::App& program);
 /// `info FILE.pbvh`: prints the contents of a file.
 Command add_bvh_info_command(CLI::App& program);
 
-/// `verify SCENE FILE.pbvh`: checks a file against its scene; throws InputError if they do not match.
+/// `verify SCENE FILE.pbvh`: checks that a file belongs to a scene. Throws InputError if they do not match.
 Command add_verify_command(CLI::App& program);
 
 }  // namespace promin::app

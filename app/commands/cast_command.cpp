@@ -36,21 +36,21 @@
 namespace promin::app {
 namespace {
 
-/// Whether the ray misses every scene (promin/ray.h).
+/// Returns whether the ray misses every scene (promin/ray.h).
 bool misses_all(const Ray& ray) {
   return !is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == vec3(0.0F) ||
          !(std::max(ray.tmin, 0.0F) < ray.tmax) || std::isnan(ray.tmin);
 }
 
-/// The rays of a file around a scene's center, chunk by chunk.
+/// Reads the rays of a file around a scene's center, chunk by chunk.
 struct RayChunks {
   RayReader& reader;
   dvec3 center;
-  /// Number of rays so far that miss every scene, and the index of the first.
+  /// Number of rays so far that miss every scene, and the index of the first such ray.
   uint64_t idle_count = 0;
   uint64_t first_idle = 0;
 
-  /// Returns the next rays, at most kChunkRays; none at the file's end.
+  /// Returns the next rays, at most kChunkRays; empty at the end of the file.
   std::vector<Ray> next(uint64_t done) {
     std::vector<Ray> rays(static_cast<size_t>(std::min(kChunkRays, reader.count() - done)));
     reader.read(rays, center);
@@ -74,18 +74,19 @@ void warn_of_idle_rays(const RayChunks& chunks, const Console& console) {
 class Answers {
  public:
   virtual ~Answers() = default;
-  /// Returns the milliseconds of tracing. The results of a chunk with `is_last` are kept, or written immediately.
+  /// Traces a chunk of rays and returns the milliseconds of tracing. The results of the last chunk (`is_last`) are
+  /// kept, or written immediately.
   virtual double trace(std::span<const Ray> rays, bool is_last, const ProgressCallback& progress) = 0;
   /// Writes the kept results of the last chunk.
   virtual void write() = 0;
   virtual void commit() = 0;
   /// Returns a description for the summary, in addition to the number of rays.
   virtual std::string summary() const { return ""; }
-  /// The milliseconds that writing took within trace().
+  /// Returns the milliseconds that trace() spent on writing.
   virtual double write_ms() const { return 0.0; }
 };
 
-/// A hit for each ray: the nearest, or any.
+/// Results with one hit for each ray: the nearest hit or any hit.
 class OneHitEach : public Answers {
  public:
   OneHitEach(const CastSpec& options, Caster& caster, uint64_t ray_count)
@@ -121,7 +122,7 @@ class Counts : public Answers {
   std::vector<int32_t> counts_;
 };
 
-/// The hits are written while they are listed, because a chunk may have any number of them.
+/// Lists of all hits. Hits are written while they are listed, because a chunk may have any number of them.
 class Lists : public Answers {
  public:
   Lists(const CastSpec& options, Caster& caster, uint64_t ray_count)
@@ -165,7 +166,7 @@ std::unique_ptr<Answers> make_answers(const CastSpec& options, Caster& caster, u
   return std::make_unique<OneHitEach>(options, caster, ray_count);
 }
 
-/// `rays` is the first chunk. Throws Cancelled if a signal asks for the end.
+/// Traces all rays; `rays` is the first chunk. Throws Cancelled after a signal.
 void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, const CastSpec& options, RunStats& stats,
                 const Console& console, const DeferredSignals& signals) {
   const uint32_t repeats = options.tracing.repeat_count;
@@ -189,7 +190,7 @@ void answer_all(std::vector<Ray> rays, RayChunks& chunks, Answers& answers, cons
   stats.write_ms += answers.write_ms();
 }
 
-/// Continues a job, and writes its files if all pieces are done.
+/// Continues a job. If all pieces are done, writes the job's files.
 void cast_job(const CastSpec& options, const Console& console) {
   RunStats stats;
   const JobSteps steps = {.open_device = [&] { return open_device_for(options.tracing, stats, console); },
@@ -226,13 +227,13 @@ void cast(const CastSpec& options, bool prints_spec) {
   take_setup(caster.setup_stats(), stats, console);
   (options.is_any ? stats.rays.shadow : stats.rays.primary) = reader.count();
 
-  // Results are written immediately, to temporary files that must not remain after a signal.
+  // Results are written immediately to temporary files, which must not remain after a signal.
   const DeferredSignals while_writing;
   const std::unique_ptr<Answers> answers = make_answers(options, caster, reader.count());
   try {
     answer_all(std::move(rays), chunks, *answers, options, stats, console, while_writing);
   } catch (const Cancelled&) {
-    return;  // the signal ends the program
+    return;  // The signal ends the program.
   }
   check_validation(*device, stats);
   const Stopwatch commit;

@@ -38,7 +38,7 @@ struct CompareOptions {
   fs::path first;
   fs::path second;
   std::optional<fs::path> difference;
-  /// Without a limit any difference is allowed.
+  /// The largest allowed difference of a channel; if empty, any difference is allowed.
   std::optional<double> fail;
   std::optional<double> fail_percent;
   double pixels_per_degree = kPixelsPerDegree;
@@ -54,8 +54,8 @@ PictureEncoding common_encoding(const CompareOptions& options) {
                     "give two .exr or two .png files"});
 }
 
-/// The colour that shows an error of 0...1, from black over violet and orange to white as the map "magma" of matplotlib
-/// has it at five places, in linear light.
+/// Returns the colour for an error of 0...1, in linear light. The colours run from black through violet and orange to
+/// white, like matplotlib's map "magma" at five places.
 vec3 heat_color(float error) {
   constexpr std::array<dvec3, 5> kCodes = {{{0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}}};
   const double place = static_cast<double>(std::clamp(error, 0.0F, 1.0F)) * (kCodes.size() - 1);
@@ -64,7 +64,7 @@ vec3 heat_color(float error) {
   return {srgb_to_linear(code.x), srgb_to_linear(code.y), srgb_to_linear(code.z)};
 }
 
-/// Writes FLIP in colours, or in a file of linear light the absolute differences with FLIP as a channel.
+/// Writes FLIP in colours. To a file of linear light it writes the absolute differences, with FLIP as a channel.
 void write_difference(const fs::path& file, const Image& first, const Image& second,
                       const PictureDifference& difference) {
   Image shown = first;
@@ -81,7 +81,7 @@ void write_difference(const fs::path& file, const Image& first, const Image& sec
   write_image(file, shown, {}, std::nullopt, {&flip, 1});
 }
 
-/// JSON has no infinity.
+/// Returns the number, or null for an infinite number, because JSON has no infinity.
 nlohmann::json number_or_null(double number) {
   return std::isfinite(number) ? nlohmann::json(number) : nlohmann::json(nullptr);
 }
@@ -105,7 +105,7 @@ void print_json(const PictureDifference& difference, const std::vector<ChannelDi
   fmt::print("{}\n", json.dump(2));
 }
 
-/// Of a picture, or of a channel of it.
+/// Prints the difference of a picture or of one of its channels.
 template <typename Difference>
 double percent_different(const Difference& difference) {
   return 100.0 * static_cast<double>(difference.different_count) / static_cast<double>(difference.pixel_count);
@@ -124,7 +124,7 @@ std::string describe_different(const Difference& difference, double fail) {
                      percent_different(difference), verb_of(difference.different_count, "differs", "differ"), fail);
 }
 
-/// Returns a line for each channel that differs.
+/// Prints a line for each channel that differs.
 void print_channels(const std::vector<ChannelDifference>& others, double fail) {
   std::vector<std::string> lines;
   size_t equal = 0;
@@ -153,7 +153,7 @@ void print_rows(const PictureDifference& difference, double fail) {
   }
 }
 
-/// Warns of a limit that values of 0 to 1 cannot exceed, with a suggestion.
+/// Warns of a limit that differences of values of 0 to 1 cannot exceed, and suggests another.
 void warn_of_idle_limit(const CompareOptions& options, PictureEncoding encoding) {
   constexpr double kMostCode = 255.0;
   if (encoding != PictureEncoding::kSrgb || !options.fail || *options.fail < 1.0) return;
@@ -187,7 +187,8 @@ void compare(const CompareOptions& options) {
     check_pictures({*options.difference});
     check_outputs({options.first, options.second}, {*options.difference}, std::nullopt);
   }
-  // A file that is not a picture is reported as such, and not as a picture of another encoding.
+  // The files are read first, so that a file that is not a picture is reported as such and not as a picture with
+  // another encoding.
   const Image first = read_image(options.first);
   const Image second = read_image(options.second);
   const PictureEncoding encoding = common_encoding(options);

@@ -33,7 +33,7 @@ void print_json(const std::vector<gpu::DeviceInfo>& devices) {
   fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// Environment variables that select the CPU driver.
+/// Help about the environment variables that select the CPU driver.
 constexpr const char* kOfLavapipe = R"(
 llvmpipe runs on the host's processor. Variables of the environment that change how fast it is:
   LP_NUM_THREADS=N           its threads, at most 16 [as many as there are cores]; --threads N sets it for one run

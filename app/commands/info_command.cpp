@@ -72,10 +72,10 @@ std::string describe_display(const DisplayTransform& display) {
                      tone_mapping_names()[static_cast<size_t>(display.tone_mapping)]);
 }
 
-/// A place in the scene as one in the world.
+/// Returns a place in the scene in world coordinates.
 std::string describe_place(const vec3& place, const dvec3& center, int digits) {
   const dvec3 world = center + dvec3(place);
-  // Far from the origin the digits of the scene's own coordinates would not be enough.
+  // Far from the origin the default number of digits would not be enough.
   if (center != dvec3(0.0)) digits = 12;
   return fmt::format("{:.{}g} {:.{}g} {:.{}g}", world.x, digits, world.y, digits, world.z, digits);
 }
@@ -126,7 +126,7 @@ std::string describe_bounds(const Bounds& bounds, const dvec3& center) {
   return describe_place(bounds.lo, center, 6) + " to " + describe_place(bounds.hi, center, 6);
 }
 
-/// The file's extensions, grouped by whether they are used.
+/// Returns the file's extensions, grouped by whether promin uses them.
 std::vector<std::string> describe_extensions(const Scene& scene) {
   std::vector<std::string> rows;
   for (const bool is_used : {true, false}) {
@@ -139,7 +139,7 @@ std::vector<std::string> describe_extensions(const Scene& scene) {
   return rows.empty() ? std::vector<std::string>{"none"} : rows;
 }
 
-/// Sizes of images with how many have them, the largest first.
+/// Returns the sizes of images with the number of images of each size, the largest first.
 std::vector<std::string> describe_image_sizes(const Scene& scene) {
   std::map<std::pair<uint64_t, uint32_t>, size_t, std::greater<>> counts;
   for (const auto& image : scene.images) ++counts[{uint64_t{image->size.x} * image->size.y, image->size.x}];
@@ -163,12 +163,12 @@ struct InfoOptions {
   std::filesystem::path file;
   LoadOptions load;
   EnvironmentOptions environment;
-  /// Whether images are not decoded.
+  /// True if images are not decoded.
   bool skips_texels = false;
   bool is_json = false;
 };
 
-/// Adds warnings of `promin render` that depend on the scene and were not found in the file.
+/// Adds the warnings of `promin render` that depend on the whole scene and that the loader does not give.
 void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surroundings) {
   for (const std::string& warning : surroundings.warnings()) scene.warnings.push_back(warning);
   const std::optional<Problem> halved = warn_of(fit_images(scene.images, scene.textures, kDefaultTextureBytes));
@@ -179,11 +179,11 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
                   scene.cameras.front().aspect_ratio));
 }
 
-/// A scene as it would be rendered, with added lights.
+/// A scene as `promin render` renders it, with added lights.
 struct LitScene {
   AssumedLight assumed;
   world::Scene flat;
-  /// Without texels.
+  /// The packed scene, without texels.
   PackedScene packed;
 };
 
@@ -210,7 +210,7 @@ void print_json(Scene scene, const EnvironmentChoice& surroundings) {
   fmt::print("{}", write_json(json));
 }
 
-/// Returns the number of materials, and the names of the first.
+/// Returns the number of materials and the names of the first ones.
 std::string describe_materials(const Scene& scene) {
   constexpr size_t kMostNames = 12;
   std::vector<std::string> names;

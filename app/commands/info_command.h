@@ -6,7 +6,7 @@
 
 namespace promin::app {
 
-/// Adds `promin info SCENE`, which prints the contents of a scene and which of them the renderer models. Needs no
+/// Adds `promin info SCENE`, which prints the contents of a scene and whether the renderer models them. It needs no
 /// Vulkan device.
 Command add_info_command(CLI::App& program);
 

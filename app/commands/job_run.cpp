@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Refuses another driver, because its pieces have other bits.
+/// Throws UsageError if the job's pieces were made by another driver, because they have other bits.
 void check_driver(const jobs::Job& job, const std::string& driver) {
   const std::string of_pieces = find_driver(job);
   if (of_pieces.empty() || of_pieces == driver) return;
@@ -33,7 +33,7 @@ void check_driver(const jobs::Job& job, const std::string& driver) {
                     job.folder().string(), "select the first one with --device, or use another folder"});
 }
 
-/// Refuses a job of another build that gives other bits.
+/// Throws UsageError if another build, which gives other bits, has made the job's pieces.
 void check_bits(const jobs::Job& job, const jobs::Maker& own, PieceMaker& maker, const ProgressCallback& progress,
                 const Console& console) {
   const auto make = [&](size_t piece) { return maker.make(piece, progress); };
@@ -41,7 +41,7 @@ void check_bits(const jobs::Job& job, const jobs::Maker& own, PieceMaker& maker,
   if (same) console.detail(fmt::format("made piece {} of another build again, with the same bits", *same));
 }
 
-/// Makes the missing pieces of a share. Returns their number, or nothing if a signal has ended it before.
+/// Makes the missing pieces of a share. Returns their number; nullopt if a signal has ended the work early.
 std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, const jobs::Share& share,
                                  const JobSteps& steps, const Console& console) {
   const std::vector<size_t> missing = jobs::find_missing(job, share);
@@ -50,7 +50,7 @@ std::optional<size_t> make_share(const jobs::Job& job, PlannedJob& planned, cons
   if (share.is_all() && missing.size() < all) {
     console.note(fmt::format("the job continues: {} of {} pieces are complete", all - missing.size(), all));
   }
-  // A signal ends the work after the current piece is written, and the program at the end of this function.
+  // After a signal, the work ends when the current piece is written, and the program ends at the end of this function.
   const DeferredSignals while_working;
   const gpu::DeviceHandle device = steps.open_device();
   const std::string driver = driver_of(gpu::info_of(*device));
@@ -110,14 +110,14 @@ std::string merge_job_deferring(const jobs::Job& job, const std::vector<fs::path
     const auto error = merge_job(job, outputs, [&](double) { return !while_writing.is_pending(); });
     if (error && error->unmet_pixels > 0) made += fmt::format(", error {}{}", error->target, describe_unmet(*error));
   } catch (const Cancelled&) {
-    // The signal can now end the program.
+    // From here on the signal can end the program.
   }
   return made;
 }
 
 void run_job(PlannedJob& planned, const JobOptions& options, const JobSteps& steps, const Console& console) {
   const jobs::Job job = [&] {
-    // Signals are deferred so that no temporary files remain.
+    // Signals are deferred while files are written, so that no temporary files remain.
     const DeferredSignals while_writing;
     return create_job(planned, *options.folder);
   }();

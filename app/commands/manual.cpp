@@ -16,14 +16,14 @@
 namespace promin::app {
 namespace {
 
-/// Returns the program itself and its commands, which have options.
+/// Returns the program itself and its commands: all parts that have options.
 std::vector<const CLI::App*> with_commands(const CLI::App& program) {
   std::vector<const CLI::App*> all = {&program};
   for (const CLI::App* command : commands_of(program)) all.push_back(command);
   return all;
 }
 
-/// "-o" and "--output", the short ones first.
+/// Returns the names of an option, such as "-o" and "--output", the short ones first.
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
@@ -44,7 +44,7 @@ bool takes_values(const CLI::Option& option) {
   return option.get_items_expected_max() > 0 && !option.get_type_name().empty();
 }
 
-/// Returns the literal words of an option: for "EV|auto|average" the last two. Placeholders are in capitals.
+/// Returns the literal words that an option accepts: for "EV|auto|average" the last two. Placeholders are in capitals.
 std::vector<std::string> words_of(const CLI::Option& option) {
   std::vector<std::string> words;
   std::istringstream alternatives(option.get_type_name());
@@ -63,9 +63,9 @@ std::string replace_all(std::string text, std::string_view from, std::string_vie
   return text;
 }
 
-// The manual page.
+// The following functions make the manual page.
 
-/// Escapes text for roff: hyphens, and lines that would begin like a request.
+/// Escapes text for roff: hyphens, and lines that would be read as a request.
 std::string roff(const std::string& text) {
   const std::string escaped = replace_all(replace_all(text, "\\", "\\e"), "-", "\\-");
   return escaped.starts_with(".") || escaped.starts_with("'") ? "\\&" + escaped : escaped;
@@ -132,7 +132,8 @@ std::string make_man(const CLI::App& program) {
   return page;
 }
 
-// Completions. Arguments are files, and so are values of options without literal words.
+// The following functions make completions. Arguments are completed with files, and so are values of options without
+// literal words.
 
 std::string bash_words(const CLI::App& app) {
   std::vector<std::string> names;

@@ -13,7 +13,7 @@ class App;
 namespace promin::app {
 
 /// Returns a text generated from a program's option tables at build time: its manual page (man(7)), or the command-line
-/// completion for a shell. `kind` is "man", "bash", "zsh" or "fish"; nullopt for others.
+/// completion for a shell. `kind` is "man", "bash", "zsh" or "fish"; for other kinds the result is nullopt.
 std::optional<std::string> make_manual(const CLI::App& program, std::string_view kind);
 
 }  // namespace promin::app

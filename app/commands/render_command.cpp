@@ -40,9 +40,9 @@
 namespace promin::app {
 namespace {
 
-/// A picture that takes longer than this factor of its time limit is late.
+/// Factor of the time limit. A picture that takes longer than this is late.
 constexpr double kLateShare = 1.2;
-/// With less than this share of the time limit a picture could have used more of it.
+/// Fraction of the time limit. A picture that takes less could have used more of the time.
 constexpr double kEarlyShare = 0.67;
 
 PictureHeader make_header(const RenderSpec& options, const Scene& scene, const std::optional<uint32_t>& frame,
@@ -59,7 +59,7 @@ PictureHeader make_header(const RenderSpec& options, const Scene& scene, const s
   return header;
 }
 
-/// Returns the samples per pixel and, with an error target, the accuracy of several frames together.
+/// Returns the number of samples per pixel. With an error target, returns the accuracy of all frames together.
 std::string describe_samples(const RunStats& stats) {
   if (stats.errors.empty() || !stats.view->error_target) return fmt::format("{} spp", stats.view->samples_per_pixel);
   PictureError all = stats.errors.front();
@@ -70,7 +70,7 @@ std::string describe_samples(const RunStats& stats) {
                      describe_errors(least.target, most.target, *stats.view->error_target), describe_unmet(all));
 }
 
-/// Returns the options that reproduce the last picture of a time limit.
+/// Returns the options that reproduce the last picture that a run with a time limit reached.
 std::string describe_reached(const RunStats& stats) {
   const std::string name = stats.frames.empty() ? "" : fmt::format(" of frame {}", stats.frames.back());
   if (!stats.view->error_target)
@@ -80,7 +80,7 @@ std::string describe_reached(const RunStats& stats) {
   return fmt::format("the same picture{} again: {}", name, describe_options(target));
 }
 
-/// Reports the result of a time limit.
+/// Reports the result of a run with a time limit.
 void tell_reached(const RunStats& stats, double limit_s, double taken_s, const Console& console) {
   if (taken_s > kLateShare * limit_s) {
     const bool is_least = !stats.view->error_target && stats.view->samples_per_pixel == 1;
@@ -115,23 +115,23 @@ std::string summarize(const RunStats& stats, const RenderSpec& options) {
                      stats.mrays_per_s(), stats.device.name, fmt::join(names_of(name_pictures(options)), ", "));
 }
 
-/// Sets an exposure that is computed from the picture; the first frame of a path determines it for all.
+/// Sets an exposure that is computed from a picture. The first frame of a path determines it for all frames.
 void expose_by_first(const RenderSpec& options, const RenderResult& result, RunStats& stats) {
   const bool is_first = stats.frames.size() <= 1;
   if (!options.view.look.averages_exposure || !is_first || options.view.debug_view != DebugView::kNone) return;
   stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object, result.aovs.unlit);
 }
 
-/// Returns whether a picture is traced by one call, because it is needed as a whole or limited by time.
+/// Returns whether a picture is traced by one call, because it is needed as a whole or has a time limit.
 bool is_traced_whole(const RenderSpec& options) {
   return options.error.time_limit_s || options.view.look.averages_exposure;
 }
 
-/// Traces a frame and writes its pictures: of large ones a band while the next is traced or, where the files begin with
-/// the error that the whole comes to, once all is traced.
+/// Traces a frame and writes its pictures. For a large picture it writes a band while the next one is traced. If the
+/// files begin with the error of the whole picture, it writes them after all is traced.
 class FrameRendering {
  public:
-  /// `limit_s` is the remaining time of a time limit.
+  /// `limit_s` is the remaining time if there is a time limit.
   FrameRendering(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
                  const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
                  std::function<void(double)> on_progress)
@@ -163,10 +163,11 @@ class FrameRendering {
   }
 
  private:
-  /// Of the picture's work where it is written when it is traced; few samples and many channels make it more.
+  /// Approximate fraction of a picture's work for writing, if it is written after it is traced. It is larger for few
+  /// samples and many channels.
   static constexpr double kWritingShare = 0.05;
 
-  /// Traces the picture, or a part of it.
+  /// Traces the picture or a part of it.
   PictureRows trace_part(const std::optional<PixelWindow>& part, const ProgressCallback& on_progress) {
     View view = *stats_.view;
     if (part) view.crop = part;
@@ -184,7 +185,7 @@ class FrameRendering {
     }
     for (size_t i = 0; i < trace_ms_.size(); ++i) trace_ms_[i] += traced.trace_ms[i];
     expose_by_first(options_, result, stats_);
-    // Rows of a wide picture with all AOVs take much memory, so at most two copies exist at a time.
+    // The rows of a wide picture with all AOVs need much memory, so at most two copies exist at a time.
     if (files_) files_->wait();
     return {std::move(result.image),
             make_channels(scene_, std::move(result.aovs), options_.aovs, options_.hides_unlit)};
@@ -192,7 +193,7 @@ class FrameRendering {
 
   void open_files() {
     if (error_) stats_.errors.push_back(*error_);
-    // From here on signals are deferred until no temporary file remains.
+    // Signals are deferred from here on until no temporary file remains.
     while_writing_.emplace();
     files_.emplace(planned_.pictures, make_header(options_, scene_, planned_.number, stats_));
   }
@@ -256,24 +257,25 @@ class FrameRendering {
   RunStats& stats_;
   std::function<void(double)> on_progress_;
   PixelWindow window_;
-  /// Beside R, G and B, without values.
+  /// Channels in addition to R, G and B. They have no values.
   std::vector<Channel> channels_;
   std::vector<PixelWindow> bands_;
-  /// Of each repetition.
+  /// Time of each repetition in milliseconds.
   std::vector<double> trace_ms_;
   std::optional<PictureError> error_;
-  // In this order, so that uncommitted files are removed before a signal ends the program.
+  // The members are in this order, so that uncommitted files are removed before a signal ends the program.
   std::optional<DeferredSignals> while_writing_;
   std::optional<PictureFiles> files_;
 };
 
-/// About how long it takes to write pictures of a view.
+/// Returns approximately the seconds for writing the pictures of a view.
 double writing_s(const View& view, size_t pictures) {
   constexpr double kSecondsPerPixel = 3e-7;
   return kSecondsPerPixel * static_cast<double>(area_of(window_of(view))) * static_cast<double>(pictures);
 }
 
-/// Renders all frames after loading once. An error names its frame; the pictures of earlier frames are complete.
+/// Renders all frames after loading the scene once. The message of an error names the frame. The pictures of earlier
+/// frames are complete then.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& options, const Stopwatch& total,
                    const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
                    const Console& console) {
@@ -335,7 +337,8 @@ bool is_there(const PlannedFrame& frame) {
   });
 }
 
-/// Throws UsageError if a file with a default name exists, unless it is promin's picture of a scene of this name.
+/// Throws UsageError if a file with a default name exists, unless it is a picture that promin rendered from a scene of
+/// this name.
 void check_default_names(const std::vector<std::filesystem::path>& pictures, const std::string& scene) {
   const auto found = std::ranges::find_if(
       pictures, [&](const std::filesystem::path& file) { return is_file_there(file) && !is_picture_of(file, scene); });
@@ -356,7 +359,7 @@ void check_standard_output(const RenderSpec& options) {
   if (options.job.folder) refuse("-o - and --job contradict each other");
 }
 
-/// Continues a job, and writes its pictures if all pieces are done. Calls `begin` when all checks have passed.
+/// Continues a job. If all pieces are done, writes its pictures. Calls `begin` after all checks have passed.
 void render_job(const RenderSpec& given, PictureRun run, const Console& console, const std::function<void()>& begin) {
   const RenderSpec options = run.options;
   RunStats stats;
@@ -373,7 +376,7 @@ void render(const RenderSpec& given, bool prints_spec) {
   check_render_spec(given);
   if (prints_spec) return print_spec(given);
   check_standard_output(given);
-  // A file that is not a scene is refused before pictures are named after it.
+  // Checks the scene's name first, so that pictures are not named after a file that is not a scene.
   check_scene_name(tracing.scene);
   RenderSpec options = given;
   const StandardOutput standard_output(options.pictures);

@@ -34,20 +34,21 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr uint32_t kThumbnailSide = 256;
-/// Larger ones are pictures.
+/// The largest side of a thumbnail in pixels.
 constexpr uint32_t kMaxThumbnailSide = 2048;
 constexpr uvec2 kSheetPicture = {320, 240};
 constexpr uint32_t kMaxColumns = 1000;
-/// Pixels between the pictures of a sheet and around them.
+/// Distance in pixels between the pictures of a sheet and around them.
 constexpr uint32_t kGap = 12;
-/// Pixels of the strip below a picture, for its name.
+/// Height in pixels of the strip with the name below a picture.
 constexpr uint32_t kNameHeight = 20;
-/// Colours in linear light: of the sheet, and of a picture that could not be made.
+/// Colours in linear light: the paper of the sheet, and the area of a picture that could not be made.
 constexpr vec3 kPaper{1.0F};
 constexpr vec3 kNoPicture{0.6F};
 constexpr vec3 kInk{0.02F};
 
-/// Writes a picture completely or not at all; a name without a picture ending gives a PNG, which file managers expect.
+/// Writes a picture completely or not at all. If the name has no extension of a picture, it writes a PNG, which file
+/// managers expect.
 void write_picture(const fs::path& file, const Image& image) {
   const fs::path made = is_writable_format(file) ? file : fs::path(file.string() + ".promin.png");
   const DeferredSignals while_writing;
@@ -70,7 +71,7 @@ void make_thumbnail(const RenderSpec& options) {
 
 struct SheetOptions {
   std::vector<fs::path> scenes;
-  /// The sheet's file, and the common options of all pictures.
+  /// Options of a sheet: its file, and the options that all pictures share.
   RenderSpec each;
   std::optional<uint32_t> columns;
 };
@@ -84,7 +85,7 @@ class SheetLayout {
         rows_(divide_up(count, columns_)) {}
 
   uvec2 size() const { return kGap + uvec2(columns_, rows_) * cell(); }
-  /// The upper left pixel of a picture.
+  /// Returns the upper left pixel of a picture.
   uvec2 place(uint32_t i) const { return kGap + uvec2(i % columns_, i / columns_) * cell(); }
   const uvec2& picture() const { return picture_; }
 
@@ -102,7 +103,7 @@ void paste(const Image& picture, const uvec2& place, Image& sheet) {
   }
 }
 
-/// A strip of paper with a name on it. Throws RunError where the plugin for pictures is missing.
+/// Returns a strip of paper with a name on it. Throws RunError if the plugin for pictures is missing.
 Image draw_name(const std::string& name, const fs::path& font, uint32_t width) {
   Image strip{{width, kNameHeight}, std::vector<vec3>(size_t{width} * kNameHeight)};
   std::vector<unsigned char> coverage(strip.pixels.size());
@@ -118,7 +119,8 @@ Image draw_name(const std::string& name, const fs::path& font, uint32_t width) {
   return strip;
 }
 
-/// Renders a scene of a sheet. After a failure it reports the reason and returns an empty picture of the same size.
+/// Renders a scene of a sheet. After a failure it reports the reason and returns nullopt; the sheet then has an empty
+/// area.
 std::optional<Image> render_cell(const RenderSpec& options, const gpu::Device& device, const Console& console) {
   try {
     return render_shown(options, device, Console(console.is_verbose() ? Verbosity::kVerbose : Verbosity::kQuiet));

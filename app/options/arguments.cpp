@@ -20,10 +20,10 @@
 namespace promin::app {
 namespace {
 
-/// The largest number above or below the line of a fraction.
+/// The largest numerator and denominator of a fraction.
 constexpr double kMostOfFraction = 1e9;
 
-/// `near` is what the user may have meant, where that is known.
+/// Returns the cure for a wrong word. `near` is the word that the user may have meant, if known.
 std::string cure_for(const std::string& command, std::string_view near = {}) {
   return near.empty() ? fmt::format("see {} --help", command) : fmt::format("did you mean {}?", near);
 }
@@ -32,17 +32,17 @@ std::string tell_too_few(const std::string& option, const std::string& placehold
   return fmt::format("too few values are given for {} {}", option, placeholders);
 }
 
-/// "promin render" of the command "render".
+/// Returns the name of a command with its program: "promin render" for the command "render".
 std::string path_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : app.get_parent()->get_name() + " " + app.get_name();
 }
 
-/// Returns the name of an option in messages: the last of "-s,--spp".
+/// Returns the name of an option for messages: the last name of "-s,--spp".
 std::string display_name(const std::string& names) {
   return names.substr(names.rfind(',') + 1);
 }
 
-/// Reads the whole of a word; false if anything is left over.
+/// Reads a number from a whole word. Returns false if characters are left over.
 template <typename Number>
 bool parse_number(const std::string& word, Number& number) {
   const char* end = word.data() + word.size();
@@ -60,7 +60,8 @@ std::string nearest_of(const std::string& name, const std::vector<std::string>& 
   return std::string(nearest_name(name, known));
 }
 
-/// Returns the command's option with the same meaning, else with the most similar name; empty if none is similar.
+/// Returns the command's option with the same meaning, or otherwise with the most similar name; empty if none is
+/// similar.
 std::string nearest_option(const std::string& name, const CLI::App& command) {
   const std::string meant = find_by_meaning(command, name);
   if (!meant.empty()) return meant;
@@ -69,12 +70,12 @@ std::string nearest_option(const std::string& name, const CLI::App& command) {
     if (option->get_group().empty()) continue;
     for (const std::string& known : option->get_lnames()) names.push_back(known);
   }
-  // Dashes do not count as common letters.
+  // Leading dashes are removed, because they do not count as common letters.
   const std::string near = nearest_of(name.substr(std::min(name.find_first_not_of('-'), name.size())), names);
   return near.empty() ? "" : "--" + near;
 }
 
-/// The same of the program's commands.
+/// Returns the program's command with the same meaning or the most similar name; empty if none is similar.
 std::string nearest_command(const std::string& name, const CLI::App& program) {
   const std::string meant = find_command_by_meaning(program, name);
   if (!meant.empty()) return meant;
@@ -83,7 +84,7 @@ std::string nearest_command(const std::string& name, const CLI::App& program) {
   return nearest_of(name, names);
 }
 
-/// CLI11 collects unknown options, unknown commands and surplus words.
+/// Refuses the words that CLI11 collects: unknown options, unknown commands and surplus words.
 void refuse_leftovers(const CLI::App& program) {
   std::vector<std::string> leftovers = program.remaining(true);
   leftovers.erase(std::remove(leftovers.begin(), leftovers.end(), "--"), leftovers.end());
@@ -92,7 +93,7 @@ void refuse_leftovers(const CLI::App& program) {
   const auto option = std::find_if(leftovers.begin(), leftovers.end(), is_option);
   const CLI::App& command = deepest_command(program);
   const std::string path = path_of(command);
-  // A program without commands is one itself.
+  // A program without commands is itself the command.
   const bool lacks_command = &command == &program && !commands_of(program).empty();
   const bool begins_with_word = lacks_command && option != leftovers.begin();
   if (option != leftovers.end() && !begins_with_word) {
@@ -110,12 +111,12 @@ void refuse_leftovers(const CLI::App& program) {
       {"usage.command.unknown", "there is no command " + word, "", cure_for(path, nearest_command(word, program))});
 }
 
-/// As messages have it.
+/// Returns the name of an option for messages.
 std::string name_of(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
 }
 
-/// Words that each replace all values of an option.
+/// Words each of which replaces all values of an option.
 struct Alternative {
   std::vector<std::string> words;
   size_t count = 0;
@@ -125,7 +126,8 @@ struct Alternative {
   }
 
  private:
-  /// A placeholder stands for any word that is neither a number nor an option.
+  /// Returns whether the alternative is a placeholder, which stands for any word that is neither a number nor an
+  /// option.
   bool takes_any() const {
     const auto is_upper = [](unsigned char c) { return std::isupper(c) != 0; };
     return std::ranges::any_of(words, [&](const std::string& word) { return std::ranges::all_of(word, is_upper); });
@@ -135,7 +137,7 @@ struct Alternative {
   }
 };
 
-/// The parts of "R G B|WORD|OTHER" after its first.
+/// Returns the parts of "R G B|WORD|OTHER" after the first.
 std::vector<std::string> split_alternatives(const std::string& placeholders) {
   std::vector<std::string> words;
   for (size_t bar = placeholders.find('|'); bar != std::string::npos;) {
@@ -146,7 +148,7 @@ std::vector<std::string> split_alternatives(const std::string& placeholders) {
   return words;
 }
 
-/// Those of all options of a program, by the options' names.
+/// Collects the alternatives of all options of a program, by the options' names.
 void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& found) {
   for (const CLI::Option* option : app.get_options()) {
     const std::vector<std::string> words = split_alternatives(option->get_type_name());
@@ -158,8 +160,8 @@ void find_alternatives(const CLI::App& app, std::map<std::string, Alternative>& 
   for (const CLI::App* command : commands_of(app)) find_alternatives(*command, found);
 }
 
-/// Returns the words of a command line, with each alternative repeated to the number of its option's values, because
-/// CLI11 always gives an option the same number of words.
+/// Returns the words of a command line, in which each alternative is repeated as often as its option has values. CLI11
+/// always gives an option the same number of words.
 std::vector<const char*> fill_up_alternatives(const std::vector<std::string>& words,
                                               const std::map<std::string, Alternative>& alternatives) {
   std::vector<const char*> filled;
@@ -195,7 +197,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// If an option follows in place of a number, values are missing.
+/// Throws UsageError if an option follows in place of a value, because values are then missing.
 void OptionValues::refuse_option(size_t i) const {
   const std::string& word = words_[i];
   const bool is_option = word.size() > 1 && word[0] == '-' &&
@@ -223,7 +225,7 @@ uint32_t OptionValues::whole(size_t i, uint32_t min, uint32_t max) const {
 
 double OptionValues::real(size_t i, double min, double max, std::span<const std::string_view> others) const {
   double number = 0.0;
-  // Written so that a NaN is refused.
+  // The condition is written so that a NaN is refused.
   if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
     refuse_option(i);
     std::string words;
@@ -284,7 +286,7 @@ void OptionTable::add_required_repeated(const std::string& names, const std::str
                                         const std::string& help, Setter set) {
   add_repeated(names, placeholder, help, std::move(set));
   CLI::Option* option = command_.get_option(display_name(names))->required();
-  // One word or more.
+  // A positional argument accepts one word or more.
   if (option->get_positional()) option->expected(1, -1)->allow_extra_args();
 }
 
@@ -315,7 +317,7 @@ std::vector<std::pair<std::string, std::vector<std::string>>> given_options(cons
 
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help) {
   CLI::App* command = program.add_subcommand(name, help);
-  // The program's examples are inherited.
+  // Without this, the command would inherit the program's examples.
   command->footer("");
   add_common_options(*command);
   return *command;
@@ -349,7 +351,7 @@ bool parse_arguments(CLI::App& program, int argc, const char* const* argv) {
     const std::string placeholders = option == nullptr ? "" : option->get_type_name();
     throw UsageError({"usage.option.few", tell_too_few(name, placeholders), "", cure_for(path_of(command))});
   } catch (const CLI::ParseError& error) {
-    // A misspelt option is the better message than a missing one.
+    // Misspelt options are reported before missing ones, because that message is more useful.
     refuse_leftovers(program);
     const std::string message = error.what();
     throw UsageError(

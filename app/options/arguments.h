@@ -20,11 +20,11 @@ class App;
 
 namespace promin::app {
 
-/// The words that the user gave to one option. All functions throw UsageError, which names the option, its values and
-/// the given words.
+/// The words that the user gave to one option. All functions throw UsageError. The error names the option, its values
+/// and the given words.
 class OptionValues {
  public:
-  /// `placeholders` are those of OptionTable::add.
+  /// `placeholders` has the form of the argument of OptionTable::add().
   OptionValues(std::string command, std::string option, std::string placeholders, std::vector<std::string> words)
       : command_(std::move(command)),
         option_(std::move(option)),
@@ -35,8 +35,8 @@ class OptionValues {
   const std::string& text() const { return words_.front(); }
   /// Reads a decimal number in min...max.
   uint32_t whole(size_t i, uint32_t min, uint32_t max) const;
-  /// Reads a number in min...max, both included. `others` are words that the option also takes, for the message; the
-  /// caller has tested for them.
+  /// Reads a number in min...max, both included. `others` are words that the option also accepts, for the message; the
+  /// caller has already tested for them.
   double real(size_t i, double min, double max, std::span<const std::string_view> others = {}) const;
   /// Reads the only word as a quotient such as "1/64"; nullopt if it has no slash. The caller checks the range.
   std::optional<double> fraction() const;
@@ -45,27 +45,27 @@ class OptionValues {
   /// Reads one of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
 
-  /// Returns parts of the only word, each to be read as a word of the same option. Messages about a part also quote the
-  /// whole word.
+  /// Returns parts of the only word as words of the same option, so that each can be read. Messages about a part also
+  /// quote the whole word.
   OptionValues with(std::vector<std::string> parts) const {
     OptionValues values(command_, option_, placeholders_, std::move(parts));
     values.whole_word_ = text();
     return values;
   }
 
-  /// `near` is a word that the user may have meant.
+  /// Throws UsageError. `near` is a word that the user may have meant.
   [[noreturn]] void refuse(const std::string& what, std::string_view near = {}) const;
 
  private:
   void refuse_option(size_t i) const;
-  /// Returns the word as messages quote it.
+  /// Returns a word in quotes, for messages.
   std::string quote(size_t i) const;
 
   std::string command_;
   std::string option_;
   std::string placeholders_;
   std::vector<std::string> words_;
-  /// The whole word, if the words are parts of it.
+  /// The whole word, if the words are its parts.
   std::string whole_word_;
 };
 
@@ -76,17 +76,17 @@ class OptionTable {
 
   using Setter = std::function<void(const OptionValues&)>;
   /// Adds an option. `names` is like "-s,--spp", or "SCENE" for an argument without a dash; `placeholders` has a word
-  /// for each value of the option: "N", "W H". "R G B|word|other" stands for three words, or for one of the other
-  /// words, which the setter receives three times; a word in capitals stands for any word that is not a number.
+  /// for each value of the option: "N", "W H". "R G B|word|other" stands for three words, or for one of the words after
+  /// a bar, which the setter receives three times. A word in capitals stands for any word that is not a number.
   void add(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
   /// Adds a required argument.
   void add_required(const std::string& names, const std::string& placeholders, const std::string& help, Setter set);
-  /// Adds an option of one word that may be repeated; the setter receives all.
+  /// Adds an option with one word that may be repeated. The setter receives all words.
   void add_repeated(const std::string& names, const std::string& placeholder, const std::string& help, Setter set);
-  /// Adds a required one of this kind, also for an argument without a dash.
+  /// Adds a required option of this kind. It may be an argument without a dash.
   void add_required_repeated(const std::string& names, const std::string& placeholder, const std::string& help,
                              Setter set);
-  /// Adds an option of one word that help and suggestions do not name, because `set` refuses it.
+  /// Adds an option with one word that help and suggestions do not name. Its setter refuses it.
   void add_hidden(const std::string& name, Setter set);
   void add_flag(const std::string& names, const std::string& help, bool& value);
 
@@ -94,7 +94,7 @@ class OptionTable {
   CLI::App& command_;
 };
 
-/// A command of the program: its options are rows in `app`, its work is `run`.
+/// A command of the program. `app` has its options, and `run` does its work.
 struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;
@@ -109,18 +109,19 @@ std::vector<std::string> split_list(const std::string& list);
 /// Returns all commands of a program.
 std::vector<const CLI::App*> commands_of(const CLI::App& program);
 
-/// Returns the options and arguments of a parsed command, by their names in messages and in the order of its table,
-/// with the words that give them again: for a repeated option those that count, one word if one stands for several,
-/// none for a flag.
+/// Returns the options and arguments of a parsed command, by their names in messages and in the order of its table.
+/// Each has the words that would set it again: for a repeated option the words that count, one word if an alternative
+/// was given, and no word for a flag.
 std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command);
 
 /// Adds a command with --help and --version.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help);
 
-/// Adds the options that every command and the program itself have.
+/// Adds the options that the program and each of its commands have.
 void add_common_options(CLI::App& app);
 
-/// Reads the command line. Returns false if it requests help or the version, which are then printed. Throws UsageError.
+/// Reads the command line. Returns false if the command line requests help or the version, which the function then
+/// prints. Throws UsageError.
 bool parse_arguments(CLI::App& program, int argc, const char* const* argv);
 
 }  // namespace promin::app

@@ -13,17 +13,17 @@ class App;
 
 namespace promin::app {
 
-/// Options that --help prints under one heading: their long names, in the order of printing.
+/// A group of options that --help prints under one heading: their long names, in the order of printing.
 struct OptionGroup {
   std::string heading;
   std::vector<std::string> options;
 };
 
-/// Makes --help print the options of a command in groups; options in no group come under the last heading. Names that
-/// the command lacks are ignored, so that commands can share groups.
+/// Makes --help print the options of a command in groups. Options in no group come under the last heading. Names that
+/// the command does not have are ignored, so that commands can share groups.
 void group_options(CLI::App& command, const std::vector<OptionGroup>& groups);
 
-/// A command line and what it does.
+/// An example: a command line and its effect.
 struct Example {
   std::string_view command;
   std::string_view effect;

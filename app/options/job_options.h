@@ -11,8 +11,8 @@
 
 namespace promin::app {
 
-/// Adds the rows of --job, --pieces and --piece, with this help for --pieces and this largest value. `job` must outlive
-/// the parsing.
+/// Adds the rows of --job, --pieces and --piece. --pieces has this help and this largest value. `job` must outlive the
+/// parsing.
 void add_job_options(OptionTable& table, JobOptions& job, const std::string& pieces_help, uint32_t most_pieces);
 
 }  // namespace promin::app

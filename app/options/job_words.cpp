@@ -17,7 +17,7 @@
 namespace promin::app {
 namespace {
 
-/// An option of a command that is no argument of its jobs, and where it is chosen instead.
+/// An option that is not an argument of jobs, and the place where it is chosen instead.
 struct SaidElsewhere {
   std::string_view option;
   std::string_view where;
@@ -37,7 +37,7 @@ void check_asks_for_work(const std::vector<std::string>& words) {
   }
 }
 
-/// Throws UsageError for options that are not arguments of a job.
+/// Throws UsageError for options that are not arguments of jobs.
 void check_is_kept(const CLI::App& command) {
   for (const auto& [option, words] : given_options(command)) {
     const auto* const found = std::ranges::find(kSaidElsewhere, option, &SaidElsewhere::option);
@@ -47,7 +47,7 @@ void check_is_kept(const CLI::App& command) {
   }
 }
 
-/// Returns the specification that arguments of the command of this name give.
+/// Returns the specification that these arguments of the command describe.
 template <typename Spec>
 Spec read_words(const std::string& name, void (*add_options)(CLI::App&, Spec&),
                 const std::vector<std::string>& arguments) {

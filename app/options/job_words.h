@@ -13,9 +13,9 @@
 
 namespace promin::app {
 
-/// Plans the job of the kind "render" or "cast" from arguments of that command, without --output, --job, --piece and
-/// options that contradict --job: they are turned into a specification (work::plan_job). `rays` replace those of the
-/// file that "cast" names. Throws UsageError, InputError.
+/// Plans a job of the kind "render" or "cast". The words are the arguments of that command, without --output, --job,
+/// --piece and options that contradict --job. They are converted to a specification (work::plan_job). `rays` replace
+/// the rays of the file that "cast" names. Throws UsageError, InputError.
 std::unique_ptr<work::PlannedJob> plan_job_of_words(const std::string& kind, const std::vector<std::string>& arguments,
                                                     const std::filesystem::path& folder, const work::Messages& messages,
                                                     std::shared_ptr<work::RaySource> rays = nullptr);

@@ -10,9 +10,9 @@ class OptionTable;
 
 /// Adds the row of --strict, for commands that load a scene. `options` must outlive the parsing.
 void add_strict_option(OptionTable& table, LoadOptions& options);
-/// Does the same for --root.
+/// Adds the row of --root.
 void add_root_option(OptionTable& table, LoadOptions& options);
-/// Does the same for --variant, for commands that show materials.
+/// Adds the row of --variant, for commands that show materials.
 void add_variant_option(OptionTable& table, LoadOptions& options);
 
 }  // namespace promin::app

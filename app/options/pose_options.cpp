@@ -24,7 +24,7 @@ dvec3 read_up(const OptionValues& words) {
   return axis;
 }
 
-/// Adds rows that name the replacement of a former option.
+/// Adds rows for former options, whose messages name the replacement.
 void add_former_options(OptionTable& table) {
   table.add_hidden("--look", [](const OptionValues& w) {
     w.refuse("there is no option --look; use --look-at X Y Z for a point, or --direction X Y Z for a direction");

@@ -9,7 +9,7 @@ namespace promin::app {
 
 class OptionTable;
 
-/// Adds the rows of the options. `pose` must outlive the parsing.
+/// Adds the rows of the options of a pose. `pose` must outlive the parsing.
 void add_pose_options(OptionTable& table, PoseOptions& pose);
 
 }  // namespace promin::app

@@ -8,7 +8,7 @@ class App;
 
 namespace promin::app {
 
-/// Adds common examples to promin's --help, and groups the options in the help of its command "render".
+/// Adds examples to promin's --help, and groups the options in the help of its command "render".
 void arrange_help(CLI::App& program, CLI::App& render);
 
 }  // namespace promin::app

@@ -41,12 +41,12 @@ constexpr std::string_view kTransparent = "transparent";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
 constexpr std::string_view kCryptomatte = "cryptomatte";
-/// --aov and --shading take either.
+/// A name that both --aov and --shading accept.
 constexpr std::string_view kNormal = "normal";
 constexpr std::string_view kNormals = "normals";
 constexpr std::array<std::string_view, 2> kFeatureChoices = {"scene", "all"};
 
-/// Reads names between commas.
+/// Reads names separated by commas.
 AovSet read_aovs(const OptionValues& words) {
   AovSet choice;
   for (std::string name : split_list(words.text())) {
@@ -75,7 +75,7 @@ PixelWindow read_window(const OptionValues& words) {
   return window;
 }
 
-/// Reads a name of an enumeration; the first `hidden` names are not for users.
+/// Reads a name of an enumeration. The first `hidden` names are not for users.
 template <typename Enum>
 Enum read_name(const OptionValues& words, std::span<const std::string_view> names, size_t hidden = 0) {
   const auto place = std::find(names.begin(), names.end(), words.choice(names.subspan(hidden)));
@@ -104,7 +104,7 @@ uvec2 read_size(const OptionValues& words) {
   return {read_side(0), read_side(1)};
 }
 
-/// Three numbers of at most `most`.
+/// Reads three numbers of at most `most`.
 vec3 read_color(const OptionValues& words, double most) {
   return vec3(dvec3(words.real(0, 0.0, most), words.real(1, 0.0, most), words.real(2, 0.0, most)));
 }
@@ -135,7 +135,8 @@ BackgroundChoice read_background(const OptionValues& words) {
 
 /// Reads an error as "0.02" or "1/64".
 float read_error(const OptionValues& words) {
-  // The shortest decimals of the smallest target, which programs print, represent a slightly smaller number.
+  // The limit is slightly smaller than the smallest target, because the shortest decimals of the target, which programs
+  // print, represent a slightly smaller number.
   const auto least = static_cast<double>(std::nextafter(kMinTargetError, 0.0F));
   const std::optional<double> quotient = words.fraction();
   const double error = quotient ? *quotient : words.real(0, least, 1.0);
@@ -145,7 +146,7 @@ float read_error(const OptionValues& words) {
   return std::max(static_cast<float>(error), kMinTargetError);
 }
 
-/// Reads "3-7", or "3" alone.
+/// Reads a range "3-7", or a single number "3".
 FrameRange read_frames(const OptionValues& words) {
   const std::string& text = words.text();
   const size_t dash = text.find('-');
@@ -155,7 +156,7 @@ FrameRange read_frames(const OptionValues& words) {
   return range;
 }
 
-/// Reads numbers between commas, each once and in ascending order.
+/// Reads numbers separated by commas. The result has each number once, in ascending order.
 std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
   for (const std::string& number : split_list(words.text())) {
@@ -172,7 +173,7 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
   return numbers;
 }
 
-/// Also accepts the AOV's name.
+/// Reads a debug view. It also accepts the name of the AOV.
 DebugView read_shading(const OptionValues& words) {
   const OptionValues canonical = words.text() == kNormal ? words.with({std::string(kNormals)}) : words;
   return read_name<DebugView>(canonical, debug_view_names());
@@ -279,7 +280,7 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
 
 namespace {
 
-/// A time with or without a unit.
+/// Reads a time with or without a unit.
 double read_seconds(const OptionValues& words) {
   struct Unit {
     std::string_view name;

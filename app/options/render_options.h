@@ -12,21 +12,23 @@ namespace CLI {
 class App;
 }
 
-// The options of `promin render`, which give a RenderSpec.
+// The options of `promin render`. They set a RenderSpec.
 namespace promin::app {
 
 class OptionTable;
 
-/// Adds the rows that a window has too: the view of the scene and the camera. `view` must outlive the parsing.
+/// Adds the rows of the view and the camera, which a window has too. `view` must outlive the parsing.
 void add_view_options(OptionTable& table, ViewOptions& view);
 
-/// Adds the rows of the surroundings. `options` must outlive the parsing.
+/// Adds the rows of the environment. `options` must outlive the parsing.
 void add_environment_options(OptionTable& table, EnvironmentOptions& options);
 
-/// Adds the rows of --spp, with this text for its default, and --quality. `options` must outlive the parsing.
+/// Adds the rows of --spp, whose help has this text for the default, and of --quality. `options` must outlive the
+/// parsing.
 void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual);
 
-/// Adds the rows of --target-error, with this help, and of its sample options. `error` must outlive the parsing.
+/// Adds the rows of --target-error, with this help, and of the options for its samples. `error` must outlive the
+/// parsing.
 void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view target_help);
 
 /// Adds the row of --fps, for commands that play a path. `fps` must outlive the parsing.

@@ -13,7 +13,7 @@
 namespace promin::app {
 namespace {
 
-/// Returns whether a specification gives a required argument of the command.
+/// Returns whether a specification sets a required argument of the command.
 bool gives(const RenderSpec& spec, const std::string& argument) {
   return argument == "SCENE" && !spec.tracing.scene.empty();
 }
@@ -21,7 +21,8 @@ bool gives(const CastSpec& spec, const std::string& argument) {
   return (argument == "SCENE" && !spec.tracing.scene.empty()) || (argument == "RAYS.npy" && !spec.rays.empty());
 }
 
-/// Options are set in the order of their rows, so the others change what this one reads.
+/// Adds the row of --spec. Options are set in the order of their rows, so the later ones change the values that this
+/// one reads.
 template <typename Spec>
 void add_option(CLI::App& command, Spec& spec) {
   OptionTable(command).add("--spec", "FILE.json",

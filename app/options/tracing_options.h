@@ -18,14 +18,14 @@ inline Verbosity verbosity_of(const TracingOptions& options) {
   return verbosity_of(options.is_quiet, options.is_verbose);
 }
 
-/// Add the row of SCENE, which comes first on the command line, and those of the other options. `options` must outlive
-/// the parsing.
+/// Adds the row of SCENE, which comes first on the command line; add_tracing_options() adds the rows of the other
+/// options. `options` must outlive the parsing.
 void add_scene_argument(OptionTable& table, TracingOptions& options);
-/// Adds the row of the device to open. An empty name is refused, because it is part of every name.
+/// Adds the row of the device to open. An empty name is refused, because it is a part of every name.
 void add_device_option(OptionTable& table, std::optional<std::string>& device);
 
 void add_tracing_options(OptionTable& table, TracingOptions& options);
-/// Adds the rows of commands that end and then report what tracing cost.
+/// Adds the rows for commands that report at their end what tracing cost.
 void add_measuring_options(OptionTable& table, TracingOptions& options);
 
 }  // namespace promin::app

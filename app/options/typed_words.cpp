@@ -24,12 +24,12 @@ struct OtherName {
   std::string_view own;
 };
 
-/// Names that are unambiguous and take the same values.
+/// Names of other programs that are unambiguous and take the same values.
 constexpr OtherName kSameOptions[] = {
     {"--resolution", kSize}, {"--samples", "--spp"}, {"--transparent", "--alpha"}, {"--num-threads", "--threads"}};
 
-/// Names with other values or a slightly different meaning. If a name has several rows, the first whose option the
-/// command has counts.
+/// Names of other programs with other values or a slightly different meaning. If a name has several rows, the first row
+/// counts whose option the command has.
 constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
                                       {"--animation", "--path"},
                                       {"--antialiasing", "--spp"},
@@ -94,11 +94,11 @@ constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
                                       {"--viewpoint", "--from"},
                                       {"--wireframe", "--shading"}};
 
-/// The same of commands.
+/// Names of other programs for commands.
 constexpr OtherName kNearCommands[] = {
     {"diff", "compare"}, {"gpus", "devices"}, {"inspect", "info"}, {"montage", "contact-sheet"}};
 
-/// The first three are for users; the others are accepted.
+/// Names of sizes. Users see the first three; the others are also accepted.
 constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k", "720p", "1080p", "1440p", "2160p"};
 constexpr uvec2 kNamedSizes[] = {{1280, 720},  {1920, 1080}, {3840, 2160}, {1280, 720},
                                  {1920, 1080}, {2560, 1440}, {3840, 2160}};
@@ -117,7 +117,8 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
   return word == words.end() ? program : *program.get_subcommand(*word);
 }
 
-/// Removes "--name VALUE" or "--name=VALUE" from the words; the last of several counts.
+/// Removes "--name VALUE" or "--name=VALUE" from the words and returns the value. If it occurs several times, the last
+/// one counts.
 std::optional<std::string> take_value(std::vector<std::string>& words, std::string_view name, size_t& place) {
   std::optional<std::string> value;
   for (size_t i = 1; i < words.size();) {
@@ -134,7 +135,7 @@ std::optional<std::string> take_value(std::vector<std::string>& words, std::stri
   return value;
 }
 
-/// -h is help, but for before a number.
+/// Spells out -w and -h before a number. In other places -h means help.
 void spell_sides(std::vector<std::string>& words) {
   for (size_t i = 1; i + 1 < words.size(); ++i) {
     if (!is_number(words[i + 1])) continue;
@@ -143,7 +144,7 @@ void spell_sides(std::vector<std::string>& words) {
   }
 }
 
-/// --size of --width and --height.
+/// Joins --width and --height to --size.
 void join_sides(std::vector<std::string>& words) {
   size_t place = 0;
   const std::optional<std::string> width = take_value(words, kWidth, place);
@@ -153,7 +154,7 @@ void join_sides(std::vector<std::string>& words) {
   words.insert(words.begin() + static_cast<std::ptrdiff_t>(place), {std::string(kSize), size});
 }
 
-/// One word of the two of --size W H.
+/// Joins the two words of --size W H to one.
 void join_size(std::vector<std::string>& words) {
   for (size_t i = 1; i + 2 < words.size(); ++i) {
     if (words[i] != kSize || !is_number(words[i + 1]) || !is_number(words[i + 2])) continue;
@@ -162,13 +163,13 @@ void join_size(std::vector<std::string>& words) {
   }
 }
 
-/// Returns whether these are all numbers, as many as the option takes.
+/// Returns whether all parts are numbers, and there are as many as the option accepts.
 bool are_values_of(const CLI::Option* option, const std::vector<std::string>& parts) {
   return option != nullptr && parts.size() > 1 && std::cmp_equal(parts.size(), option->get_type_size()) &&
          std::ranges::all_of(parts, is_number);
 }
 
-/// Splits --eye X,Y,Z, and all other options of several numbers, into words.
+/// Splits the value of --eye X,Y,Z, and of all other options with several numbers, into words.
 void split_numbers(const CLI::App& command, std::vector<std::string>& words) {
   for (size_t i = 1; i < words.size(); ++i) {
     const size_t equals = words[i].find('=');
@@ -183,7 +184,7 @@ void split_numbers(const CLI::App& command, std::vector<std::string>& words) {
   }
 }
 
-/// --up Z is --up z.
+/// Changes --up Z to --up z.
 void lower_axes(std::vector<std::string>& words) {
   for (size_t i = 2; i < words.size(); ++i) {
     if (words[i - 1] != "--up" || words[i].empty() || words[i].size() > 2) continue;
@@ -192,7 +193,7 @@ void lower_axes(std::vector<std::string>& words) {
   }
 }
 
-/// Returns whether a word must be a file, existing or not. A folder counts as one, and is refused later.
+/// Returns whether a word must be a file, existing or not. A folder counts as a file here, and is refused later.
 bool names_file(const std::string& word) {
   std::error_code error;
   return !word.starts_with('-') &&
@@ -208,7 +209,7 @@ void add_render(const CLI::App& program, std::vector<std::string>& words) {
   if (!is_one(words[1]) && (names_file(words[1]) || begins_with_option)) words.insert(words.begin() + 1, kRender);
 }
 
-/// Turns "promin help render" and "promin version" into options of that command or program. Returns false for other
+/// Converts "promin help render" and "promin version" to options of the command or the program. Returns false for other
 /// words.
 bool turn_words_to_options(const CLI::App& program, std::vector<std::string>& words) {
   if (words.size() < 2 || commands_of(program).empty()) return false;
@@ -218,7 +219,7 @@ bool turn_words_to_options(const CLI::App& program, std::vector<std::string>& wo
   }
   if (words[1] != "help") return false;
   words.erase(words.begin() + 1);
-  // A word that is no command is refused.
+  // A word that is not a command is refused.
   if (words.size() == 1 || is_command(program, words[1])) words.emplace_back("--help");
   return true;
 }

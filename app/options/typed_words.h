@@ -17,23 +17,23 @@ class App;
 // Translates words that users of other programs may type.
 namespace promin::app {
 
-/// A command line in the words of the program's option tables: --samples becomes --spp; --width and --height, and -w
-/// and -h before a number, become --size; the two numbers of --size W H become one word, and those of --eye X,Y,Z
-/// become words of their own; --up Z becomes --up z. Where a program renders, the command "render" is put in before a
-/// first word that is no command but a file, or an option beside a file. A first word "help" or "version" becomes an
-/// option of the program or of the command that follows. All else stays as it is.
+/// Returns a command line in the words of the program's option tables. --samples becomes --spp. --width and --height,
+/// and -w and -h before a number, become --size. The two numbers of --size W H become one word, and the numbers of
+/// --eye X,Y,Z become separate words. --up Z becomes --up z. If the program can render, and the first word is a file or
+/// an option beside a file, the command "render" is put before it. A first word "help" or "version" becomes an option
+/// of the program or of the command that follows. All other words stay the same.
 std::vector<std::string> spell_out(const CLI::App& program, const std::vector<std::string>& words);
 
 /// Returns the option of a command that corresponds to another program's option of this name; empty if none is known.
 std::string find_by_meaning(const CLI::App& command, std::string_view typed);
 
-/// Does the same for a program's commands.
+/// Returns the command of a program that corresponds to another program's command of this name; empty if none is known.
 std::string find_command_by_meaning(const CLI::App& program, std::string_view typed);
 
 /// Returns the picture size for a name such as "hd".
 std::optional<uvec2> find_named_size(std::string_view name);
 
-/// Returns those names.
+/// Returns the names of picture sizes.
 std::span<const std::string_view> size_names();
 
 }  // namespace promin::app

@@ -48,7 +48,7 @@ void Console::details(const std::string& lines) const {
 }
 
 void Console::print(const std::string& text, Verbosity least) const {
-  // fmt::print would throw if the stream is closed, which must not cause a failure.
+  // std::fputs is used, because fmt::print would throw if the stream is closed, which must not cause a failure.
   if (verbosity_ >= least) std::fputs(fmt::format("{}: {}\n", program_, to_one_line(text)).c_str(), stderr);
 }
 

@@ -22,7 +22,7 @@ void remember(int signal) {
 DeferredSignals::DeferredSignals() {
   pending_signal = 0;
   for (size_t i = 0; i < kDeferred.size(); ++i) {
-    // A signal that the parent ignores (nohup, background jobs) stays ignored.
+    // If the parent process ignores a signal (nohup, background jobs), it stays ignored.
     sigaction(kDeferred[i], nullptr, &old_actions[i]);
     if (old_actions[i].sa_handler == SIG_IGN) continue;
     struct sigaction action {};

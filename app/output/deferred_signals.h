@@ -4,9 +4,9 @@
 
 namespace promin::app {
 
-/// While an object exists, SIGINT, SIGTERM and SIGHUP are deferred, so that a file being written is completed before
-/// they end the program. At all other times no temporary file exists, and they end the program immediately. Only one
-/// object may exist at a time.
+/// While an object exists, SIGINT, SIGTERM and SIGHUP are deferred, so that a file being written is completed before a
+/// signal ends the program. At all other times no temporary file exists, and a signal ends the program immediately.
+/// Only one object may exist at a time.
 class DeferredSignals {
  public:
   DeferredSignals();
@@ -14,7 +14,7 @@ class DeferredSignals {
   DeferredSignals(const DeferredSignals&) = delete;
   DeferredSignals& operator=(const DeferredSignals&) = delete;
 
-  /// Returns whether a signal is deferred; long work then stops and leaves nothing behind.
+  /// Returns whether a signal is deferred. Long work then stops and leaves no files.
   bool is_pending() const;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity, so null stands for it.
+/// Returns the number, or null for infinity, because JSON has no infinity.
 Json json_of(float value) {
   return std::isfinite(value) ? Json::parse(fmt::format("{:.9g}", value)) : Json(nullptr);
 }
@@ -22,7 +22,8 @@ Json json_of(const vec3& v) {
   return Json::array({json_of(v.x), json_of(v.y), json_of(v.z)});
 }
 
-/// Returns a scene position in world coordinates: with nine digits of fp32, or all digits far from the origin.
+/// Returns a position of the scene in world coordinates, with the nine digits of fp32, or with all digits far from the
+/// origin.
 Json json_of_place(const vec3& place, const Scene& scene) {
   if (scene.center == dvec3(0.0)) return json_of(place);
   const dvec3 world = scene.center + dvec3(place);
@@ -36,7 +37,7 @@ Json json_of(const Ray& ray, const Scene& scene) {
           {"tmax", json_of(ray.tmax)}};
 }
 
-/// Writes the members that any hit has, a blocker too; json_of(ExplainedRay) adds those of the hits on the path.
+/// Writes the members that every hit has, also a blocker's. json_of(ExplainedRay) adds the members of hits on the path.
 Json json_of(const Hit& hit) {
   if (hit.object < 0) return nullptr;
   return {{"object", hit.object},
@@ -96,7 +97,7 @@ Json json_of(const ExplainedRay& ray, const Scene& scene) {
   return json;
 }
 
-/// Returns the kind of an item with its `name` in quotes, if there is one.
+/// Returns a text, followed by `name` in quotes if there is a name.
 std::string with_name(const std::string& text, const std::string& name) {
   return name.empty() ? text : text + " \"" + name + "\"";
 }
@@ -124,7 +125,7 @@ std::string text_of(const ExplainedSource& source, const Scene& scene) {
   return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));
 }
 
-/// `depth` is the number of rays that lead to it.
+/// Returns the text of a ray. `depth` is the number of rays that lead to it.
 std::string text_of(const ExplainedRay& ray, size_t depth, const Scene& scene) {
   const std::string indent(2 * depth + 2, ' ');
   std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, name_of(ray.kind),

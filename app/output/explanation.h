@@ -10,12 +10,13 @@
 
 namespace promin::app {
 
-// Formats a pixel's ray tree for people and programs. The scene is the rendered one, including added lights.
+// Functions that format a pixel's ray tree for people and programs. The scene is the rendered one, including added
+// lights.
 
-/// Writes the JSON that docs/explain.md describes; numbers read back to the same bits.
+/// Returns the JSON that docs/explain.md describes. Its numbers can be read back with the same bits.
 std::string explain_json(const Explanation& explanation, const Scene& scene);
 
-/// Writes a line for each ray and source, indented under the ray that leads to it.
+/// Returns a line for each ray and each source, indented under the ray that leads to it.
 std::string explain_text(const Explanation& explanation, const Scene& scene);
 
 }  // namespace promin::app

@@ -8,7 +8,7 @@
 
 namespace promin::app {
 
-/// Where Debian and others have a font without serifs: the first of these files that is there.
+/// Returns a sans serif font: the first existing file of those that Debian and other distributions install.
 inline std::optional<std::filesystem::path> find_font() {
   for (const char* file :
        {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",

@@ -62,8 +62,8 @@ bool is_picture_of(const fs::path& file, std::string_view scene) {
     return std::string{static_cast<char>(number), static_cast<char>(number >> 8), static_cast<char>(number >> 16),
                        static_cast<char>(number >> 24)};
   };
-  // An attribute of OpenEXR: name, type, size and value. An iTXt chunk of PNG: size, type, key, no compression, no
-  // language.
+  // An attribute of OpenEXR has a name, a type, a size and a value. An iTXt chunk of PNG has a size, a type, a key, no
+  // compression and no language.
   std::string chunk_size = bytes_of(size + static_cast<uint32_t>(key.size()) + 5);
   std::ranges::reverse(chunk_size);
   const std::string in_exr = key + "\0string\0"s + bytes_of(size) + std::string(scene);

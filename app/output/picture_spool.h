@@ -19,16 +19,16 @@ struct PictureRows {
 };
 
 /// A picture that is kept on disk until it is complete, because its files begin with data that depends on the last
-/// pixel. Parts are written in any order and read back as rows. It needs 4 bytes per value on disk.
+/// pixel. Parts are written in any order and read as rows. It needs 4 bytes of disk space per value.
 class PictureSpool {
  public:
   /// Creates the spool beside `file`, one of the picture's files. `window` is the rendered part of the whole picture;
-  /// `channels` are those in addition to R, G and B, without values. Throws as ScratchFile.
+  /// `channels` are the channels in addition to R, G and B, without values. Throws the same errors as ScratchFile.
   PictureSpool(const std::filesystem::path& file, const PixelWindow& window, std::vector<Channel> channels);
 
   /// Writes a part of the window, with values of all channels.
   void write(const PixelWindow& part, const Image& image, const std::vector<Channel>& channels);
-  /// Reads a band of whole rows of the window, which must have been written.
+  /// Returns a band of whole rows of the window. All of its pixels must have been written.
   PictureRows read(const PixelWindow& band) const;
 
  private:
@@ -37,7 +37,7 @@ class PictureSpool {
 
   PixelWindow window_;
   std::vector<Channel> channels_;
-  /// Row by row, for each pixel R, G, B and then the channels.
+  /// The values row by row: for each pixel R, G, B and then the other channels.
   ScratchFile file_;
 };
 

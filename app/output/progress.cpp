@@ -65,7 +65,7 @@ StageNote::StageNote(std::string name, const Console& console) : name_(std::move
   try {
     waiting_ = std::thread([this] { wait_and_tell(); });
   } catch (const std::system_error&) {
-    // No thread could be started for the note.
+    // If no thread can be started, there is no note.
   }
 }
 

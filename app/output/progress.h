@@ -13,11 +13,11 @@
 
 namespace promin::app {
 
-/// Shows the progress of long work on the standard error stream: a bar with the remaining time on a terminal, else a
-/// plain line after a second and at every 10 %. Shows nothing for work of less than a second.
+/// Shows the progress of long work on the standard error stream: a bar with the remaining time on a terminal, otherwise
+/// a plain line after a second and at every 10 %. It shows nothing for work that takes less than a second.
 class Progress {
  public:
-  /// A quiet one shows nothing.
+  /// If `is_quiet`, the object shows nothing.
   explicit Progress(bool is_quiet, std::string program = "promin");
   /// Removes the bar.
   ~Progress();
@@ -28,7 +28,7 @@ class Progress {
   void update(double fraction, const std::string& at = {});
   /// Hides the bar until the next update.
   void clear();
-  /// Returns a callback for work that only reports its fraction.
+  /// Returns a callback that updates the fraction, for work without steps.
   ProgressCallback callback() {
     return [this](double fraction) {
       update(fraction);
@@ -48,7 +48,8 @@ class Progress {
   int last_tenth_ = -1;
 };
 
-/// Prints the name of a stage on stderr if it takes more than a second. If no thread can be started, it is silent.
+/// Prints the name of a stage on stderr if the stage takes more than a second. If no thread can be started, it prints
+/// nothing.
 class StageNote {
  public:
   StageNote(std::string name, const Console& console);

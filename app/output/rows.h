@@ -16,7 +16,7 @@ inline void print_row(const std::string& name, const std::string& value) {
   fmt::print("{:<12}{}\n", name, to_one_line(value));
 }
 
-/// Prints each of `values` on a line, with the name before the first.
+/// Prints each of `values` on a line. The first line has the name.
 inline void print_rows(const std::string& name, const std::vector<std::string>& values) {
   for (size_t i = 0; i < values.size(); ++i) print_row(i == 0 ? name : "", values[i]);
 }

@@ -27,7 +27,7 @@ namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4, kDiffers = 5 };
 
-/// Replaces the library's words for a setting, which know no options, by those of the command line.
+/// The library's words for a setting, which do not name options, and the command line's words that replace them.
 struct Wording {
   Setting setting;
   std::string_view words;
@@ -55,8 +55,8 @@ std::string_view option_of(Setting setting) {
   return "";
 }
 
-/// Names the option of the problem's setting. If none of the words above occurs, the option is appended to the cure, so
-/// that it is always named.
+/// Replaces the words about the problem's setting by the command line's option. If none of the library's words occurs,
+/// the option is appended to the cure, so that it is always named.
 void name_option(Problem& problem) {
   if (problem.setting == Setting::kNone) return;
   bool is_named = false;
@@ -86,7 +86,8 @@ Problem explain(const std::system_error& error) {
           "check its limits and permissions"};
 }
 
-/// Makes all threads share one heap if address space is limited, because each heap of glibc takes 64 MiB of it.
+/// Makes all threads share one heap if address space is limited, because each heap of glibc uses 64 MiB of address
+/// space.
 void share_heap() {
 #ifdef __GLIBC__
   if (address_space_limit()) mallopt(M_ARENA_MAX, 1);
@@ -96,7 +97,7 @@ void share_heap() {
 const Problem kDeafOutput{"output.standard.closed", "the standard output cannot be written", "",
                           "check where it is redirected"};
 
-/// For the build alone, which installs what this prints (app/CMakeLists.txt).
+/// An option that only the build uses; it installs the output (app/CMakeLists.txt).
 constexpr std::string_view kMakeManual = "--make-manual";
 
 void print_manual(const CLI::App& program, const std::string& kind) {
@@ -131,7 +132,7 @@ void run_command(const std::string& name, const std::string& help,
   std::vector<Command> commands;
   for (const auto add : add_commands) commands.push_back(add(program));
   if (argc == 3 && argv[1] == kMakeManual) return print_manual(program, argv[2]);
-  // A program without commands works without arguments.
+  // A program without commands runs without arguments.
   if (argc == 1 && !commands_of(program).empty()) {
     fmt::print("{}", program.help());
     return;
@@ -150,8 +151,8 @@ int run_program(const std::string& name, const std::string& help,
     std::fputs(fmt::format("{}: {}\n", name, message).c_str(), stderr);
     return code;
   };
-  // At the file size limit (ulimit -f) this signal would end the program before it can say so and remove its temporary
-  // files; where it is ignored, the write fails.
+  // At the file size limit (ulimit -f), this signal would end the program before it can report that and remove its
+  // temporary files. If the signal is ignored, the write fails.
   std::signal(SIGXFSZ, SIG_IGN);
   share_heap();
   try {

@@ -18,7 +18,7 @@
 namespace promin::app {
 namespace {
 
-// Its objects sort their keys.
+// The JSON type whose objects sort their keys.
 using Json = nlohmann::json;
 
 template <typename Element>
@@ -38,7 +38,7 @@ template <typename Number>
 Json json_of(Number value) {
   if constexpr (std::is_integral_v<Number>) return value;
   if (!std::isfinite(value)) return nullptr;
-  // The shortest decimal of an fp32 number, which as a double has many digits more.
+  // The shortest decimal text of an fp32 number is used, because the number converted to double has many more digits.
   const std::string digits = fmt::format("{}", value);
   double decimal = 0.0;
   std::from_chars(digits.data(), digits.data() + digits.size(), decimal);
@@ -122,7 +122,7 @@ Json describe(const Geometry& geometry) {
   return json;
 }
 
-/// Column by column.
+/// Writes a matrix column by column.
 Json describe(const dmat4& matrix) {
   if (matrix == dmat4(1.0)) return nullptr;
   Json list = Json::array();

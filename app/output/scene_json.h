@@ -11,10 +11,10 @@
 
 namespace promin::app {
 
-// Scenes as JSON for programs (docs/usage.md, "Scenes as JSON"). Names are those of Python's dataclasses, real numbers
-// are the shortest that give the same bits, and null stands for infinite or missing values.
+// Writes scenes as JSON for programs (docs/usage.md, "Scenes as JSON"). Names are those of Python's dataclasses. Real
+// numbers have the fewest digits that give the same bits, and null stands for infinite or missing values.
 
-/// Returns the contents of a scene. Equal values mean equal scenes, whether objects share geometry or not. Vertices and
+/// Returns the contents of a scene. Equal JSON means equal scenes, whether objects share geometry or not. Vertices and
 /// texels are represented by hashes.
 nlohmann::json json_of(const Scene& scene);
 nlohmann::json json_of(const Environment& environment);

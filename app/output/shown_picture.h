@@ -11,8 +11,8 @@ namespace promin::app {
 
 /// Renders a scene by checked options and returns the picture as displayed: exposed and tone mapped, in linear light,
 /// so that write_image without a display transform gives the same sRGB values as `promin render`. options.pictures
-/// names a file, which is not written. Throws InputError, UsageError for references to things that the scene lacks, and
-/// RunError.
+/// names a file, which is not written. Throws InputError, RunError, and UsageError if the options refer to something
+/// that the scene does not have.
 Image render_shown(const RenderSpec& options, const gpu::Device& device, const Console& console);
 
 }  // namespace promin::app

@@ -15,7 +15,7 @@ namespace promin::app {
 StandardOutput::StandardOutput(std::vector<std::filesystem::path>& pictures) {
   const auto found = std::find(pictures.begin(), pictures.end(), kName);
   if (found == pictures.end()) return;
-  // The name cannot be guessed.
+  // The random name cannot be guessed by other users.
   std::random_device dice;
   file_ = std::filesystem::temp_directory_path() / fmt::format("promin-{:08x}{:08x}.png", dice(), dice());
   *found = file_;

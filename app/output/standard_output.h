@@ -12,10 +12,10 @@ namespace promin::app {
 /// or not at all.
 class StandardOutput {
  public:
-  /// The name that stands for it among pictures.
+  /// The name that stands for the standard output among pictures.
   static constexpr const char* kName = "-";
 
-  /// Replaces its name among the pictures, if present, by the temporary file, a PNG.
+  /// If `pictures` contain this name, replaces it by the temporary file, a PNG.
   explicit StandardOutput(std::vector<std::filesystem::path>& pictures);
   ~StandardOutput();
   StandardOutput(const StandardOutput&) = delete;

@@ -6,7 +6,7 @@ namespace promin::work {}
 
 namespace promin::app {
 
-// The programs turn options into the specifications of engine/work and use its functions by their own names.
+// The programs convert options to the specifications of engine/work. They use its functions without the namespace.
 using namespace work;
 
 }  // namespace promin::app

@@ -10,14 +10,14 @@
 namespace promin::app {
 namespace {
 
-/// The speeds are in radians a second.
+/// Speeds in radians per second.
 constexpr double kRollSpeed = 0.8;
 constexpr double kOrbitSpeed = 0.8;
 /// A second of orbiting nearer multiplies the distance to the center by exp(-kApproach).
 constexpr double kApproach = 1.0;
-/// Factor of the distance to the pivot for each step of the wheel.
+/// Factor of the distance to the pivot for one step of the wheel.
 constexpr double kZoomStep = 0.85;
-/// An orbit by the pointer stops at this distance from straight above and below, in degrees.
+/// Largest elevation, in degrees, to which the pointer can orbit the camera.
 constexpr double kHighestElevation = 89.0;
 
 }  // namespace
@@ -30,7 +30,7 @@ CameraControl::CameraControl(const Camera& camera, const Bounds& bounds, const v
       speed_(speed_to_cross(bounds)) {}
 
 void CameraControl::apply(const Motion& motion, double window_height) {
-  // Values that were not moved keep their bits.
+  // If there is no motion, all values keep their bits.
   if (motion.is_none()) return;
   if (motion.orbit != dvec2(0.0)) turn_around(motion.orbit, window_height);
   if (motion.pan != dvec2(0.0)) pan(motion.pan, window_height);
@@ -59,7 +59,7 @@ void CameraControl::turn_around(const dvec2& pixels, double window_height) {
   const double degrees_a_pixel = 180.0 / window_height;
   const double elevation = glm::degrees(std::asin(std::clamp(-glm::dot(camera_.look(), up_), -1.0, 1.0)));
   const double wanted = elevation + degrees_a_pixel * pixels.y;
-  // A camera beyond the limits may return.
+  // A camera that is already beyond the limit may move back.
   const double highest = std::max(kHighestElevation, std::abs(elevation));
   const Orbit orbit{.azimuth_deg = -degrees_a_pixel * pixels.x,
                     .elevation_deg = std::clamp(wanted, -highest, highest) - elevation};
@@ -111,7 +111,7 @@ void CameraControl::orbit(const dvec3& center) {
   const double distance = glm::length(ahead);
   if (!(distance > 0.0)) return;
   center_ = center;
-  // The angles to the center about the camera's own up and right.
+  // Angles to the center about the camera's own up and right axes.
   const double right = glm::dot(ahead, camera_.right());
   const double up = glm::dot(ahead, camera_.up());
   const double forward = glm::dot(ahead, camera_.look());

@@ -14,25 +14,26 @@ namespace promin::app {
 /// both cases the pointer moves it around the point that it looks at.
 class CameraControl {
  public:
-  /// `bounds` is of the scene, and `up` its direction, of any length but 0.
+  /// `bounds` are the bounds of the scene. `up` is the scene's up direction, of any length except 0.
   CameraControl(const Camera& camera, const Bounds& bounds, const vec3& up);
 
   /// `window_height` is in pixels. A drag over the whole height turns the camera by the field of view, so that the
-  /// scene follows the pointer; when orbiting it moves the camera half around the pivot.
+  /// scene follows the pointer. When orbiting, such a drag moves the camera halfway around the pivot.
   void apply(const Motion& motion, double window_height);
 
-  /// Returns the point that the camera looks at: the center of an orbit, else the point on its axis nearest to the
-  /// middle of the scene, or that middle itself if it lies behind the camera.
+  /// Returns the point at which the camera looks. When orbiting it is the center. Otherwise it is the point on the
+  /// camera's axis nearest to the middle of the scene, or that middle itself if it lies behind the camera.
   dvec3 pivot() const;
 
-  /// Sets another pose; the start pose does not change.
+  /// Sets another pose. The start pose does not change.
   void place(const Camera& camera);
   /// Moves everything by an offset: the pose, the start pose and the orbited point.
   void move(const dvec3& offset);
-  /// Returns to the start pose and to flying.
+  /// Returns the camera to the start pose and to flying.
   void reset();
 
-  /// Turns towards `center` and orbits it from now on, unless the camera is at that point.
+  /// Turns the camera towards `center` and lets it orbit this point from now on. Does nothing if the camera is at this
+  /// point.
   void orbit(const dvec3& center);
   void fly() { center_.reset(); }
   bool is_orbiting() const { return center_.has_value(); }
@@ -47,20 +48,20 @@ class CameraControl {
   void turn_around(const dvec2& pixels, double window_height);
   void pan(const dvec2& pixels, double window_height);
   void zoom(double steps);
-  /// Moves on a sphere around the center: turns, then moves so that the center is straight ahead.
+  /// Moves the camera on a sphere around the center: turns it, then moves it so that the center is straight ahead.
   void swing(double alpha, double beta, double gamma, double distance);
 
   Camera start_;
   FreeCamera camera_;
   std::optional<dvec3> center_;
-  /// The middle of the scene, and its direction up, of unit length.
+  /// The middle of the scene, and its up direction of unit length.
   dvec3 middle_;
   dvec3 up_;
   /// Speed in world units per second.
   double speed_;
 };
 
-/// Returns the speed at which a scene is crossed in a few seconds.
+/// Returns a speed with which the camera crosses the scene in a few seconds.
 double speed_to_cross(const Bounds& bounds);
 
 }  // namespace promin::app

@@ -14,7 +14,7 @@ void FlightRecorder::add(double time_s, const Camera& camera, const dvec3& cente
   std::vector<TimedCamera>& frames = path_.frames;
   if (frames.empty()) start_s_ = time_s;
   const double time = time_s - start_s_;
-  // Frames of one camera are as good as their first and last.
+  // If consecutive frames have the same camera, only the first and the last are stored.
   const size_t count = frames.size();
   if (count >= 2 && shows_same(frames[count - 2].camera, camera) && shows_same(frames[count - 1].camera, camera)) {
     frames.pop_back();
@@ -25,7 +25,7 @@ void FlightRecorder::add(double time_s, const Camera& camera, const dvec3& cente
 
 Camera FlightReplay::next_camera(double time_s) {
   const double interval_s = pictures_.interval_s();
-  // A delay of less than an interval is compensated; the time of a slow picture or of a pause is not.
+  // A delay of less than an interval is made up for. The time of a slow picture or of a pause is not.
   due_s_ = time_s - due_s_ < interval_s ? due_s_ + interval_s : time_s + interval_s;
   return pictures_.camera(next_++);
 }

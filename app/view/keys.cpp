@@ -24,7 +24,7 @@ constexpr Press debug_view(int number) {
   return static_cast<Press>(static_cast<int>(Press::kFirstDebugView) + number);
 }
 
-// A row without a text is described by the row above it.
+// The keys. A row without a text is described by the row above it.
 constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_W, "W, S", "fly forward and backward; in an orbit, move nearer and away", Hold::kAhead},
     KeyBinding{GLFW_KEY_S, "", "", Hold::kBack},
@@ -51,7 +51,7 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_COMMA, "", "", {}, Press::kPreviousCamera},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
     KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
-// F1 shows light, F2 the first debug view, and so on; F12 is the screenshot's.
+// F1 shows light, F2 the first debug view, and so on. F12 makes a screenshot.
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   KeyBinding{GLFW_KEY_F1 + static_cast<int>(NUMBER), "", "", {}, debug_view(NUMBER)},
 #include "promin/kinds/debug_views.def"

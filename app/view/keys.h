@@ -31,7 +31,7 @@ enum class Press {
   kFirstDebugView
 };
 
-/// A key, by GLFW's number, and its effect; also a row of the help.
+/// A key, by GLFW's number, and its effect. It is also a row of the help.
 struct KeyBinding {
   int key = 0;
   const char* name = "";
@@ -42,7 +42,7 @@ struct KeyBinding {
 
 std::span<const KeyBinding> key_bindings();
 
-/// An action of the pointer: name and effect.
+/// An action of the pointer, and its effect.
 struct PointerBinding {
   const char* name = "";
   const char* effect = "";

@@ -8,34 +8,33 @@
 
 namespace promin::app {
 
-/// The camera's motion while a key is down.
+/// The motion of the camera while a key is down.
 enum class Hold { kAhead, kBack, kLeft, kRight, kUp, kDown, kRollLeft, kRollRight, kFast, kSlow };
 inline constexpr size_t kHoldCount = 10;
 
-/// The camera motion that keys and pointer requested over some time.
+/// The motion of the camera that keys and pointer have requested over some time.
 struct Motion {
-  /// Movement along the camera's right, up and look, in seconds that the keys were down, multiplied by the speed key's
-  /// factor.
+  /// Movement along the camera's right, up and look. It is the number of seconds that the keys were down, multiplied by
+  /// the speed key's factor.
   dvec3 travel{0.0};
-  /// Seconds of roll, anticlockwise.
+  /// Seconds for which the camera rolled, anticlockwise.
   double roll = 0.0;
-  // The pointer's movement in pixels to the right and down:
-  /// while it turned the camera,
+  // Movement of the pointer in pixels, to the right and down, while it turned the camera.
   dvec2 turn{0.0};
-  /// while it orbited the point that the camera looks at,
+  /// The pointer's movement while it orbited the camera around the point at which it looks.
   dvec2 orbit{0.0};
-  /// while it moved the scene,
+  /// The pointer's movement while it moved the scene.
   dvec2 pan{0.0};
-  /// to the right, while it turned the light.
+  /// The pointer's movement to the right while it turned the light.
   double light = 0.0;
-  /// Steps of the wheel towards the scene.
+  /// Number of steps of the wheel towards the scene.
   double zoom = 0.0;
 
   bool operator==(const Motion&) const = default;
   bool is_none() const { return *this == Motion(); }
 };
 
-/// Sums motion between frames, event by event, so that the distance does not depend on the times of frames.
+/// Adds up motion between frames, event by event, so that the distance does not depend on the times of frames.
 class MotionSum {
  public:
   /// Records that a key goes down or up at a time in seconds, which never decreases.
@@ -45,13 +44,13 @@ class MotionSum {
   void pan(const dvec2& pixels) { sum_.pan += pixels; }
   void turn_light(double pixels) { sum_.light += pixels; }
   void zoom(double steps) { sum_.zoom += steps; }
-  /// Records that all keys go up, because the window has lost the focus.
+  /// Records that all keys go up, because the window has lost the keyboard focus.
   void release_all(double time);
 
   /// Returns the motion since the last call.
   Motion take(double time);
   bool is_held() const;
-  /// Returns whether there is any motion other than that of keys that are down.
+  /// Returns whether there is any motion other than the motion of keys that are down.
   bool has_any() const { return !sum_.is_none(); }
 
   static constexpr double kFastFactor = 4.0;

@@ -25,7 +25,7 @@
 namespace promin::app {
 namespace {
 
-/// GPU drivers kill work that takes seconds.
+/// The smallest target time in milliseconds.
 constexpr double kMinTargetMs = 1.0;
 constexpr double kMaxTargetMs = 1000.0;
 constexpr double kMinScale = 0.01;
@@ -97,7 +97,7 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   opened.file = options.tracing.scene;
   opened.load = options.tracing.load;
   auto scene = std::make_shared<Scene>(load_for(options.tracing, opened.stats, console, opened.sources));
-  // The window turns the light by itself.
+  // The window rotates the light itself.
   EnvironmentOptions environment = options.view.environment;
   environment.light_rotation_deg = 0.0;
   opened.environment = EnvironmentChoice(environment);
@@ -120,7 +120,7 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   return opened;
 }
 
-/// Returns the options for another file than that of the command line: options that name parts of that file are
+/// Returns the options for a file other than that of the command line. Options that name parts of that file are
 /// dropped.
 WindowOptions options_for(WindowOptions options, const std::filesystem::path& file) {
   if (file == options.tracing.scene) return options;
@@ -141,7 +141,7 @@ ViewerStart make_start(const WindowOptions& options, const Console& console) {
   start.file = tracing.scene;
   start.open = [&options, &console](const std::filesystem::path& file) {
     WindowOptions opened = options_for(options, file);
-    // They are chosen already.
+    // The number of threads was already set.
     opened.tracing.threads.reset();
     return open_scene(opened, console);
   };
@@ -160,7 +160,7 @@ ViewerStart make_start(const WindowOptions& options, const Console& console) {
   return start;
 }
 
-/// The size of the window before the scene is read, which may say another.
+/// Returns the size of the window before the scene is read. The scene may require another size.
 uvec2 first_size(const ViewOptions& options) {
   Camera camera;
   const uvec2 usual = *default_size(camera);
@@ -168,7 +168,7 @@ uvec2 first_size(const ViewOptions& options) {
   return {options.size->x > 0 ? options.size->x : usual.x, options.size->y > 0 ? options.size->y : usual.y};
 }
 
-/// Opens the device that draws to the window, which answers meanwhile.
+/// Opens the device that draws to the window. The window handles events meanwhile.
 std::shared_ptr<const gpu::Device> open_device(Window& window, const std::optional<std::string>& selection) {
   constexpr double kWait = 0.005;
   const gpu::Presentation presentation = window.presentation();
@@ -194,7 +194,7 @@ void view(const WindowOptions& options) {
     window = std::make_unique<Window>(first_size(options.view), title_of(start.file));
     device = open_device(*window, options.tracing.device);
   } catch (const Error&) {
-    // Problems of the scene are reported first.
+    // Waits for the scene, so that its problems are reported first.
     opening.wait();
     static_cast<void>(opening.take());
     throw;
@@ -203,8 +203,8 @@ void view(const WindowOptions& options) {
   gpu::translate_vulkan_errors([&] {
     Viewer viewer(*window, device, console, std::move(start), std::move(opening));
     viewer.run();
-    // A driver cannot cancel a compilation, and nobody waits for it. On a machine that is busy its threads of low
-    // priority take a while to end, and the process with them.
+    // A driver cannot cancel a compilation, and the program does not wait for it. On a busy machine, the driver's
+    // threads of low priority take some time to end, and the process would end with them.
     if (viewer.is_busy()) {
       window->hide();
       std::fflush(nullptr);

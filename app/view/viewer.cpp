@@ -20,23 +20,24 @@
 namespace promin::app {
 namespace {
 
-/// The wait in seconds while there is something to do but no frame is free.
+/// The wait in seconds while there is work but no frame is free.
 constexpr double kShortWait = 1e-3;
-/// The wait in seconds while there is nothing to do; the scene's files are looked at as often.
+/// The wait in seconds while there is no work. The scene's files are checked at this interval.
 constexpr double kLongWait = 0.1;
-/// The least time in seconds from one drawing of the window to the next.
+/// The shortest time in seconds between two drawings of the window.
 constexpr double kDrawInterval = 1.0 / 75.0;
-/// The smallest part of a frame's target time for tracing.
+/// The smallest fraction of a frame's target time that is used for tracing.
 constexpr double kLeastTraceShare = 0.5;
 
-/// A drag over the window's height rotates the light by half a turn. The step size keeps the numbers in commands short.
+/// Rotates the light. A drag over the window's height rotates it by half a turn. The step size keeps the numbers in
+/// commands short.
 void turn_light(Surroundings& surroundings, double pixels, double window_height) {
   constexpr double kStepsOfDegree = 8.0;
   const double turned = surroundings.light_rotation_deg + 180.0 / window_height * pixels;
   surroundings.light_rotation_deg = std::remainder(std::round(kStepsOfDegree * turned) / kStepsOfDegree, 360.0);
 }
 
-/// The colour that a slider has for a background before it is touched, sRGB.
+/// Returns the colour that a slider shows for a background before the user changes it, sRGB.
 vec3 background_of(const Environment& environment) {
   const bool has_backdrop = environment.shows_backdrop();
   const vec3 light =
@@ -78,7 +79,7 @@ Viewer::~Viewer() {
   try {
     device_->wait_idle();
   } catch (const vk::SystemError&) {
-    // The device was lost; an earlier exception has reported it.
+    // If the device was lost, an earlier exception has reported it.
   }
 }
 
@@ -87,7 +88,7 @@ void Viewer::run() {
   try {
     show_frames(signals);
   } catch (...) {
-    // The recorded flight up to here is complete, whatever happened to the device.
+    // The flight that was recorded so far is complete, even if the device was lost.
     if (start_.record) write_camera_path(*start_.record, recorder_.path());
     throw;
   }
@@ -132,7 +133,7 @@ void Viewer::show_frames(const DeferredSignals& signals) {
   move_camera(false);
   console_.detail(fmt::format("no input waited longer than {:.0f} ms, for work of at most {:.0f} ms; {} keys pressed",
                               window_.longest_turn_ms(), window_.longest_work_ms(), window_.key_count()));
-  // A screenshot under way is written.
+  // A screenshot that has been started is written.
   while (on_copied_) trace();
 }
 
@@ -141,7 +142,7 @@ void Viewer::update_opening() {
   try {
     show_scene(std::move(*opening_.take()));
   } catch (const Error& error) {
-    // There is nothing to show instead of the first.
+    // If the first scene fails, there is nothing else to show.
     if (!opened_.scene) throw;
     file_ = opened_.file;
     window_.set_title(title_of(file_));
@@ -177,8 +178,8 @@ void Viewer::show_scene(OpenedScene opened) {
 }
 
 PictureRequest Viewer::request() const {
-  // A picture that must be shown in full from the start is not begun with a draft. Nothing else is compiled before it
-  // is shown.
+  // If a picture must be shown in full from the start, it does not begin with a draft. No other kernel is compiled
+  // before it is shown.
   const bool has_draft = asked_mode().debug_view == DebugView::kNone && !opened_.replay && !start_.record;
   const bool needs_draft = !traced_ || (is_draft_ && !traced_->picture().shown());
   return {switches_.scene, switches_.surroundings, asked_mode(), glm::max(swapchain_.size(), uvec2(1)),
@@ -189,7 +190,7 @@ void Viewer::move_camera(bool is_of_flight) {
   const Motion motion = window_.take_motion();
   if (motion.light != 0.0) turn_light(switches_.surroundings, motion.light, window_.framebuffer_size().y);
   if (is_of_flight) control_.place(replay_->next_camera(Window::now()));
-  // While a screenshot waits the camera holds still.
+  // The camera does not move while a screenshot waits.
   if (!is_replaying() && !wants_screenshot_ && opened_.scene) control_.apply(motion, window_.framebuffer_size().y);
   keep_camera();
 }
@@ -243,18 +244,19 @@ void Viewer::dispose() {
 void Viewer::update_picture() {
   dispose();
   if (!preparer_) return;
-  // A pixel query uses the lights that would change. So does compilation if the scene is not set apart.
+  // A pixel query uses the lights that would change. Compilation also uses them if the scene is not on a separate
+  // device.
   const bool is_free = !traced_ || !traced_->picture().is_compiling() || sets_apart(*device_);
   if (preparer_->is_ready() && !query_.is_busy() && !on_copied_ && is_free) {
     try {
       show_picture(std::move(*preparer_->take()));
     } catch (const std::exception& error) {
       if (!traced_) throw;
-      // Whatever the error is, lack of memory included, the old picture stays.
+      // After any error, also a lack of memory, the old picture stays.
       report_failure(error.what());
     }
   }
-  // Compilation may run on the devices to which the environment is copied.
+  // Compilation may run on the devices to which the environment is copied, so only one of the two may run.
   if (traced_ && !putting_.is_busy() && preparer_->update(scene_, request(), Window::now())) draw_again();
 }
 
@@ -349,7 +351,7 @@ std::string Viewer::describe_awaited() const {
 
 bool Viewer::fit_window() {
   if (window_.take_change_of_place() && follows_display_) target_ms_ = window_.refresh_interval_ms();
-  // Drawing takes milliseconds, so nobody waits long for its end.
+  // Drawing takes milliseconds, so waiting for its end is short.
   if (imgui_ && window_.overlay_scale() != imgui_->scale()) {
     frames_.finish();
     imgui_->set_scale(window_.overlay_scale());
@@ -357,7 +359,7 @@ bool Viewer::fit_window() {
   }
   const uvec2 size = window_.framebuffer_size();
   if (size.x == 0 || size.y == 0) return false;
-  // The surface may have given another size than it was asked for.
+  // The size of the surface may differ from the requested size.
   if (!swapchain_.is_out_of_date() && size == asked_size_) return true;
   frames_.finish();
   if (!swapchain_.recreate(size)) return false;
@@ -370,14 +372,14 @@ void Viewer::trace() {
   for (const std::unique_ptr<TracedPicture>& retired : retired_) static_cast<void>(retired->poll(Window::now()));
   if (!traced_) return;
   while (const std::optional<FinishedFrame> finished = traced_->poll(Window::now())) take_finished(*finished);
-  // The encoded picture is taken before the next frame encodes again.
+  // The encoded picture must be taken before the next frame encodes again.
   if (!frames_.is_idle()) return;
   if (const std::optional<EncodedPicture> encoded = traced_->take_encoded()) {
     display_.take(*encoded);
     log_shown();
     frames_to_draw_ = std::max(frames_to_draw_, 1);
   }
-  // The ready picture takes its place, or its scene is about to change, so no new frame may begin.
+  // No new frame may begin, because the ready picture will replace the current one or its scene is about to change.
   if ((preparer_->is_ready() && !on_copied_) || putting_.is_busy() || may_put_surroundings()) return;
   if (traced_->size() != swapchain_.size()) {
     if (traced_->is_busy()) return;
@@ -398,7 +400,7 @@ void Viewer::log_shown() {
 
 bool Viewer::has_tracing() const {
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
-  // A frame hands over what is switched.
+  // The switch changes at the end of a frame.
   if (switches_.is_paused != traced_->picture().is_paused()) return true;
   return window_.is_moving() || window_.has_turned() || wants_screenshot_ || traced_->has_work() ||
          traced_->display().exposure_ev != display().exposure_ev ||
@@ -413,7 +415,7 @@ void Viewer::begin_frame() {
   ProgressivePicture& picture = traced_->picture();
   picture.fix_scale(switches_.scale);
   picture.want(current_view());
-  // While paused, only what a screenshot needs is traced.
+  // While paused, only pictures that a screenshot needs are traced.
   picture.pause(switches_.is_paused && !(wants_screenshot_ && !picture.is_complete()));
   traced_->begin_frame(is_of_flight, Window::now(),
                        [this](const vk::raii::CommandBuffer& commands) { record_screenshot(commands); });
@@ -430,7 +432,7 @@ void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
   described.output = file;
   saved_command_ = file && can_describe(described, view) ? describe_command(described, view) : "";
   on_copied_ = [this, view, file, error = picture.shown()->error](const FinishedFrame& finished) {
-    // It is not whole.
+    // The picture is not complete.
     if (finished.has_cut_loops) return screenshot_.drop();
     RunStats& stats = opened_.stats;
     stats.device = traced_->scene().device->info();
@@ -490,7 +492,7 @@ void Viewer::build_overlay() {
     content.bookmarks = bookmarks_;
     content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
-    // The panel gets the height of its text only in the next frame.
+    // The panel gets the height of its text in the next frame.
     if (std::exchange(overlay_height_, answer.height) != answer.height) frames_to_draw_ = std::max(frames_to_draw_, 1);
     panel = answer.area;
     if (answer.asked) ask_for_file(*answer.asked);
@@ -536,7 +538,7 @@ View Viewer::current_view() const {
   view.filter_width = opened_.view.filter_width;
   view.max_depth = switches_.effective_depth();
   view.mode = mode_;
-  // A flight is never at rest, and a draft gives way to a better picture.
+  // A flight is never at rest, and a draft is soon replaced by a better picture.
   if (mode_.debug_view == DebugView::kNone && !is_replaying() && !is_draft_) {
     view.error_target = start_.error_target;
     fit_to_display(*view.error_target, display());

@@ -32,41 +32,43 @@ namespace promin::app {
 /// Returns the title of a window that shows a file.
 std::string title_of(const std::filesystem::path& file);
 
-/// The options that a viewer starts with.
+/// The options with which a viewer starts.
 struct ViewerStart {
   std::filesystem::path file;
   OpenScene open;
   SceneChoice choice;
   LookOptions look;
-  /// The direction that is up in the scene.
+  /// The up direction of the scene.
   vec3 up{0.0F, 1.0F, 0.0F};
   EnvironmentOptions environment;
-  /// The error target of pictures at rest that show light; members that depend on the display follow from the scene.
+  /// The error target for pictures that show light while the camera rests. Members that depend on the display are set
+  /// from the scene.
   ErrorTarget error_target;
   std::optional<std::string> present_mode;
-  /// If empty, the display's refresh interval if the device keeps up with it, else kCpuTargetMs.
+  /// Target time of a frame in milliseconds. If empty, it is the display's refresh interval if the device is fast
+  /// enough, otherwise kCpuTargetMs.
   std::optional<double> target_ms;
-  /// The scale, as for ProgressivePicture::fix_scale.
+  /// The scale of first pictures, in the form that ProgressivePicture::fix_scale() takes.
   std::optional<double> scale;
-  /// Whether the window stays open after a replay.
+  /// True if the window stays open after a replay.
   bool stays_open = false;
-  /// The file for the camera's flight, which is written when the window closes.
+  /// The file for recording the camera's flight. It is written when the window closes.
   std::optional<std::filesystem::path> record;
 
   static constexpr double kCpuTargetMs = 100.0;
 };
 
 /// The main loop of the window: it handles input, requests pictures and shows them until the user quits. Long work
-/// never runs on its thread: other threads read scenes, build trees and compile kernels, and pictures are traced on
-/// other devices than the one that draws.
+/// never runs on the loop's thread. Other threads read scenes, build trees and compile kernels. Pictures are traced on
+/// devices other than the one that draws.
 class Viewer {
  public:
-  /// `device` draws to the window; `opening` opens the scene. Throws RunError, vk::SystemError.
+  /// `device` draws to the window. `opening` opens the scene. Throws RunError, vk::SystemError.
   Viewer(Window& window, std::shared_ptr<const gpu::Device> device, const Console& console, ViewerStart start,
          Background<OpenedScene> opening);
   ~Viewer();
 
-  /// Runs until the user quits. SIGINT, SIGTERM and SIGHUP end it in the same way, and the program ends after the
+  /// Runs until the user quits. SIGINT, SIGTERM and SIGHUP end the loop in the same way. The program ends after the
   /// recorded flight is written. Throws InputError if the scene is not valid, RunError if the flight cannot be written,
   /// and vk::SystemError.
   void run();
@@ -80,23 +82,23 @@ class Viewer {
   void handle_press(Press press);
   void handle_clicks();
   void print_command();
-  /// Returns the pixel of the full picture at a position in the window's pixels.
+  /// Returns the pixel of the full picture at a position in the window, which is given in the window's pixels.
   uvec2 pixel_at(const dvec2& place) const;
-  /// Turns to the point that a pixel shows, and orbits it, when it is known.
+  /// Turns the camera to the point that a pixel shows, and orbits it, as soon as the point is known.
   void look_at(const View& view, const uvec2& pixel);
   /// Opens another scene.
   void open(const std::filesystem::path& file);
-  /// Requests a file from the user, by a dialog of the desktop or in the panel.
+  /// Requests a file from the user, with a dialog of the desktop or in the panel.
   void ask_for_file(FileUse use);
   void take_file(FileUse use, const std::filesystem::path& file);
   /// Writes the picture to a file as soon as it is complete.
   void save(std::filesystem::path file);
   /// Frames the scene in the current direction, or from a side.
   void frame_from(std::optional<Framing> from);
-  /// Moves to another of the scene's cameras, this number of steps further.
+  /// Moves the camera to another of the scene's cameras, `step` places further in their order.
   void show_camera(int step);
   void move_camera(bool is_of_flight);
-  /// Keeps the world positions of all cameras when a scene has another center.
+  /// Keeps the world positions of all cameras if a scene has another center.
   void move_cameras(const dvec3& offset);
   /// Adds the camera to the flight being recorded, if any.
   void keep_camera();
@@ -163,33 +165,33 @@ class Viewer {
   Window& window_;
   std::shared_ptr<const gpu::Device> device_;
   const Console& console_;
-  /// What the window was opened with.
+  /// The options with which the window was opened.
   const ViewerStart start_;
-  /// Whether the target is the refresh interval of the display that the window is on.
+  /// True if the target is the refresh interval of the display that the window is on.
   bool follows_display_;
   double target_ms_;
 
   /// The file of the scene that is being opened, or is open.
   std::filesystem::path file_;
   Background<OpenedScene> opening_;
-  /// Has no scene before the first is open.
+  /// The open scene; it is empty before the first scene is open.
   OpenedScene opened_;
   std::unique_ptr<ScenePreparer> preparer_;
   std::shared_ptr<ShownScene> scene_;
   /// The mode of the picture.
   RenderMode mode_;
   bool is_draft_ = false;
-  /// Null before the first picture; older ones are destroyed in parallel.
+  /// The current picture; null before the first one. Older pictures are destroyed in parallel.
   std::unique_ptr<TracedPicture> traced_;
   std::vector<std::unique_ptr<TracedPicture>> retired_;
   std::vector<std::future<void>> disposals_;
   Switches switches_;
   PixelQuery query_;
-  /// Returns true when the environment is on the devices.
+  /// The work that copies the environment to the devices. Its result is true.
   Background<bool> putting_;
-  /// Whether to start an orbit when its center is found.
+  /// True if an orbit starts when its center is found.
   bool wants_orbit_ = false;
-  /// Whether it is that of the picture, for which the middle of the scene stands in.
+  /// True if the center is that of the picture. On a miss, the middle of the scene replaces it.
   bool is_of_middle_ = false;
   CameraControl control_{Camera(), Bounds(), vec3(0.0F, 1.0F, 0.0F)};
   Background<Camera> framing_;
@@ -200,7 +202,7 @@ class Viewer {
   FlightRecorder recorder_;
 
   Swapchain swapchain_;
-  /// The size that the swapchain was made for; 0 before it is.
+  /// The window size for which the swapchain was made; 0 before it is made.
   uvec2 asked_size_{0};
   DisplayPass display_;
   std::unique_ptr<ImguiRenderer> imgui_;
@@ -213,7 +215,7 @@ class Viewer {
   std::string saved_command_;
   FileDialog dialog_;
   std::optional<PathEntry> path_entry_;
-  /// Whether to print the command as soon as there is a picture.
+  /// True if the command is printed as soon as there is a picture.
   bool wants_command_ = false;
   /// Called when the frame that copies a screenshot is finished.
   std::function<void(const FinishedFrame&)> on_copied_;

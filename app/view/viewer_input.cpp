@@ -26,7 +26,7 @@ void Viewer::handle_input() {
   for (const Press press : window_.take_presses()) handle_press(press);
   for (const std::string& file : window_.take_dropped()) open(file);
   if (const std::optional<std::string> file = dialog_.take()) take_file(dialog_.use(), *file);
-  // Where surroundings are put no pixel is traced.
+  // No pixel is traced while the environment is copied to the devices.
   if (!putting_.is_busy()) handle_clicks();
   if (traced_ && std::exchange(wants_command_, false)) print_command();
   if (window_.take_activity()) draw_again();
@@ -88,7 +88,7 @@ void Viewer::frame_from(std::optional<Framing> from) {
   if (!opened_.scene || framing_.is_busy()) return;
   const dvec2 size(glm::max(swapchain_.size(), uvec2(1)));
   const auto aspect_ratio = static_cast<float>(size.x / size.y);
-  // It looks at every vertex.
+  // Framing takes some time, because it reads every vertex.
   framing_.start([scene = opened_.scene, camera = control_.camera(), up = start_.up, from, aspect_ratio] {
     return from ? frame_scene(*scene, aspect_ratio, {.from = from, .up = up})
                 : fit_camera(*scene, camera, aspect_ratio);
@@ -157,7 +157,7 @@ void Viewer::handle_press(Press press) {
 }
 
 View Viewer::view_of_middle() const {
-  // The sample of a picture of one pixel goes through its middle.
+  // A picture of one pixel has one sample, which goes through the middle.
   View view;
   view.camera = control_.camera();
   view.size = uvec2(1);

@@ -60,9 +60,9 @@ std::pair<LaneBox, LaneBox> Bins::boxes_of(const Split& split, const BinGrid& gr
 }
 
 Split find_best_split(const BinGrid& grid, const Bins& bins) {
-  // First computes the cost of everything from bin b on, then that of everything below b: the two sides of the plane
-  // below b. A side without records has the cost infinity times 0, a NaN, which compares less than nothing. A branch
-  // would often be mispredicted.
+  // First computes the cost of the records from bin b on, then the cost of the records below bin b: the two sides of
+  // the plane below b. A side without records has the cost infinity times 0, a NaN, which every comparison rejects. A
+  // branch would often be mispredicted.
   double costs_above[BinGrid::kMaxBins][3];
   LaneBox boxes[3];
   uint32_t counts[3] = {};

@@ -10,7 +10,7 @@
 
 #include "promin/math.h"
 
-// The inner loops of the SAH builder: boxes that fill whole registers, their bins, and the best plane between bins.
+// Inner loops of the SAH builder: boxes that fill whole registers, the bins of boxes, and the best plane between bins.
 namespace promin {
 
 /// Four floats in one register (vector extension of GCC and Clang): x, y, z and an unused lane.
@@ -31,7 +31,7 @@ inline Lanes clear_spare_lane(Lanes a) {
   return std::bit_cast<Lanes>(std::bit_cast<IntLanes>(a) & IntLanes{-1, -1, -1, 0});
 }
 
-/// Bounds in registers. Empty by default.
+/// A box in registers, empty by default.
 struct LaneBox {
   Lanes lo = fill_lanes(std::numeric_limits<float>::infinity());
   Lanes hi = fill_lanes(-std::numeric_limits<float>::infinity());
@@ -41,9 +41,11 @@ struct LaneBox {
     hi = max(high, hi);
   }
   void extend(const LaneBox& box) { extend(box.lo, box.hi); }
-  /// Computes in double, because fp32 would overflow for coordinates of 1e19 or more. The box must not be empty.
+  /// Returns half the surface area of a box that is not empty. Computes in double, because fp32 would overflow for
+  /// coordinates of 1e19 or more.
   double half_area() const {
-    // Indices in the spare lane are slow to convert, because most are subnormal as floats.
+    // Clears the spare lane before the conversion: it may hold an index, and most indices are subnormal as floats and
+    // slow to convert.
     const DoubleLanes size = __builtin_convertvector(clear_spare_lane(hi), DoubleLanes) -
                              __builtin_convertvector(clear_spare_lane(lo), DoubleLanes);
     return size[0] * size[1] + (size[1] + size[0]) * size[2];
@@ -52,8 +54,8 @@ struct LaneBox {
   Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-/// A box to sort into the tree; the spare lane holds its index in the builder's input. It has no defaults, so that an
-/// array of millions is first touched by the threads that fill it.
+/// A box to sort into the tree; the spare lane holds its index in the builder's input. The members have no default
+/// values, so that the threads that fill an array of millions are the first to touch its memory.
 struct Record {
   Lanes lo;
   Lanes hi;
@@ -95,10 +97,10 @@ class BinGrid {
   BinGrid(const LaneBox& centers, uint32_t count);
 
   uint32_t bin_count() const { return bin_count_; }
-  /// Returns false if the centres coincide (or are too close or too far apart for a float); then everything falls into
-  /// bin 0.
+  /// Returns false if the centres coincide, or are too close together or too far apart for a float. All records are
+  /// then in bin 0.
   bool is_divided(int axis) const { return scale_[axis] > 0.0F; }
-  /// Returns the bin on each axis; the spare lane has no meaning.
+  /// Returns the bin of a centre on each axis; the spare lane has no meaning.
   IntLanes bins_of(Lanes center) const { return __builtin_convertvector((center - origin_) * scale_, IntLanes); }
 
  private:
@@ -107,7 +109,7 @@ class BinGrid {
   uint32_t bin_count_;
 };
 
-/// The plane below bin `bin` of `axis`.
+/// A plane that divides records: the lower side of bin `bin` along `axis`.
 struct Split {
   int axis = -1;
   uint32_t bin = 0;
@@ -121,9 +123,9 @@ inline bool is_below(Lanes center, const BinGrid& grid, const Split& split) {
   return static_cast<uint32_t>(grid.bins_of(center)[split.axis]) < split.bin;
 }
 
-/// Boxes and numbers of the records in every bin of a grid, by bin and axis.
+/// Boxes and numbers of the records in every bin of a grid, indexed by bin and axis.
 struct Bins {
-  // These are not boxes, because their default constructor would set all of them to empty.
+  // The arrays do not hold LaneBox, because its default constructor would set all elements to empty boxes.
   Lanes lo[BinGrid::kMaxBins][3];
   Lanes hi[BinGrid::kMaxBins][3];
   uint32_t counts[BinGrid::kMaxBins][3];
@@ -139,7 +141,7 @@ struct Bins {
 /// Returns the split that find_best_split would find in the bins of two records.
 Split find_best_split(const BinGrid& grid, const Record& a, const Record& b);
 
-/// Returns the cheapest plane; of several equally cheap ones the first by axis, then by bin.
+/// Returns the cheapest plane. If several planes are equally cheap, it returns the first by axis, then by bin.
 Split find_best_split(const BinGrid& grid, const Bins& bins);
 
 }  // namespace promin

@@ -18,7 +18,7 @@ struct Builder {
   Bvh (*build)(const BuildInput&, const BuildOptions&);
 };
 
-// A new builder is a row here; the first is the default.
+// The builders. A new builder is a new row; the first row is the default.
 constexpr std::array kBuilders = {Builder{"sah", build_sah}, Builder{"median", build_median},
                                   Builder{"spatial", build_spatial}};
 
@@ -53,7 +53,7 @@ Bvh build_bvh(std::string_view builder, const BuildInput& input, const BuildOpti
 BvhStats measure_bvh(std::string_view builder, const Bvh& bvh) {
   BvhStats stats{.builder = std::string(builder), .nodes = bvh.nodes.size()};
   if (bvh.nodes.empty()) return stats;
-  // A ray that hits a root without area (points, a line) hits all of its nodes.
+  // If the root has no area (points, a line), a ray that hits the root hits all nodes.
   const double root_area = bvh.nodes.front().bounds.half_area();
   std::vector<uint32_t> depths(bvh.nodes.size(), 1);
   for (size_t i = 0; i < bvh.nodes.size(); ++i) {

@@ -36,7 +36,7 @@ struct Header {
   std::array<char, 8> magic = kMagic;
   uint32_t byte_order = kByteOrder;
   uint32_t version = kVersion;
-  /// The checksum of the whole file, computed with 0 in this place.
+  /// The checksum of the whole file, computed while this member is 0.
   uint64_t checksum = 0;
   uint64_t layout_hash = 0;
   uint64_t geometry_hash = 0;
@@ -44,28 +44,29 @@ struct Header {
   uint32_t reference_count = 0;
   uint32_t primitive_count = 0;
   uint32_t stack_size = 0;
-  // The next members are those of BvhStats.
+  // The following members are the members of BvhStats.
   uint64_t tree_nodes = 0;
   uint64_t leaves = 0;
   double sah_cost = 0.0;
   uint32_t depth = 0;
   uint32_t max_leaf_size = 0;
-  /// The name is filled up with zeros, at least one.
+  /// The builder's name, filled up with zeros; there is at least one zero.
   std::array<char, 36> builder{};
-  /// The kinds of primitive in the tree beyond kFirstKinds, as bits 1 << KIND_*.
+  /// The kinds of primitive in the tree with numbers from kFirstKinds on, as bits 1 << KIND_*.
   uint32_t further_kinds = 0;
 };
 static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && std::is_trivially_copyable_v<Header>);
 
-/// The traversal stack of a tree of kMaxBvhDepth cannot need more: an entry for each node above the deepest.
+/// The largest stack that the traversal of a tree of kMaxBvhDepth can need: an entry for each node above the deepest
+/// node.
 constexpr uint32_t kMaxStackSize = kMaxBvhDepth - 1;
 
 /// The number of kinds in the first version of the format: triangles, spheres, cylinders and cones. The hash of every
-/// file includes their numbers. It includes those of further kinds only if the tree contains them, so that a new kind
-/// does not invalidate older files.
+/// file includes their numbers. It includes the numbers of further kinds only if the tree contains them, so that a new
+/// kind does not invalidate older files.
 constexpr uint32_t kFirstKinds = 4;
 
-/// The kinds of primitive that lie in trees, as bits 1 << KIND_*.
+/// The kinds of primitive that a tree may contain, as bits 1 << KIND_*.
 constexpr uint32_t kTreeKinds = 0
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) | 1U << (NUMBER)
 #include "promin/kinds/primitives.def"
@@ -73,11 +74,11 @@ constexpr uint32_t kTreeKinds = 0
 constexpr uint32_t kFirstKindBits = (1U << kFirstKinds) - 1;
 static_assert((kTreeKinds & kFirstKindBits) == kFirstKindBits);
 
-/// A hash of the result of pack_tree for a small tree, and of the tree's kinds. It changes with the meaning of a node's
-/// bits and with the number of stack entries.
+/// Returns a hash of the result of pack_tree for a small tree, and of the tree's kinds. The hash changes if the meaning
+/// of a node's bits or the number of stack entries changes.
 uint64_t hash_layout(uint32_t further_kinds) {
   Bvh probe;
-  // Five leaves are one more than a node holds, so there are inner, leaf and absent children.
+  // Five leaves are one more than a node can hold, so the nodes have inner, leaf and absent children.
   for (uint32_t i = 0; i < 5; ++i) {
     const auto x = static_cast<float>(i);
     const Bounds box{{x, -0.3F * x, 1e-3F * x}, {5.3F, 0.7F + x, 2e3F}};
@@ -136,7 +137,7 @@ Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
 
 std::string read_builder(const Header& header, const fs::path& file) {
   const auto end = std::find(header.builder.begin(), header.builder.end(), '\0');
-  // The name is printed, so it may hold nothing that a terminal would obey.
+  // Programs print the name, so it must not contain control characters.
   const bool is_name = end != header.builder.end() && std::all_of(header.builder.begin(), end, [](char c) {
                          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
                        });
@@ -154,14 +155,14 @@ class TreeCheck {
         is_slot_taken_(tree.references.size()),
         is_referred_to_(tree.primitive_count) {}
 
-  /// Throws InputError.
+  /// Checks the whole tree. Throws InputError.
   void run() {
     if (tree_.references.size() > layout::CHILD_FIRST_MASK)
       refuse("bvh.file.tree", file_, "the BVH file has too many references");
     if (tree_.nodes.empty()) refuse("bvh.file.tree", file_, "the BVH file has no nodes");
     if (tree_.nodes.size() > layout::MAX_NODES) refuse("bvh.file.tree", file_, "the BVH file has too many nodes");
     entries_[0] = 0;
-    // A child comes after its parent, so there is no cycle, and each node has been reached when its turn comes.
+    // A child comes after its parent, so the tree has no cycle, and each node is marked as reached before its turn.
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     if (most_entries_ != tree_.stack_size) {
       refuse("bvh.file.tree", file_,
@@ -198,7 +199,7 @@ class TreeCheck {
     const Node& node = tree_.nodes[index];
     const uint32_t count = child_count(node);
     if (count > layout::NODE_WIDTH) refuse_node(index, "declares " + std::to_string(count) + " children");
-    // The only node without children is that of an empty tree.
+    // Only the node of an empty tree has no children.
     if (count == 0 && tree_.nodes.size() > 1) refuse_node(index, "has no children");
     const uint32_t entries = entries_[index];
     if (entries > kMaxStackSize) refuse_node(index, "lies deeper than in the tree of any builder");
@@ -217,7 +218,7 @@ class TreeCheck {
     }
   }
 
-  /// Checks the statistics, which are printed and written by --stats.
+  /// Checks the statistics, because the programs print them and --stats writes them.
   void check_stats() const {
     const BvhStats& stats = tree_.stats;
     const uint64_t binary_nodes = leaf_count_ > 0 ? 2 * leaf_count_ - 1 : 0;
@@ -240,7 +241,7 @@ class TreeCheck {
 
   const TreeView& tree_;
   const fs::path& file_;
-  /// Entries on the traversal stack when a ray leaves a node: one for each node above.
+  /// Number of entries on the traversal stack when a ray leaves a node: one for each node above it.
   std::vector<uint32_t> entries_;
   uint32_t most_entries_ = 1;
   std::vector<bool> is_slot_taken_;
@@ -268,7 +269,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   if (hash_file(header, nodes, references) != header.checksum) {
     refuse("bvh.file.damaged", file, "the BVH file is damaged, because its checksum does not match its contents");
   }
-  // Both are aligned: the mapping begins at a page, the nodes 128 bytes behind.
+  // Both pointers are aligned: the mapping begins at a page, and the nodes begin 128 bytes later.
   tree_.nodes = {reinterpret_cast<const Node*>(nodes.data()), header.node_count};
   tree_.references = {reinterpret_cast<const uint32_t*>(references.data()), header.reference_count};
   tree_.primitive_count = header.primitive_count;

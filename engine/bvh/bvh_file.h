@@ -14,11 +14,12 @@ namespace promin {
 /// A tree in a file whose bytes can be uploaded directly; docs/bvh_file.md describes the format.
 class BvhFile {
  public:
-  /// Maps the file and checks it completely: afterwards tree() can be traversed and its references are valid, whoever
-  /// wrote the file. It does not check that the boxes contain the primitives; find_tree_faults does. Throws InputError.
+  /// Maps the file and checks it completely: afterwards tree() can be traversed and its references are valid, no matter
+  /// which program wrote the file. The constructor does not check that the boxes contain the primitives;
+  /// find_tree_faults() does. Throws InputError.
   explicit BvhFile(const std::filesystem::path& file);
 
-  /// Returns the tree, which is valid as long as this object.
+  /// Returns the tree. The view is valid as long as this object exists.
   const TreeView& tree() const { return tree_; }
   size_t size_bytes() const { return mapped_.bytes().size(); }
 
@@ -31,7 +32,7 @@ class BvhFile {
   TreeView tree_;
 };
 
-/// Writes the file completely or not at all. Throws RunError.
+/// Writes the tree to a file, completely or not at all. Throws RunError.
 void write_bvh_file(const std::filesystem::path& file, const TreeView& tree);
 
 }  // namespace promin

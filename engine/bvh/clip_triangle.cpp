@@ -9,7 +9,7 @@
 namespace promin {
 namespace {
 
-/// A convex polygon: three corners and one more for each plane.
+/// A convex polygon with space for three corners and one more for each plane.
 struct Polygon {
   std::array<dvec3, 9> points;
   size_t count = 0;
@@ -17,7 +17,7 @@ struct Polygon {
   void add(const dvec3& point) { points[count++] = point; }
 };
 
-/// The part where side * (p[axis] - plane) <= 0 (Sutherland & Hodgman 1974).
+/// Returns the part of the polygon where side * (p[axis] - plane) <= 0 (Sutherland & Hodgman 1974).
 Polygon clip(const Polygon& polygon, int axis, double plane, double side) {
   Polygon inside;
   for (size_t i = 0; i < polygon.count; ++i) {
@@ -42,8 +42,8 @@ Bounds clip_triangle(const std::array<vec3, 3>& corners, const Bounds& window) {
     whole.extend(corner);
     polygon.add(dvec3(corner));
   }
-  // Clipping at six planes moves corners by less than 2^-46 of the size. The planes are moved outwards by more, so that
-  // no part is lost where a side runs almost in a plane.
+  // Clipping at six planes moves corners by less than 2^-46 of the size. The planes are moved outwards by more than
+  // this, so that no part is lost if a side of the polygon lies almost in a plane.
   const auto size = static_cast<double>(std::max(max_abs_component(whole.lo), max_abs_component(whole.hi)));
   const double margin = 0x1p-44 * size;
   for (int axis = 0; axis < 3; ++axis) {

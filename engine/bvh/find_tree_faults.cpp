@@ -21,14 +21,15 @@ using layout::Primitive;
 
 constexpr uint32_t kChunkSize = 4096;
 
-/// Sides of a box: below its lower plane, above its upper one.
+/// The two sides of a box along an axis: below its lower plane, or above its upper plane.
 enum class Side { kBelow, kAbove };
 
 bool is_beyond(double coordinate, double plane, Side side) {
   return side == Side::kBelow ? coordinate < plane : coordinate > plane;
 }
 
-// This is separate from bvh/clip_triangle on purpose: the code that cuts for builders must not check itself.
+// This code is separate from bvh/clip_triangle on purpose: the code that cuts primitives for builders must not check
+// itself.
 
 /// The two parts of a polygon that is cut at a plane; either may be missing.
 template <typename Piece>
@@ -37,7 +38,7 @@ struct Cut {
   std::optional<Piece> within;
 };
 
-/// Corners in order; convex and plane.
+/// The corners of a convex, planar polygon, in order.
 using Polygon = std::vector<dvec3>;
 
 Cut<Polygon> cut_at(const Polygon& polygon, int axis, double plane, Side side) {
@@ -82,7 +83,7 @@ void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& le
     for (const Side side : {Side::kBelow, Side::kAbove}) {
       Cut<Piece> cut = cut_at(rest, axis, side == Side::kBelow ? box.lo[axis] : box.hi[axis], side);
       if (!cut.within) {
-        // The box holds nothing of the piece, so it stays whole.
+        // The box contains no part of the piece, so the piece stays whole.
         left.resize(first);
         left.push_back(piece);
         return;
@@ -93,7 +94,7 @@ void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& le
   }
 }
 
-/// Whether boxes that are larger by `tolerance` on all sides cover a piece.
+/// Returns whether the boxes together cover a piece, if each box is enlarged by `tolerance` on all sides.
 template <typename Piece>
 bool is_covered(const Piece& piece, std::span<const ExactBounds> boxes, double tolerance) {
   std::vector<Piece> pieces = {piece};
@@ -114,10 +115,10 @@ Polygon polygon_of(const Primitive& p) {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr ExactBounds kNothing{dvec3(kInfinity), dvec3(-kInfinity)};
 
-/// The intersection of both boxes.
+/// Returns the intersection of two boxes.
 ExactBounds intersect(const ExactBounds& a, const ExactBounds& b) {
   const ExactBounds both{glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
-  // Written so that a box with a NaN contains nothing.
+  // The comparison is written so that a box with a NaN contains nothing.
   const bool is_box = glm::all(glm::lessThanEqual(b.lo, b.hi)) && glm::all(glm::lessThanEqual(both.lo, both.hi));
   return is_box ? both : kNothing;
 }
@@ -157,7 +158,7 @@ class Inspection {
   }
 
  private:
-  /// A node comes after its parent, so its box is known.
+  /// A node comes after its parent, so the parent's box is known here.
   void visit(uint32_t index) {
     const Node& node = tree_.nodes[index];
     for (uint32_t i = 0; i < layout::NODE_WIDTH; ++i) {
@@ -178,7 +179,7 @@ class Inspection {
     }
   }
 
-  /// Makes [first_slot_[i], first_slot_[i + 1]) of `slots_` those that refer to primitive i.
+  /// Sorts `slots_` by primitive: the slots [first_slot_[i], first_slot_[i + 1]) refer to primitive i.
   void group_slots() {
     for (const uint32_t primitive : tree_.references) ++first_slot_[primitive];
     std::partial_sum(first_slot_.begin(), first_slot_.end(), first_slot_.begin());
@@ -220,7 +221,7 @@ class Inspection {
   const TreeView& tree_;
   std::span<const Primitive> primitives_;
   const PrimitiveNumbers& numbers_;
-  /// The boxes of each node and of each leaf, intersected with those of all nodes above.
+  /// The box of each node and of each leaf, intersected with the boxes of all nodes above it.
   std::vector<ExactBounds> node_boxes_;
   std::vector<ExactBounds> leaf_boxes_;
   std::vector<uint32_t> leaf_of_slot_;

@@ -31,7 +31,7 @@ Bvh build_median(const BuildInput& input, const BuildOptions& options) {
   bvh.references.resize(boxes.size());
   std::iota(bvh.references.begin(), bvh.references.end(), 0U);
   bvh.nodes.resize(1);
-  // Each level of the tree goes through all boxes.
+  // Each level of the tree processes all boxes.
   SharedProgress progress(options.progress, static_cast<double>(boxes.size()) * std::log2(1.0 + boxes.size()));
   std::vector<Range> open = {{0, static_cast<uint32_t>(boxes.size()), 0}};
   while (!open.empty()) {
@@ -53,7 +53,8 @@ Bvh build_median(const BuildInput& input, const BuildOptions& options) {
       bvh.nodes[range.node] = {bounds, range.begin, range.end - range.begin};
       continue;
     }
-    // The halves of the sorted sequence. The sorts of the levels below settle the order within each.
+    // The range is split into the halves of the sorted sequence. Each half need not be sorted, because the lower levels
+    // sort it again.
     const uint32_t middle = range.begin + (range.end - range.begin) / 2;
     std::nth_element(first, bvh.references.begin() + middle, last, comes_before);
     const auto child = static_cast<uint32_t>(bvh.nodes.size());

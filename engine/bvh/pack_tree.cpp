@@ -16,24 +16,25 @@ namespace {
 
 using layout::Node;
 
-/// A large tree is packed as at least this many subtrees, so that threads which finish early find another.
+/// The smallest number of subtrees into which a large tree is divided, so that threads that finish early find more
+/// work.
 constexpr size_t kSubtrees = 256;
 
-/// Indices of binary nodes.
+/// The children of a wide node, as indices of binary nodes.
 struct Children {
   std::array<uint32_t, layout::NODE_WIDTH> nodes{};
   uint32_t count = 0;
 };
 
-/// Chooses the inner nodes of the binary tree that become wide nodes, so that the expected cost of a ray is minimal:
-/// dynamic programming over the number of slots of a wide node that a subtree takes (Ylitie, Karras, Laine, "Efficient
-/// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1; the leaves stay as the
-/// builder made them).
+/// Chooses the inner nodes of the binary tree that become wide nodes, so that the expected cost of a ray is minimal. It
+/// uses dynamic programming over the number of slots of a wide node that a subtree occupies (Ylitie, Karras, Laine,
+/// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1; the leaves stay as
+/// the builder made them).
 class Collapse {
  public:
   explicit Collapse(const Bvh& bvh) : bvh_(bvh), root_area_(bvh.nodes[0].bounds.half_area()), plans_(bvh.nodes.size()) {
     if (!(root_area_ > 0.0)) root_area_ = 1.0;
-    // The nodes of the top, level by level, until there are enough subtrees for all threads.
+    // The top is opened level by level, until there are enough subtrees for all threads.
     std::vector<uint32_t> top = {0};
     size_t planned = 0;
     for (; planned < top.size() && top.size() - planned < kSubtrees; ++planned) push_children(top[planned], top);
@@ -46,7 +47,7 @@ class Collapse {
     plan_upwards(std::span(top).first(planned));
   }
 
-  /// The children of the wide node that an inner node becomes.
+  /// Returns the children of the wide node that replaces an inner node.
   Children children_of(uint32_t node) const {
     Children children;
     divide(node, layout::NODE_WIDTH, children);
@@ -59,13 +60,13 @@ class Collapse {
     if (bvh_.nodes[node].count == 0) nodes.insert(nodes.end(), {first, first + 1});
   }
 
-  /// Plans nodes that come after their parents.
+  /// Plans these nodes from the last to the first, because a node comes after its parent.
   void plan_upwards(std::span<const uint32_t> nodes) {
     for (size_t i = nodes.size(); i-- > 0;) plans_[nodes[i]] = plan(bvh_.nodes[nodes[i]]);
   }
 
-  /// The cost of a subtree in 1...NODE_WIDTH slots (at index slots - 1), and the number of slots that its first child
-  /// then takes. 0 means that it does not use the last slot.
+  /// For a subtree in 1...NODE_WIDTH slots (at index slots - 1): its cost, and the number of slots that its first child
+  /// then occupies. 0 means that the subtree does not use the last slot.
   struct Plan {
     std::array<float, layout::NODE_WIDTH> cost;
     std::array<uint8_t, layout::NODE_WIDTH> first_slots;
@@ -90,10 +91,10 @@ class Collapse {
         result.first_slots[slots - 1] = static_cast<uint8_t>(of_first);
       }
     }
-    // A subtree in one slot is a wide node of its own.
+    // A subtree in one slot becomes a wide node of its own.
     result.cost[0] = static_cast<float>(kNodeCost * area) + result.cost[layout::NODE_WIDTH - 1];
     for (uint32_t slots = 2; slots < layout::NODE_WIDTH; ++slots) {
-      // At equal cost the fuller node is chosen, also if all areas are 0.
+      // At equal cost the plan with more slots is chosen, also if all areas are 0.
       if (result.cost[slots - 2] >= result.cost[slots - 1]) continue;
       result.cost[slots - 1] = result.cost[slots - 2];
       result.first_slots[slots - 1] = 0;
@@ -114,12 +115,12 @@ class Collapse {
   }
 
   const Bvh& bvh_;
-  /// Costs are divided by this, so that their magnitude is that of counts, whatever the size of the scene.
+  /// Area of the root. Costs are divided by it, so that they have the magnitude of counts for scenes of every size.
   double root_area_;
   UnsetVector<Plan> plans_;
 };
 
-/// An axis of the node's grid: planes at origin + byte * 2^(exponent - 127).
+/// An axis of a node's grid, whose planes lie at origin + byte * 2^(exponent - 127).
 struct Axis {
   float origin = 0.0F;
   uint32_t exponent = 1;
@@ -130,14 +131,15 @@ struct Axis {
     const auto whole = static_cast<uint32_t>(steps);
     return whole + (whole < steps ? 1 : 0);
   }
-  /// The result is exact, because the step is a power of two. It is not negative for planes from the origin on.
+  /// Returns the distance of a plane from the origin in steps. The result is exact, because the step is a power of two.
+  /// It is not negative for planes at or above the origin.
   double steps_to(float plane) const {
     const auto inverse_step = std::bit_cast<double>(uint64_t{1023 + 127 - exponent} << 52);
     return (static_cast<double>(plane) - static_cast<double>(origin)) * inverse_step;
   }
 };
 
-/// The finest grid that reaches from lo to hi.
+/// Returns the finest grid that reaches from lo to hi.
 Axis make_axis(float lo, float hi) {
   Axis axis;
   axis.origin = lo;
@@ -153,7 +155,7 @@ uint32_t leaf_reference(const BvhNode& leaf) {
   return layout::CHILD_IS_LEAF | ((leaf.count - 1) << layout::CHILD_COUNT_SHIFT) | leaf.first;
 }
 
-/// Makes a node of these boxes; its children are left out.
+/// Makes a node with these boxes. The caller sets the children.
 Node make_node(std::span<const Bounds> boxes) {
   Bounds all;
   for (const Bounds& box : boxes) all.extend(box);
@@ -172,15 +174,15 @@ Node make_node(std::span<const Bounds> boxes) {
   return node;
 }
 
-/// An inner node of the binary tree that becomes a node of the device's.
+/// An inner node of the binary tree that must still become a device node.
 struct Open {
   uint32_t source = 0;
   uint32_t target = 0;
-  /// Largest number of families on the traversal stack when a ray leaves this node: one for each node above.
+  /// Largest number of families on the traversal stack when a ray leaves this node: one for each node above it.
   uint32_t stack_entries = 0;
 };
 
-/// Makes the node of `open`, and room for those of its children, which are put on `open_children`.
+/// Makes the device node of `open`, and reserves nodes for its inner children, which are added to `open_children`.
 void pack_node(const Bvh& bvh, const Collapse& collapse, const Open& open, PackedTree& tree,
                std::vector<Open>& open_children) {
   const Children children = collapse.children_of(open.source);
@@ -202,7 +204,7 @@ void pack_node(const Bvh& bvh, const Collapse& collapse, const Open& open, Packe
   tree.nodes[open.target] = node;
 }
 
-/// The packed nodes below one node, which becomes node 0.
+/// Returns the packed nodes below one node, which becomes node 0.
 PackedTree pack_subtree(const Bvh& bvh, const Collapse& collapse, Open root) {
   root.target = 0;
   PackedTree tree;
@@ -216,7 +218,7 @@ PackedTree pack_subtree(const Bvh& bvh, const Collapse& collapse, Open root) {
   return tree;
 }
 
-/// Puts a subtree's root at node `root`, the others from node `first` on.
+/// Copies a subtree: its root becomes node `root`, and its other nodes follow from node `first` on.
 void place_subtree(PackedTree& subtree, uint32_t root, size_t first, PackedTree& tree) {
   for (Node& node : subtree.nodes) {
     for (int i = 0; i < static_cast<int>(node.frame.w >> 24); ++i) {
@@ -229,8 +231,8 @@ void place_subtree(PackedTree& subtree, uint32_t root, size_t first, PackedTree&
 
 }  // namespace
 
-// The top is packed level by level until there are enough subtrees for all threads; they follow it in their order, so
-// the nodes do not depend on how many threads there are.
+// The top is packed level by level until there are enough subtrees for all threads. The subtrees follow the top in
+// their order, so the nodes do not depend on the number of threads.
 PackedTree pack_tree(const Bvh& bvh) {
   PackedTree tree;
   tree.nodes.emplace_back();

@@ -10,8 +10,8 @@
 
 namespace promin {
 
-/// The device's form of a binary tree: nodes of up to four children, whose boxes in bytes contain those of the binary
-/// tree; and the largest number of entries on the stack of a traversal.
+/// A binary tree in the device's form: nodes with up to four children. The children's boxes are stored in bytes and
+/// contain the boxes of the binary tree. `stack_size` is the largest number of entries on the stack of a traversal.
 struct PackedTree {
   UnsetVector<layout::Node> nodes;
   uint32_t stack_size = 1;

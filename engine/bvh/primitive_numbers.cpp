@@ -8,7 +8,7 @@
 namespace promin {
 namespace {
 
-/// The last part at or before a number; null if there is none.
+/// Returns the last part whose number is at most `order`; null if there is none.
 const PackedPart* find_part(const PrimitiveNumbers& numbers, uint32_t order) {
   const auto next = std::upper_bound(numbers.parts.begin(), numbers.parts.end(), order,
                                      [](uint32_t number, const PackedPart& part) { return number < part.order; });

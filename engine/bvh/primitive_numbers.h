@@ -13,31 +13,33 @@ namespace promin {
 /// One of the parts into which a triangle is packed (device_scene/cut_triangles.h).
 struct PackedPart {
   uint32_t order = 0;
-  /// Number of parts of all triangles, up to and including this one, that are not the first part of their triangle.
+  /// Number of parts, counted over all triangles up to and including this part, that are not the first part of their
+  /// triangle.
   uint32_t further_parts = 0;
   /// The weights of the triangle's second and third corner, at each of the part's three corners.
   std::array<vec2, 3> weights{};
 };
 
-/// The meaning of the numbers in Primitive::c.y, which count primitives in (object, primitive) order.
+/// Converts the numbers in Primitive::c.y to objects and primitives. The numbers count primitives in (object,
+/// primitive) order.
 struct PrimitiveNumbers {
   /// The number of each object's first primitive; then the number of all primitives.
   std::vector<uint32_t> first_order;
-  /// Whether each object is a mesh whose second and third corners were exchanged on the way to the world
+  /// For each object, whether it is a mesh whose second and third corners were exchanged when it was moved to the world
   /// (world::Object::is_rewound).
   std::vector<bool> is_rewound;
-  /// The parts of all triangles that are in more than one, by their order.
+  /// The parts of all triangles that have more than one part, sorted by the triangles' order.
   std::vector<PackedPart> parts;
 };
 
-/// The object and the primitive that a number means.
+/// The object and the primitive that have a number.
 struct PrimitiveId {
   uint32_t object = 0;
   uint32_t primitive = 0;
 };
 PrimitiveId primitive_of_order(const PrimitiveNumbers& numbers, uint32_t order);
 
-/// Converts the weights of a packed part's second and third corner to those of the whole triangle in its object
+/// Converts weights: from those of a packed part's second and third corner to those of the whole triangle in its object
 /// (primitive_of_order).
 vec2 weights_of_triangle(const PrimitiveNumbers& numbers, uint32_t order, uint32_t object, const vec2& weights);
 

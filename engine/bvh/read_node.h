@@ -8,7 +8,8 @@
 #include "promin/math.h"
 #include "shared/layout.h"
 
-// Host functions that read the data of pack_tree and pack_scene as the shaders do, for checks, tests and builders.
+// Functions that read the data of pack_tree and pack_scene on the host, in the same way as the shaders, for checks,
+// tests and builders.
 namespace promin {
 
 /// A box in double. By default it is unbounded.
@@ -21,25 +22,26 @@ enum class ChildKind { kAbsent, kNode, kLeaf };
 
 struct NodeChild {
   ChildKind kind = ChildKind::kAbsent;
-  /// The index of a node, the first reference of a leaf.
+  /// For an inner child the index of its node; for a leaf the index of its first reference.
   uint32_t first = 0;
-  /// References in a leaf.
+  /// Number of references in a leaf.
   uint32_t count = 0;
 };
 
 /// Returns the number of children that a node declares: at most NODE_WIDTH, unless the bits are not those of a node.
 uint32_t child_count(const layout::Node& node);
 
-/// Child 0...NODE_WIDTH - 1; children from child_count on are absent.
+/// Returns child 0...NODE_WIDTH - 1. Children from child_count() on are absent.
 NodeChild child_of(const layout::Node& node, uint32_t child);
 
-/// Returns the box of an existing child. Bits that are not a box (NaN, infinity) are returned unchanged.
+/// Returns the box of an existing child. If the bits are not a box (NaN, infinity), the result contains them unchanged.
 ExactBounds child_box(const layout::Node& node, uint32_t child);
 
-/// Returns the bounds of any primitive of the tree, as conservative as bounds_of for its shape.
+/// Returns the bounds of a primitive of any kind that a tree may contain. They are as conservative as bounds_of() for
+/// its shape.
 Bounds primitive_bounds(const layout::Primitive& primitive);
 
-/// The corners of a primitive of KIND_TRIANGLE.
+/// Returns the corners of a primitive of KIND_TRIANGLE.
 std::array<vec3, 3> triangle_corners(const layout::Primitive& primitive);
 
 }  // namespace promin

@@ -10,17 +10,18 @@
 #include "core/parallel.h"
 #include "core/shared_progress.h"
 
-// The builder has two phases. First the top of the tree is split breadth first: the ranges of one level are cut into
-// chunks, which all threads bin and scatter. Ranges below kSubtreeSize are then subtrees, one task each, and are put
-// behind the top in their order at the end. Nothing depends on which thread does what: chunks and subtrees have fixed
-// sizes, and their results are merged in order.
+// The builder has two phases. The first phase splits the top of the tree breadth first: the ranges of one level are cut
+// into chunks, which all threads bin and scatter. The second phase builds each range below kSubtreeSize as a subtree in
+// one task; the subtrees are appended to the top in their order. The tree does not depend on the assignment of work to
+// threads: chunks and subtrees have fixed sizes, and their results are merged in order.
 namespace promin {
 namespace {
 
 constexpr uint32_t kChunkSize = 8192;
 constexpr uint32_t kSubtreeSize = 16384;
 
-/// Records [begin, end), from which node `node` at depth `depth` (1 for the root) will be made.
+/// The records [begin, end) of a node that has not been made. `node` is its index and `depth` its depth (1 for the
+/// root).
 struct Range {
   uint32_t begin = 0;
   uint32_t end = 0;
@@ -31,8 +32,8 @@ struct Range {
   uint32_t count() const { return end - begin; }
 };
 
-/// Makes one node of a range: a leaf, or an inner node whose children's ranges it returns, the lower one first.
-/// `middle` is where the upper child begins.
+/// Makes one node of a range. The node is a leaf, or an inner node; for an inner node the function returns the ranges
+/// of its children, the lower one first. `middle` is the beginning of the upper child's records.
 std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const Extent& below, const Extent& above,
                                       UnsetVector<BvhNode>& nodes) {
   const auto child = static_cast<uint32_t>(nodes.size());
@@ -42,7 +43,7 @@ std::pair<Range, Range> make_children(const Range& range, uint32_t middle, const
           Range{middle, range.end, child + 1, range.depth + 1, above}};
 }
 
-/// Moves the records below the plane to the front. Returns their number and the boxes of both sides' centres.
+/// Moves the records below the plane to the front. Returns their number, and the boxes of the centres on both sides.
 uint32_t partition_records(std::span<Record> records, const BinGrid& grid, const Split& split, LaneBox& centers_below,
                            LaneBox& centers_above) {
   LaneBox below;
@@ -107,28 +108,28 @@ UnsetVector<BvhNode> build_subtree(const Range& root, Record* records) {
   return nodes;
 }
 
-/// A range that becomes a subtree, and the buffer that its records lie in.
+/// A range that becomes a subtree, and the buffer that contains its records.
 struct Subtree {
   Range range;
   Record* records = nullptr;
 };
 
-/// Part of a range that one thread bins, then scatters.
+/// A part of a range that one thread first bins and then scatters.
 struct Chunk {
   uint32_t begin;
   uint32_t end;
   Bins bins;
-  /// The places of its first record below the plane and its first above.
+  /// The positions to which its first records below and above the plane are moved.
   uint32_t first_below = 0;
   uint32_t first_above = 0;
-  /// The extents of the records that went there.
+  /// The extents of the records below and above the plane.
   Extent below;
   Extent above;
 
   Chunk(uint32_t first, uint32_t last, const BinGrid& grid) : begin(first), end(last), bins(grid) {}
 };
 
-/// A range of the top of the tree while it is split.
+/// A range in the top of the tree that is being split.
 struct Halving {
   Range range;
   BinGrid grid;
@@ -145,8 +146,8 @@ struct Halving {
   void scatter(Chunk& chunk, const Record* from, Record* to) const;
 };
 
-/// Called after all chunks are binned: chooses the plane and assigns each chunk its positions on both sides, so that
-/// records keep their order.
+/// Chooses the plane and assigns each chunk its positions on both sides, so that records keep their order. It is called
+/// after all chunks are binned.
 void Halving::choose_split() {
   Bins all(grid);
   for (const Chunk& chunk : chunks) all.add(chunk.bins, grid);
@@ -200,10 +201,10 @@ class SahBuild {
   std::vector<Range> split_level(const std::vector<Range>& level);
   void build_subtrees();
 
-  /// The work for `count` records, if each level halves them.
+  /// Returns the amount of work for `count` records if each level halves them.
   static double count_levels(size_t count) { return static_cast<double>(count) * std::log2(1.0 + count); }
 
-  /// Large ranges are split with the next level, small or deep ones become subtrees.
+  /// Adds a range. A large range is split with the next level; a small or deep range becomes a subtree.
   void add_range(const Range& range, Record* records, std::vector<Range>& level) {
     if (range.count() > kSubtreeSize && range.depth < kMaxSahDepth) {
       level.push_back(range);
@@ -214,7 +215,7 @@ class SahBuild {
 
   std::span<const Bounds> boxes_;
   unsigned thread_count_;
-  /// Counted in records times levels.
+  /// The progress, measured in records times levels.
   SharedProgress progress_;
   /// The records of the current level, and the buffer to which its chunks scatter them.
   UnsetVector<Record> records_;

@@ -11,23 +11,24 @@
 #include "core/parallel.h"
 #include "core/shared_progress.h"
 
-// Large sets of references are split one after the other, each by all threads in chunks of fixed size. The small ones
-// are subtrees, one task each. Chunks and subtrees are put together in their order.
+// The builder splits large sets of references one after the other; all threads work on one set, in chunks of fixed
+// size. A small set becomes a subtree in one task. The results of chunks and subtrees are combined in their order.
 namespace promin {
 namespace {
 
 constexpr size_t kChunkSize = 4096;
 constexpr size_t kSubtreeSize = 16384;
 
-/// If the children of the best object split overlap by less than this part of the root's area, planes through
-/// primitives are not considered (Stich et al., section 4.2; there 1e-5).
+/// If the children of the best object split overlap by less than this fraction of the root's area, the builder does not
+/// consider planes through primitives (Stich et al., section 4.2; there 1e-5).
 constexpr double kLeastOverlap = 1e-4;
 
-/// A cut is used even if it costs up to this factor more than the best object split: the heuristic treats the sides as
-/// leaves, but sides that do not overlap can also be split better further down. Measured in docs/performance_log.md.
+/// A cut is used even if it costs up to this factor more than the best object split. The heuristic treats the two sides
+/// as leaves, but sides that do not overlap can be split better further down. The factor was measured
+/// (docs/performance_log.md).
 constexpr double kCutAdvantage = 1.1;
 
-/// The box of a record's primitive below or above a plane.
+/// Returns the box of the part of a record's primitive below or above a plane.
 LaneBox clip_record(const Record& record, const BuildInput& input, int axis, float lo, float hi) {
   Bounds window = record.bounds();
   window.lo[axis] = std::max(window.lo[axis], lo);
@@ -36,7 +37,7 @@ LaneBox clip_record(const Record& record, const BuildInput& input, int axis, flo
   return {Record(part, 0).lo, Record(part, 0).hi};
 }
 
-/// Planes at equal distances through a box, along each axis.
+/// Planes at equal distances in a box, along each axis.
 class PlaneGrid {
  public:
   static constexpr uint32_t kMaxSlabs = 32;
@@ -53,16 +54,16 @@ class PlaneGrid {
 
   uint32_t slab_count() const { return slab_count_; }
   bool is_divided(int axis) const { return scale_[axis] > 0.0; }
-  /// The lower side of a slab.
+  /// Returns the lower side of a slab.
   float plane(int axis, uint32_t slab) const { return planes_[axis][slab]; }
-  /// The slab that holds a coordinate in the box; on the plane between two, the upper one.
+  /// Returns the slab that contains a coordinate in the box. On the plane between two slabs it returns the upper one.
   uint32_t slab_above(float x, int axis) const {
     uint32_t slab = guess_slab(x, axis);
     while (slab > 0 && x < planes_[axis][slab]) --slab;
     while (slab + 1 < slab_count_ && x >= planes_[axis][slab + 1]) ++slab;
     return slab;
   }
-  /// The slab that holds a coordinate in the box; on the plane between two, the lower one.
+  /// Returns the slab that contains a coordinate in the box. On the plane between two slabs it returns the lower one.
   uint32_t slab_below(float x, int axis) const {
     uint32_t slab = guess_slab(x, axis);
     while (slab > 0 && x <= planes_[axis][slab]) --slab;
@@ -85,7 +86,7 @@ class PlaneGrid {
 struct Cut {
   int axis = -1;
   float plane = 0.0F;
-  /// The boxes of both sides.
+  /// The boxes of the two sides.
   LaneBox below;
   LaneBox above;
   uint32_t below_count = 0;
@@ -95,10 +96,11 @@ struct Cut {
   bool exists() const { return axis >= 0; }
 };
 
-/// The parts of primitives in every slab of a grid.
+/// The boxes of the primitives' parts in every slab of a grid.
 struct Slabs {
   LaneBox boxes[3][PlaneGrid::kMaxSlabs];
-  /// The number of records whose first slab this is, and of those whose last slab it is.
+  /// Numbers of records for each slab: `entries` counts records whose first slab it is, and `exits` records whose last
+  /// slab it is.
   uint32_t entries[3][PlaneGrid::kMaxSlabs] = {};
   uint32_t exits[3][PlaneGrid::kMaxSlabs] = {};
 
@@ -134,8 +136,8 @@ struct Slabs {
   }
 };
 
-/// The cheapest plane that makes no more than `max_count` references; where several are equally cheap, the first by
-/// axis, then from below.
+/// Returns the cheapest plane that makes at most `max_count` references. If several planes are equally cheap, it
+/// returns the first by axis, then the lowest.
 Cut find_best_cut(const PlaneGrid& grid, const Slabs& slabs, size_t max_count) {
   Cut best;
   for (int axis = 0; axis < 3; ++axis) {
@@ -163,7 +165,7 @@ Cut find_best_cut(const PlaneGrid& grid, const Slabs& slabs, size_t max_count) {
   return best;
 }
 
-/// Half the area of the intersection of two boxes.
+/// Returns half the area of the intersection of two boxes.
 double overlap_of(const LaneBox& a, const LaneBox& b) {
   return LaneBox{max(a.lo, b.lo), min(a.hi, b.hi)}.bounds().half_area();
 }
@@ -173,7 +175,7 @@ LaneBox unite(LaneBox a, const LaneBox& b) {
   return a;
 }
 
-/// References and their bounds.
+/// References on one side of a plane, and their bounds.
 struct Side {
   std::vector<Record> records;
   Extent extent;
@@ -216,12 +218,12 @@ void cut_record(const Record& record, const Cut& cut, const BuildInput& input, S
   if (!part_above.is_empty()) sides.above.add(Record(part_above.bounds(), record.index()));
 }
 
-/// References from which node `node` at depth `depth` (1 for the root) will be made.
+/// The references of a node that has not been made. `node` is its index and `depth` its depth (1 for the root).
 struct Task {
   Side side;
   uint32_t node = 0;
   uint32_t depth = 1;
-  /// The number of references that cutting may add below.
+  /// The number of references that cutting may add below this node.
   size_t spare = 0;
 
   size_t count() const { return side.records.size(); }
@@ -259,9 +261,9 @@ class SpatialBuild {
   }
 
  private:
-  /// Builds everything below one task on `thread_count` threads. Small sets go to `subtrees`, unless it is null.
+  /// Builds the tree below one task on `thread_count` threads. Small sets are added to `subtrees` unless it is null.
   void build(Task root, unsigned thread_count, Bvh& bvh, std::vector<Task>* subtrees) const;
-  /// Splits the references in two, unless a leaf is cheaper.
+  /// Splits the references of a task in two. Returns nullopt if a leaf is cheaper.
   std::optional<Sides> split(const Task& task, unsigned thread_count) const;
   Sides halve(const Side& side) const;
   static void append(const Bvh& subtree, uint32_t root, Bvh& bvh);
@@ -272,7 +274,7 @@ class SpatialBuild {
   double root_area_ = 0.0;
 };
 
-/// Calls work(chunk of the records, part) for all chunks on these threads, and returns the parts in order.
+/// Calls work(chunk, part) for each chunk of the records on these threads, and returns the parts in order.
 template <typename Part, typename Work>
 std::vector<Part> make_parts_of(std::span<const Record> records, unsigned thread_count, const Part& initial,
                                 const Work& work) {
@@ -349,7 +351,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
       subtrees->push_back(std::move(task));
       continue;
     }
-    // The progress is still 0, but the callback may cancel the build.
+    // The progress is still 0, but this call allows the callback to cancel the build.
     if (subtrees != nullptr && progress_) progress_(0.0);
     std::optional<Sides> sides = split(task, thread_count);
     const Bounds bounds = task.side.extent.box.bounds();
@@ -364,7 +366,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
     bvh.nodes.resize(bvh.nodes.size() + 2);
     const size_t below = sides->below.records.size();
     const size_t both = below + sides->above.records.size();
-    // Parts without a point are dropped, so `both` may even be less than the number before.
+    // Parts without a point are dropped, so `both` may even be smaller than the number before the cut.
     const size_t spare = task.spare + task.count() - both;
     const size_t spare_below = spare * below / both;
     open.push_back({std::move(sides->above), child + 1, task.depth + 1, spare - spare_below});
@@ -372,7 +374,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
   }
 }
 
-/// Puts a subtree's root at node `root` and appends its other nodes.
+/// Copies a subtree into the tree: its root becomes node `root`, and its other nodes are appended.
 void SpatialBuild::append(const Bvh& subtree, uint32_t root, Bvh& bvh) {
   const auto node_shift = static_cast<uint32_t>(bvh.nodes.size()) - 1;
   const auto reference_shift = static_cast<uint32_t>(bvh.references.size());
@@ -388,7 +390,7 @@ void SpatialBuild::append(const Bvh& subtree, uint32_t root, Bvh& bvh) {
 }  // namespace
 
 Bvh build_spatial(const BuildInput& input, const BuildOptions& options) {
-  // The fraction of the time, roughly, that building with cuts takes.
+  // The approximate fraction of the time that the build with cuts takes.
   constexpr double kCutShare = 0.9;
   BuildOptions of_cut = options;
   BuildOptions of_whole = options;
@@ -397,7 +399,7 @@ Bvh build_spatial(const BuildInput& input, const BuildOptions& options) {
     of_whole.progress = [&](double fraction) { return options.progress(kCutShare + (1.0 - kCutShare) * fraction); };
   }
   Bvh cut = SpatialBuild(input, of_cut).run();
-  // Cutting is greedy and does not always pay: in a few scenes the tree without cuts is better as a whole.
+  // Cutting is greedy and not always better. In a few scenes the tree without cuts costs less.
   Bvh whole = build_sah(input, of_whole);
   return measure_bvh("", whole).sah_cost < measure_bvh("", cut).sah_cost ? whole : cut;
 }

@@ -8,12 +8,12 @@
 
 namespace promin {
 
-/// "1 pixel", "2 pixels".
+/// Returns a count with its noun: "1 pixel", "2 pixels".
 inline std::string count_of(uint64_t count, std::string_view noun) {
   return std::to_string(count).append(" ").append(noun).append(count == 1 ? "" : "s");
 }
 
-/// The verb of a count: "1 pixel differs", "2 pixels differ".
+/// Returns the verb for a count: "1 pixel differs", "2 pixels differ".
 inline std::string_view verb_of(uint64_t count, std::string_view of_one, std::string_view of_several) {
   return count == 1 ? of_one : of_several;
 }

@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// a / b, rounded up; a + b must not overflow.
+/// Returns a / b, rounded up. The sum a + b must not overflow.
 template <typename T>
 constexpr T divide_up(T a, T b) {
   return (a + b - 1) / b;

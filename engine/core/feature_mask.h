@@ -16,7 +16,7 @@ class FeatureMask {
   // NOLINTNEXTLINE(google-explicit-constructor): a feature is the set of it alone.
   constexpr FeatureMask(Feature feature) : bits_(uint64_t{1} << static_cast<uint>(feature)) {}
 
-  /// The mask of pictures that show this debug view (DEBUG_VIEW_*).
+  /// Returns the mask of pictures with this debug view (DEBUG_VIEW_*).
   static constexpr FeatureMask of_debug_view(uint view) {
     FeatureMask mask;
     mask.bits_ = uint64_t{view & DEBUG_VIEW_MASK} << (32 + DEBUG_VIEW_SHIFT);
@@ -27,7 +27,7 @@ class FeatureMask {
   constexpr bool is_empty() const { return bits_ == 0; }
   constexpr FeatureMask without(FeatureMask features) const { return from_bits(bits_ & ~features.bits_); }
   constexpr FeatureMask common_with(FeatureMask features) const { return from_bits(bits_ & features.bits_); }
-  /// The words of the specialisation constants CONSTANT_FEATURES and CONSTANT_MORE_FEATURES.
+  /// Returns the values of the specialisation constants CONSTANT_FEATURES and CONSTANT_MORE_FEATURES.
   constexpr std::array<uint32_t, FEATURE_WORDS> words() const {
     return {static_cast<uint32_t>(bits_), static_cast<uint32_t>(bits_ >> 32)};
   }

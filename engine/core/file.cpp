@@ -87,15 +87,15 @@ std::string host_name() {
 
 namespace {
 
-/// Before the name of an old file that AtomicFile::commit_together keeps.
+/// Prefix of the name under which AtomicFile::commit_together keeps an old file.
 constexpr const char* kOldMark = "old-";
 constexpr mode_t kModeBits = 07777;
 
-/// The temporary files that this process is writing. Another of its threads may write the same file, and files left by
-/// an earlier process with the same id must be distinguished from them.
+/// The temporary files that this process is writing. Another of its threads may write the same file, and an earlier
+/// process with the same id may have left files, which must be distinguished from these.
 class LiveFiles {
  public:
-  /// Returns false if a file of this name exists.
+  /// Adds a file. Returns false if a file of this name is already in the list.
   bool add(const fs::path& file) {
     const std::lock_guard lock(mutex_);
     return files_.insert(spell(file)).second;
@@ -131,12 +131,12 @@ fs::path follow_links(const fs::path& file) {
   std::error_code error;
   const fs::path resolved = fs::canonical(file, error);
   if (!error) return resolved;
-  // The limit of the C library.
+  // The largest number of links that the C library follows.
   constexpr int kMostLinks = 40;
   fs::path target = file;
   for (int link = 0; fs::is_symlink(target, error); ++link) {
     if (link == kMostLinks) return file;
-    // An absolute path replaces the folder.
+    // If the link's target is an absolute path, it replaces the folder.
     target = target.parent_path() / fs::read_symlink(target, error);
   }
   return target;
@@ -144,7 +144,7 @@ fs::path follow_links(const fs::path& file) {
 
 namespace {
 
-/// The first bytes of a text, without half a character at their end.
+/// Returns the first bytes of a text, without an incomplete character at the end.
 std::string cut_utf8(std::string text, size_t most_bytes) {
   const auto continues = [&](size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80; };
   if (text.size() <= most_bytes) return text;
@@ -153,18 +153,18 @@ std::string cut_utf8(std::string text, size_t most_bytes) {
   return text;
 }
 
-/// A name in the folder of the form that AtomicFile::temporary() has, short enough for the file system: the target's
-/// own name may be as long as that allows.
+/// Returns a name in the folder that has the form of AtomicFile::temporary(). The name is short enough for the file
+/// system, although the target's own name may have the largest allowed length.
 fs::path name_temporary(const fs::path& folder, const fs::path& target, int writer) {
   constexpr size_t kUsualMost = 255;
   constexpr size_t kLongestEnding = 16;
-  // A folder may be seen by several machines.
+  // The name contains the host, because several machines may see the folder.
   std::string mark = ".tmp" + std::to_string(getpid()) + "-" + host_name();
   if (writer > 1) mark.insert(0, '.' + std::to_string(writer));
   mark += target.extension().string().substr(0, kLongestEnding);
   const long told = pathconf(folder.c_str(), _PC_NAME_MAX);
   const size_t most = told > 0 ? static_cast<size_t>(told) : kUsualMost;
-  // Leaves room for the prefix of commit_together.
+  // The rest of the name leaves space for the prefix of commit_together.
   const size_t taken = mark.size() + std::string_view(kOldMark).size();
   return folder / (cut_utf8(target.stem().string(), most > taken ? most - taken : 0) + mark);
 }
@@ -173,7 +173,7 @@ fs::path name_temporary(const fs::path& folder, const fs::path& target, int writ
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
-  // rename() would replace a symbolic link, not what it points to.
+  // Without this, rename() would replace a symbolic link and not the file that it points to.
   if (fs::is_symlink(target_, error)) target_ = follow_links(target_);
   refuse_lost_folder(target_);
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
@@ -184,7 +184,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (fs::is_directory(target_, error)) {
     throw RunError({"output.kind", "the output file is a folder", target_.string(), "give a file"});
   }
-  // For the root user rename() would even replace a device by a file.
+  // With root's rights, rename() would even replace a device by a file.
   if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
     throw RunError({"output.kind", "the output file is a device or a pipe", target_.string(), "give a file"});
   }
@@ -217,9 +217,9 @@ void AtomicFile::fail() const {
 }
 
 void AtomicFile::flush() const {
-  // rename() alone may reach the disk before the data does; a crash would leave an empty file.
+  // Without this, the renamed file may reach the disk before its data does, and a crash would leave an empty file.
   const int descriptor = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  // On a file system without modes this has no effect.
+  // fchmod() has no effect on a file system without modes.
   if (descriptor >= 0 && mode_) fchmod(descriptor, *mode_);
   const bool is_flushed = descriptor >= 0 && fsync(descriptor) == 0;
   if (descriptor >= 0) close(descriptor);
@@ -255,8 +255,8 @@ bool keep_old(const fs::path& file, const fs::path& name) {
 
 void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
   for (const AtomicFile* file : files) file->flush();
-  // A second name for each old file, which renaming does not affect; empty if there is none. It has the form of a
-  // temporary file, so that it is removed after a kill.
+  // A second name for each old file, which renaming does not affect; empty if there is no old file. The name has the
+  // form of a temporary file, so that clear_leftovers() removes it if the process is killed.
   std::vector<fs::path> old_files(files.size());
   const auto name_old = [&](size_t i) {
     fs::path name = files[i]->temporary_.parent_path() / kOldMark;
@@ -270,7 +270,8 @@ void AtomicFile::commit_together(std::span<AtomicFile* const> files) {
     }
   };
   try {
-    // While files are renamed, all but the first are absent, so that a kill never leaves a new file beside an old one.
+    // While files are renamed, all files except the first are absent. If the process is killed, a new file is therefore
+    // never beside an old one.
     for (size_t i = files.size(); i-- > 0;) {
       name_old(i);
       if (i > 0 && !old_files[i].empty() && unlink(files[i]->target_.c_str()) != 0) files[i]->fail();

@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kAsk{20};
 
 }  // namespace
 
-// It is opened for writing because NFS only locks such files.
+// The file is opened for writing, because NFS only locks such files.
 FileLock::FileLock(const std::filesystem::path& file, std::chrono::seconds patience, const ProgressCallback& progress)
     : descriptor_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   const auto until = std::chrono::steady_clock::now() + patience;

@@ -10,12 +10,13 @@
 namespace promin {
 
 /// A lock that excludes other threads, other processes and, if the file system supports it, other machines. It is
-/// released with the object or when the process ends in any way. It only avoids duplicate work; correctness does not
+/// released when the object is destroyed or the process ends. The lock only avoids duplicate work. Results do not
 /// depend on it, and a caller that cannot get it continues without it.
 class FileLock {
  public:
-  /// Creates the file, which stays, and waits for the lock. Continues without it if locks are not supported, or if
-  /// another process has held it for `patience`. Calls `progress` meanwhile and throws Cancelled if it returns false.
+  /// Creates the lock file, which is never removed, and waits for the lock. Continues without the lock if locks are not
+  /// supported, or if another process has held it for `patience`. Calls `progress` meanwhile and throws Cancelled if it
+  /// returns false.
   FileLock(const std::filesystem::path& file, std::chrono::seconds patience, const ProgressCallback& progress);
   ~FileLock();
   FileLock(const FileLock&) = delete;

@@ -18,9 +18,9 @@ inline uint32_t mix_bits(uint32_t x) {
   return x ^ x >> 16;
 }
 
-/// A 64-bit checksum over words of 8 bytes. Each word is mixed in by xor, a multiplication by an odd number and a
-/// shift. Each step is a bijection, so data that differ in a single word never have the same checksum. It does not
-/// protect against deliberate changes.
+/// A 64-bit checksum over words of 8 bytes. Each word is mixed in with an xor, a multiplication by an odd number and a
+/// shift. Each step is a bijection, so data that differ in a single word never have the same checksum. The checksum
+/// does not protect against deliberate changes.
 class Hash64 {
  public:
   void add(uint64_t word) {
@@ -38,7 +38,7 @@ class Hash64 {
   uint64_t value() const { return state_; }
 
  private:
-  /// 2^64 over the golden ratio: bits without a pattern.
+  /// 2^64 divided by the golden ratio: a number whose bits have no pattern.
   static constexpr uint64_t kMultiplier = 0x9E3779B97F4A7C15;
 
   uint64_t state_ = kMultiplier;

@@ -8,8 +8,8 @@
 
 namespace promin {
 
-/// A regular file, mapped read-only into memory. The file must not be changed in place while it is mapped. Replacing it
-/// by another (AtomicFile) does not change the mapping.
+/// A regular file, mapped read-only into memory. The file must not be changed in place while it is mapped. If another
+/// file replaces it (AtomicFile), the mapping does not change.
 class MappedFile {
  public:
   /// Maps the file. Throws InputError if it is missing, not a regular file, not readable or empty.
@@ -18,7 +18,7 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// The bytes begin at a page boundary.
+  /// Returns the bytes of the file, which begin at a page boundary.
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

@@ -18,7 +18,7 @@ namespace promin {
 
 namespace {
 
-/// 0: as many as the machine has cores.
+/// The number of threads that limit_threads() chose; 0 uses the number of cores.
 std::atomic<unsigned> chosen_count = 0;
 
 }  // namespace
@@ -48,7 +48,7 @@ bool can_start_threads(size_t count) {
 }
 
 Problem explain_no_threads() {
-  // The stack of a thread takes address space.
+  // Each thread's stack uses address space.
   const char* cure = address_space_limit() ? "raise pids.max, ulimit -u or ulimit -v" : "raise pids.max or ulimit -u";
   return {"threads.refused", "the system refuses to start another thread", "", cure};
 }
@@ -74,7 +74,7 @@ void for_each_index(size_t count, unsigned thread_count, const std::function<voi
     try {
       while (helpers.size() < helper_count) helpers.emplace_back(work);
     } catch (const std::system_error&) {
-      // The system refuses another thread, so the running threads do the work.
+      // If the system refuses another thread, the running threads do the work.
     }
     work();
   }

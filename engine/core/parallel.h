@@ -18,24 +18,24 @@ unsigned core_count();
 /// Returns whether the system can start this number of further threads now.
 bool can_start_threads(size_t count);
 
-/// Returns the problem if it cannot.
+/// Returns the problem for the case that can_start_threads() returned false.
 Problem explain_no_threads();
 
-/// Calls task(i) once for every i in [0, count) and returns when all calls have. The calls share up to `thread_count`
-/// threads (0: as many as the machine has cores) and start in the order of i; if the system starts fewer threads, those
-/// do the whole work. After an exception no further call starts, and the first one is rethrown here.
+/// Calls task(i) once for every i in [0, count) and returns when all calls have returned. Up to `thread_count` threads
+/// (0: one per core) make the calls, which start in the order of i. If the system starts fewer threads, these do the
+/// whole work. After an exception no further call starts, and for_each_index() rethrows the first exception.
 void for_each_index(size_t count, unsigned thread_count, const std::function<void(size_t)>& task);
 
-/// Does the same for ranges: divides [0, count) into pieces of `size`, the last one with the remainder, and calls
-/// task(begin, end) for each.
+/// Calls task(begin, end) for ranges: divides [0, count) into pieces of `size`, of which the last one may be smaller.
+/// Threads and exceptions are as for for_each_index().
 template <typename Task>
 void for_each_chunk(size_t count, size_t size, unsigned thread_count, const Task& task) {
   for_each_index((count + size - 1) / size, thread_count,
                  [&](size_t i) { task(i * size, std::min(count, (i + 1) * size)); });
 }
 
-/// Returns a part for each such piece, in order: a copy of `initial` after work(begin, end, part). A result that is
-/// computed from the parts in order does not depend on the number of threads.
+/// Returns a part for each piece of for_each_chunk(), in order. work(begin, end, part) changes a part, which is a copy
+/// of `initial`. A result that is computed from the parts in order does not depend on the number of threads.
 template <typename Part, typename Work>
 std::vector<Part> make_parts(size_t count, size_t size, unsigned thread_count, const Part& initial, const Work& work) {
   std::vector<Part> parts((count + size - 1) / size, initial);
@@ -43,7 +43,7 @@ std::vector<Part> make_parts(size_t count, size_t size, unsigned thread_count, c
   return parts;
 }
 
-/// Returns the indices of [0, count) for which a cheap test holds, in order.
+/// Returns the indices in [0, count) for which a cheap test returns true, in order.
 template <typename Test>
 std::vector<uint32_t> find_indices(size_t count, const Test& test) {
   using Indices = std::vector<uint32_t>;
@@ -59,7 +59,7 @@ std::vector<uint32_t> find_indices(size_t count, const Test& test) {
   return all;
 }
 
-/// Calls task(i) for each pixel or another cheap item, many per piece.
+/// Calls task(i) for each pixel or other cheap item. A thread takes many items at a time.
 template <typename Task>
 void for_each_pixel(size_t count, const Task& task) {
   constexpr size_t kPixels = 4096;

@@ -12,7 +12,8 @@ namespace promin {
 /// The unit roundoff of fp32, 2^-24.
 inline constexpr float kUnitRoundoff = 0x1p-24F;
 
-/// The largest float <= x, and the smallest >= x: bounds rounded from double stay conservative.
+/// Returns the largest float <= x (round_down) or the smallest float >= x (round_up), so that bounds rounded from
+/// double stay conservative.
 inline float round_down(double x) {
   const float rounded = static_cast<float>(x);
   return static_cast<double>(rounded) > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;

@@ -16,13 +16,14 @@ namespace promin {
 
 ScratchFile::ScratchFile(std::filesystem::path target, uint64_t byte_count)
     : target_(std::move(target)), byte_count_(byte_count) {
-  // Its name has the form of a temporary file, in case the process is killed before it is unlinked.
+  // The name has the form of a temporary file, so that clear_leftovers() removes it if the process is killed before it
+  // unlinks the file.
   const AtomicFile named(target_);
   descriptor_ = open(named.temporary().c_str(), O_CREAT | O_TRUNC | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor_ < 0) fail(errno);
   int error = unlink(named.temporary().c_str()) == 0 ? 0 : errno;
   if (error == 0 && byte_count > 0 && fallocate(descriptor_, 0, 0, static_cast<off_t>(byte_count)) != 0) {
-    // If space cannot be reserved, there may still be enough.
+    // If the file system cannot reserve space, there may still be enough.
     error = errno == EOPNOTSUPP || errno == ENOSYS || errno == EINTR ? 0 : errno;
   }
   if (error == 0) return;

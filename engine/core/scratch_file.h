@@ -9,9 +9,9 @@
 
 namespace promin {
 
-/// Disk space for data that is too large for memory until a file can be written: a nameless file in the folder of that
-/// file, so that nothing of it remains however the process ends. Several threads may write and read ranges that do not
-/// overlap.
+/// Disk space for data that is too large for memory, until the data is written to its file. It is a nameless file in
+/// the folder of that file, so nothing remains of it, even if the process is killed. Several threads may write and read
+/// ranges that do not overlap.
 class ScratchFile {
  public:
   /// Reserves this number of bytes if the file system supports it; other file systems report a lack of space when the
@@ -21,9 +21,9 @@ class ScratchFile {
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
-  /// Throws RunError.
+  /// Writes bytes at a position. Throws RunError.
   void write(uint64_t place, std::span<const std::byte> bytes);
-  /// Reads what was written. Throws RunError.
+  /// Reads bytes that were written at a position. Throws RunError.
   void read(uint64_t place, std::span<std::byte> bytes) const;
 
  private:

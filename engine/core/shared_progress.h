@@ -16,13 +16,14 @@ inline void tell_progress(const ProgressCallback& callback, double fraction) {
   if (callback && !callback(fraction)) throw Cancelled();
 }
 
-/// Sums progress from several threads; reports in steps of at least 0.1 %, one call at a time.
+/// Adds up the progress of several threads. It reports steps of at least 0.1 %, with one call at a time.
 class SharedProgress {
  public:
-  /// `callback` may be empty and must outlive this. `total` > 0 may be an estimate: a sum beyond it is reported as 1.
+  /// `callback` may be empty, and must outlive this object. `total` > 0 may be an estimate: a larger sum is reported as
+  /// 1.
   SharedProgress(const ProgressCallback& callback, double total) : callback_(callback), total_(total) {}
 
-  /// Throws Cancelled once the callback has returned false.
+  /// Adds an amount of work. Throws Cancelled after the callback has returned false.
   void add(double amount) {
     if (!callback_) return;
     const std::lock_guard lock(mutex_);

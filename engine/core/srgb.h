@@ -6,7 +6,7 @@
 
 namespace promin {
 
-// The sRGB transfer curve (IEC 61966-2-1) in both directions, without clamping.
+// Functions for the sRGB transfer curve (IEC 61966-2-1) in both directions, without clamping.
 
 /// Returns the linear light of an sRGB value in 0...1.
 inline double srgb_to_linear(double code) {

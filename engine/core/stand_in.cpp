@@ -29,7 +29,7 @@ std::string_view skip_to_text(std::string_view bytes) {
 const StandIn* find_stand_in(std::string_view first_bytes) {
   const std::string_view text = skip_to_text(first_bytes);
   if (text.starts_with("version https://git-lfs")) return &kPointer;
-  // XML of other kinds begins with other names.
+  // Other kinds of XML begin with other names.
   if (starts_with_any_case(text, "<!doctype html") || starts_with_any_case(text, "<html")) return &kPage;
   return nullptr;
 }

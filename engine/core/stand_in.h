@@ -6,9 +6,9 @@
 
 namespace promin {
 
-/// A file that was left in place of one that was never fetched.
+/// A small file that is in the place of a file that was never downloaded.
 struct StandIn {
-  /// What it is.
+  /// The kind of stand-in, for messages.
   const char* what;
   const char* cure;
 };

@@ -15,7 +15,8 @@ char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// Returns the number of letters to insert, remove, replace or swap with the next one (optimal string alignment).
+/// Returns the number of letters that must be inserted, removed, replaced or swapped with the next letter (optimal
+/// string alignment).
 size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});

@@ -8,11 +8,13 @@
 
 namespace promin {
 
-/// The known name nearest to a mistyped one, or an empty view if none is near: at most a third of the typed letters
-/// (one at least) inserted, deleted or replaced (Levenshtein's distance), regardless of case.
+/// Returns the known name nearest to a mistyped name, or an empty view if none is near. A name is near if at most a
+/// third of the typed letters (at least one) must be inserted, deleted, replaced or swapped. Upper and lower case are
+/// equal.
 std::string_view nearest_name(std::string_view typed, std::span<const std::string_view> known);
 
-/// The cure for an unknown name: `did you mean "sah"? Known: sah, median`, or `known: sah, median` where none is near.
+/// Returns the cure for an unknown name: `did you mean "sah"? Known: sah, median`, or `known: sah, median` if no name
+/// is near.
 std::string suggest_name(std::string_view typed, std::span<const std::string_view> known);
 
 /// Lists the names for a sentence: "sah, median or spatial".

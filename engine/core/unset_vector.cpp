@@ -20,7 +20,7 @@ std::align_val_t alignment_of(size_t bytes) {
 void* allocate_pages(size_t bytes) {
   void* memory = ::operator new(bytes, alignment_of(bytes));
 #ifdef MADV_HUGEPAGE
-  // Huge pages are optional: without them the memory is only slower to access first.
+  // Huge pages are optional. Without them only the first access to the memory is slower.
   if (bytes >= 2 * kHugePage) madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
   return memory;

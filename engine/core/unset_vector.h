@@ -10,12 +10,12 @@
 
 namespace promin {
 
-/// Memory that is aligned to 64 bytes. From 4 MiB on it uses huge pages if the system has them, because otherwise the
-/// first access to millions of elements costs as much as computing them. Throws std::bad_alloc.
+/// Allocates memory that is aligned to 64 bytes. From 4 MiB on the memory has huge pages if the system supports them,
+/// because otherwise the first access to millions of elements takes as long as computing them. Throws std::bad_alloc.
 void* allocate_pages(size_t bytes);
 void free_pages(void* memory, size_t bytes);
 
-/// Elements that are made without a value are left uninitialised.
+/// An allocator that leaves elements without a value uninitialised.
 template <typename T>
 struct UnsetAllocator {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= 64);
@@ -35,8 +35,8 @@ struct UnsetAllocator {
   bool operator==(const UnsetAllocator&) const = default;
 };
 
-/// A vector for millions of elements that several threads fill: resize() does not touch the memory, so the pages of
-/// each part come to the thread that writes it.
+/// A vector for millions of elements that several threads fill. resize() does not touch the memory, so the system
+/// assigns each page to the thread that writes it first.
 template <typename T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 

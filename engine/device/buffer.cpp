@@ -22,22 +22,22 @@ namespace {
 using Memory = vk::MemoryPropertyFlagBits;
 constexpr vk::MemoryPropertyFlags kMappable = Memory::eHostVisible | Memory::eHostCoherent;
 
-// Caching matters for reading pictures back. On discrete GPUs device-local mappable memory is not cached and may be
+// Reading pictures back needs cached memory. On discrete GPUs, device-local mappable memory is not cached and may be
 // small, so they use staging buffers.
 const std::array kDevicePreferences{Memory::eDeviceLocal | kMappable | Memory::eHostCached,
                                     vk::MemoryPropertyFlags(Memory::eDeviceLocal), vk::MemoryPropertyFlags()};
 const std::array kStagingPreferences{kMappable | Memory::eHostCached, kMappable};
 
-/// The file size limit in bytes; none where there is no limit.
+/// Returns the file size limit in bytes; nullopt if there is no limit.
 std::optional<rlim_t> file_size_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
   return limit.rlim_cur;
 }
 
-/// Some CPU drivers keep device memory in a file (lavapipe from Mesa 24.3 on) and do not notice if the file size limit
-/// prevents it from growing: the first access would end the program by SIGBUS. A read by the kernel fails instead.
-/// `last_byte` is that of the memory. Throws RunError.
+/// Checks the last byte of device memory with a read by the kernel. Some CPU drivers keep device memory in a file
+/// (lavapipe from Mesa 24.3 on) and do not notice if the file size limit keeps it from growing. The first access by the
+/// program would then end it with SIGBUS, but a read by the kernel only fails. Throws RunError.
 void check_memory_is_there(const std::byte* last_byte) {
   const std::optional<rlim_t> limit = file_size_limit();
   std::array<int, 2> pipe_ends{};
@@ -76,7 +76,7 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
     properties = wanted;
     if (type) break;
   }
-  // Vulkan guarantees a host-visible coherent type and some type for every buffer.
+  // Vulkan guarantees that every buffer has a host-visible coherent memory type, and at least one type.
   assert(type.has_value());
   memory_ = vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(requirements.size, *type));
   buffer_.bindMemory(*memory_, 0);
@@ -87,7 +87,7 @@ Buffer::Buffer(const Device& device, vk::DeviceSize size_bytes, vk::BufferUsageF
 }
 
 void check_file_size_limit(const Device& device) {
-  // More than a driver needs apart from buffers; its later allocations reuse this space.
+  // More memory than a driver needs in addition to buffers. The driver's later allocations reuse this space.
   constexpr vk::DeviceSize kDriverBytes = 1U << 20;
   if (file_size_limit()) Buffer(device, kDriverBytes, vk::BufferUsageFlagBits::eTransferDst);
 }

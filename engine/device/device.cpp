@@ -33,7 +33,7 @@ std::string name_of(vk::PhysicalDeviceType type) {
   }
 }
 
-/// Lower is better.
+/// Returns the rank of a type of device. The device with the lowest rank is the default.
 int rank_of(const std::string& type) {
   const std::array order{"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"};
   return static_cast<int>(std::find(order.begin(), order.end(), type) - order.begin());
@@ -44,7 +44,7 @@ std::string version_text(uint32_t version) {
          std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-/// A queue family for compute and, if there is a surface, for drawing and presenting to it.
+/// Returns a queue family that can compute and, if there is a surface, draw and present to the surface.
 std::optional<uint32_t> find_family(const vk::raii::PhysicalDevice& device, vk::SurfaceKHR surface) {
   using Flag = vk::QueueFlagBits;
   const vk::QueueFlags wanted = surface ? Flag::eCompute | Flag::eGraphics : vk::QueueFlags(Flag::eCompute);
@@ -62,7 +62,7 @@ bool has_device_extension(const vk::raii::PhysicalDevice& device, std::string_vi
                      [&](const auto& e) { return name == e.extensionName.data(); });
 }
 
-/// Empty if the driver reports none.
+/// Returns the driver's properties; empty if the driver reports none.
 std::optional<vk::PhysicalDeviceDriverProperties> driver_properties(const vk::raii::PhysicalDevice& device,
                                                                     const vk::PhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2 &&
@@ -143,7 +143,7 @@ std::vector<vk::raii::PhysicalDevice> enumerate(const vk::raii::Instance& instan
   try {
     return instance.enumeratePhysicalDevices();
   } catch (const vk::InitializationFailedError&) {
-    return {};  // a loader without any driver
+    return {};  // The loader finds no driver.
   }
 }
 
@@ -178,7 +178,7 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   const auto parsed = std::from_chars(selection->data(), end, number);
   const bool is_number = !selection->empty() && parsed.ec == std::errc() && parsed.ptr == end;
   for (size_t i = 0; i < infos.size(); ++i) {
-    // An empty text is part of every name, so it is not a selection.
+    // An empty text is contained in every name, so it is not a selection.
     const bool is_part =
         !selection->empty() && lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
     const bool is_uuid = lower_case(*selection) == std::string(kByUuid) + infos[i].uuid;
@@ -201,8 +201,9 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
   throw DeviceError(problem);
 }
 
-/// CPU drivers start their threads here. If the system refuses some, a driver fails without a reason, or reports
-/// nothing and the first dispatch waits forever. In both cases the system also refuses a further thread afterwards.
+/// Creates the logical device. CPU drivers start their threads here. If the system refuses some threads, a driver fails
+/// without a reason, or it reports nothing and the first dispatch waits forever. In both cases the system also refuses
+/// another thread afterwards, which this function tests.
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, const vk::DeviceCreateInfo& info,
                              const std::string& name) {
   try {
@@ -266,7 +267,7 @@ Device::Device(const DeviceOptions& options)
     }
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    // A layered driver requires that its extension is enabled.
+    // A layered driver requires that this extension is enabled.
     if (has_device_extension(physical_, "VK_KHR_portability_subset")) {
       enabled_extensions_.push_back("VK_KHR_portability_subset");
     }
@@ -292,7 +293,7 @@ std::optional<uint32_t> Device::find_memory_type(uint32_t allowed_types, vk::Mem
 }
 
 void Device::wait_idle() const {
-  // Vulkan counts it as a use of all queues.
+  // Vulkan treats waiting for the device as a use of all queues.
   const std::lock_guard lock(queue_mutex_);
   device_.waitIdle();
 }
@@ -306,7 +307,7 @@ void Device::run(const std::function<void(const vk::raii::CommandBuffer&)>& reco
   const vk::CommandBuffer buffer = *commands_;
   submit.setCommandBuffers(buffer);
   use_queue([&](const vk::raii::Queue& queue) { queue.submit(submit, *fence_); });
-  // Work is cut into short dispatches.
+  // A device that does not answer for this long is lost, because every dispatch is short.
   const double most_s = profile_.most_silence_s;
   const vk::Result result = device_.waitForFences({*fence_}, VK_TRUE, static_cast<uint64_t>(1e9 * most_s));
   if (result != vk::Result::eSuccess) {

@@ -21,28 +21,28 @@ namespace promin::gpu {
 /// The requirements of a window on a device, in addition to tracing.
 struct Presentation {
   std::vector<const char*> instance_extensions;
-  /// Makes the surface, which the device will own. Throws DeviceError.
+  /// Makes the surface, which the device then owns. Throws DeviceError.
   std::function<VkSurfaceKHR(VkInstance)> make_surface;
 };
 
 struct DeviceOptions {
-  /// See open_device (promin/device.h).
+  /// The device to open; see open_device (promin/device.h).
   std::optional<std::string> selection = std::nullopt;
   /// If not null, the device must be able to present to its surface.
   const Presentation* presentation = nullptr;
-  /// Replaces the profile's. Tests set it to 1: such kernels compile in two thirds of the time.
+  /// Replaces the profile's value. Tests set it to 1, because such kernels compile in two thirds of the time.
   std::optional<uint32_t> pixel_packet_size = std::nullopt;
 };
 
-/// Runs `work` and turns Vulkan's exceptions into RunError sentences that name the call and the result.
+/// Runs `work` and converts Vulkan's exceptions to RunErrors, whose sentences name the call and the result.
 void translate_vulkan_errors(const std::function<void()>& work);
 
-/// A Vulkan instance and one logical device with one compute queue; for a window the queue also draws and presents. It
-/// needs only the minima that Vulkan 1.1 requires, and enables no optional feature. Several threads may use a device,
-/// each with its own buffers and pipelines.
+/// A Vulkan instance and one logical device with one compute queue. With a window the queue also draws and presents.
+/// The device needs only the limits that Vulkan 1.1 guarantees, and enables no optional feature. Several threads may
+/// use a device if each has its own buffers and pipelines.
 class Device {
  public:
-  /// Throws DeviceError.
+  /// Opens a device. Throws DeviceError.
   explicit Device(const DeviceOptions& options);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -58,32 +58,33 @@ class Device {
   const vk::raii::Device& handle() const { return device_; }
   const vk::raii::Instance& instance() const { return instance_; }
   const vk::raii::PhysicalDevice& physical() const { return physical_; }
-  /// Calls `use` with the queue while no other thread uses it.
+  /// Calls `use` with the queue. No other thread uses the queue meanwhile.
   template <typename Use>
   auto use_queue(const Use& use) const {
     const std::lock_guard lock(queue_mutex_);
     return use(queue_);
   }
-  /// Waits until all submitted work is done.
+  /// Waits until the device has finished all submitted work.
   void wait_idle() const;
   uint32_t queue_family() const { return queue_family_; }
-  /// Null without a window.
+  /// Returns the window's surface; null without a window.
   const vk::raii::SurfaceKHR& surface() const { return surface_; }
   CompiledPipelines& compiled_pipelines() const { return compiled_pipelines_; }
   const vk::PhysicalDeviceLimits& limits() const { return limits_; }
   /// Returns nanoseconds per timestamp tick; 0 if the queue has no timestamps.
   double timestamp_period_ns() const { return timestamp_period_ns_; }
-  /// Returns the ticks between two timestamps, which may have fewer than 64 bits.
+  /// Returns the number of ticks between two timestamps. Timestamps may have fewer than 64 bits.
   uint64_t ticks_between(uint64_t first, uint64_t second) const { return (second - first) & timestamp_mask_; }
 
   /// Returns the index of the first memory type in `allowed_types` that has all properties of `wanted`, or nullopt.
   std::optional<uint32_t> find_memory_type(uint32_t allowed_types, vk::MemoryPropertyFlags wanted) const;
 
-  /// Records one command buffer, submits it and waits until the device has finished. Threads take turns.
+  /// Records one command buffer, submits it and waits until the device has finished it. Only one thread at a time does
+  /// this.
   void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
  private:
-  // Declared in order of creation: each needs those before it.
+  // The members are declared in the order of creation, because each needs the members before it.
   std::unique_ptr<std::atomic<uint64_t>> validation_messages_;
   vk::raii::Context context_;
   vk::raii::Instance instance_{nullptr};
@@ -109,7 +110,7 @@ class Device {
   std::string choice_;
 };
 
-/// As open_device of promin/device.h.
+/// Opens a device in the same way as open_device() of promin/device.h.
 DeviceHandle open_device(const DeviceOptions& options);
 
 }  // namespace promin::gpu

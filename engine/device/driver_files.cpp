@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the fault of a manifest; empty if it is valid. A folder contains manifests.
+/// Returns the fault of a manifest; empty if it is valid. A folder that contains manifests is valid too.
 std::string find_fault(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return "does not exist";
@@ -30,7 +30,7 @@ std::string find_fault(const fs::path& file) {
   return nlohmann::json::accept(stream) ? "" : "is not JSON";
 }
 
-/// Returns the first fault among the files of a variable, separated by colons.
+/// Returns the first fault among the files that a variable names; colons separate the files.
 std::optional<Problem> find_fault_in(const std::string& variable, const std::string& files) {
   std::istringstream list(files);
   for (std::string file; std::getline(list, file, ':');) {
@@ -48,8 +48,8 @@ constexpr const char* kVariables[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK
 }  // namespace
 
 std::optional<Problem> find_lack_of_address_space() {
-  // The address space that lavapipe of Mesa 22.3 needs: LLVM, the kernels of a typical scene, and for each core the
-  // stacks of two threads or their equivalent in newer versions.
+  // The address space that lavapipe of Mesa 22.3 needs: for LLVM, for the kernels of a typical scene, and for the
+  // stacks of two threads per core or their equivalent in newer versions.
   constexpr uint64_t kDriverBytes = uint64_t{256} << 20;
   constexpr uint64_t kCoreBytes = uint64_t{2 * 8} << 20;
   constexpr unsigned kMostCores = 32;

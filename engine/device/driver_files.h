@@ -8,14 +8,16 @@
 
 namespace promin::gpu {
 
-/// Returns a problem if the process may have too little address space for a Vulkan driver; drivers crash at the limit.
+/// Returns a problem if the process may have too little address space for a Vulkan driver, because drivers crash at the
+/// limit.
 std::optional<Problem> find_lack_of_address_space();
 
-/// Returns a problem for the first file that the environment names for Vulkan's loader and that is not a manifest.
+/// Returns a problem if a file that the environment names for the Vulkan loader is not a manifest; it describes the
+/// first such file.
 std::optional<Problem> find_manifest_fault();
 
-/// Returns the reason why Vulkan's loader finds no working driver: one of the problems above, else a variable that
-/// selects drivers, else that none is installed.
+/// Returns the reason why the Vulkan loader finds no working driver: one of the two problems above, or a variable that
+/// selects drivers, or that no driver is installed.
 Problem explain_missing_driver();
 
 }  // namespace promin::gpu

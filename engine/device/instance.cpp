@@ -70,7 +70,7 @@ vk::raii::Instance try_make_instance(const vk::raii::Context& context, std::vect
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
-  // Layered drivers such as MoltenVK are listed only on request.
+  // The loader lists layered drivers such as MoltenVK only on request.
   if (has_extension(context, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
     extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     flags |= vk::InstanceCreateFlagBits::eEnumeratePortabilityKHR;
@@ -91,7 +91,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, std::vector<c
   } catch (const vk::IncompatibleDriverError&) {
     throw NoDriverError();
   } catch (const vk::SystemError& error) {
-    // The loader reports a manifest that is not JSON as OutOfHostMemory.
+    // The loader reports OutOfHostMemory for a manifest that is not JSON.
     if (find_manifest_fault()) throw NoDriverError();
     throw DeviceError({"device.vulkan.start", std::string("Vulkan cannot start (") + error.what() + ")", "",
                        "install a Vulkan 1.1 driver such as mesa-vulkan-drivers"});

@@ -15,10 +15,11 @@ namespace promin::gpu {
 namespace {
 
 /// Reserves address space for a driver's compiler during its lifetime. LLVM crashes at the limit of address space, so
-/// the compiler starts only if enough is free. Costs nothing if address space is not limited.
+/// the compiler starts only if enough is free. The class does nothing if address space is not limited.
 class CompilerSpace {
  public:
-  /// Waits for other compilers if there is too little for all. Throws RunError if there is too little for one.
+  /// Waits for other compilers if there is not enough address space for all. Throws RunError if there is not enough for
+  /// one.
   explicit CompilerSpace(uint64_t code_bytes) {
     if (!address_space_limit()) return;
     bytes_ = estimate(code_bytes);
@@ -39,12 +40,13 @@ class CompilerSpace {
   }
 
  private:
-  /// What lavapipe takes for a kernel of this many bytes of SPIR-V, but for the start. Mesa 22.3.6 takes 44 MiB for
-  /// 144 KiB, 38 for 176, 76 for 235, 183 for 348, 385 for 474 and 391 for 484, start included; 25.0.7 takes 30 for
-  /// 176, 128 for 348 and 294 for 474. The estimate is 40, 61, 108, 237, 439 and 457 MiB without the start.
+  /// Returns an estimate of the memory that lavapipe uses to compile a kernel of this many bytes of SPIR-V, without the
+  /// memory for starting it. Measured with the start: Mesa 22.3.6 uses 44 MiB for 144 KiB, 38 for 176, 76 for 235, 183
+  /// for 348, 385 for 474 and 391 for 484; Mesa 25.0.7 uses 30 for 176, 128 for 348 and 294 for 474. The estimates for
+  /// these six sizes are 40, 61, 108, 237, 439 and 457 MiB.
   static uint64_t estimate(uint64_t code_bytes) { return code_bytes * code_bytes / 512; }
 
-  /// Drivers need some more to start a kernel: up to 24 MiB.
+  /// The additional memory that a driver needs to start a kernel: up to 24 MiB.
   static std::optional<Problem> find_lack(uint64_t bytes) {
     constexpr uint64_t kStartBytes = uint64_t{32} << 20;
     return find_lack_of_space("the driver to compile the scene's kernels", bytes + kStartBytes);
@@ -53,7 +55,8 @@ class CompilerSpace {
   static inline std::mutex mutex_;
   static inline std::condition_variable has_ended_;
   static inline uint64_t taken_ = 0;
-  /// The largest amount of one compilation: the process keeps that memory, and the next compilation uses it.
+  /// The largest memory of one compilation so far. The process keeps this memory, and the next compilation uses it
+  /// again.
   static inline uint64_t most_ = 0;
   uint64_t bytes_ = 0;
 };
@@ -89,7 +92,7 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
       device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));
   made.layout = vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo({}, *made.set_layout));
   made.pipeline = vk::raii::Pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *made.layout));
-  // If two threads have compiled the same, one result is kept.
+  // If two threads have compiled the same code, only one result is kept.
   const std::lock_guard lock(mutex_);
   return compiled_.emplace(std::move(key), std::move(made)).first->second;
 }
@@ -122,7 +125,7 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const uint32_t>
 
 void ComputePipeline::bind(const BoundBuffer& buffer) {
   vk::WriteDescriptorSet write(*set_, buffer.binding, 0, 1, buffer.type);
-  // The shader reads data beyond the range of a storage buffer as texels.
+  // The shader reads data beyond the range of a storage buffer as texels, so the range may end earlier.
   const vk::DeviceSize range =
       std::min<vk::DeviceSize>(buffer.buffer->size_bytes(), device_->limits().maxStorageBufferRange);
   const vk::DescriptorBufferInfo info(*buffer.buffer->handle(), 0, range);

@@ -23,24 +23,25 @@ struct BoundBuffer {
   uint32_t binding = 0;
   vk::DescriptorType type = vk::DescriptorType::eStorageBuffer;
   const Buffer* buffer = nullptr;
-  /// The view of a texel buffer.
+  /// The view, if the buffer is read as texels.
   const vk::raii::BufferView* view = nullptr;
 };
 
-/// A compiled compute shader with entry point "main" and one descriptor set, without its bindings.
+/// A compiled compute shader with entry point "main" and one descriptor set. It is not bound to buffers.
 struct CompiledPipeline {
   vk::raii::DescriptorSetLayout set_layout{nullptr};
   vk::raii::PipelineLayout layout{nullptr};
   vk::raii::Pipeline pipeline{nullptr};
 };
 
-/// The pipelines that a device has compiled. Two requests share one where the same code is left of their shaders
-/// (specialize) and their bindings are equal. VkPipelineCache does not do this: lavapipe's is empty, and SwiftShader
-/// distinguishes pipelines by their layout objects. Several threads can use it; none waits while another compiles.
+/// The pipelines that a device has compiled. Two requests share a pipeline if specialize() returns the same code for
+/// both and their bindings are equal. VkPipelineCache does not do this: lavapipe's is empty, and SwiftShader
+/// distinguishes pipelines by their layout objects. Several threads may use this object; no thread waits while another
+/// one compiles.
 class CompiledPipelines {
  public:
-  /// Returns a pipeline, and compiles it if needed. It is valid as long as this object. Throws vk::SystemError, and
-  /// std::logic_error if the module lacks a constant, which drivers silently ignore.
+  /// Returns a pipeline, and compiles it if needed. The pipeline is valid as long as this object exists. Throws
+  /// vk::SystemError, and std::logic_error if the module lacks a constant, which drivers silently ignore.
   const CompiledPipeline& get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                               std::span<const SpecializationConstant> constants,
                               std::span<const vk::DescriptorSetLayoutBinding> bindings);
@@ -55,16 +56,16 @@ class CompiledPipelines {
 /// A compiled pipeline and the buffers bound to it.
 class ComputePipeline {
  public:
-  /// Throws as CompiledPipelines::get does.
+  /// Compiles the pipeline if needed, and binds the buffers. Throws the same exceptions as CompiledPipelines::get().
   ComputePipeline(const Device& device, std::span<const uint32_t> spirv,
                   std::span<const SpecializationConstant> constants, std::span<const BoundBuffer> buffers);
 
-  /// Changes what a binding of the constructor refers to; the device must be idle.
+  /// Replaces the buffer of a binding that the constructor received. The device must be idle.
   void bind(const BoundBuffer& buffer);
 
-  /// Records binding everything and `group_count` workgroups, across and down.
+  /// Records the bindings and a dispatch of `group_count` workgroups in x and y.
   void dispatch(const vk::raii::CommandBuffer& commands, const uvec2& group_count) const;
-  /// Does the same with the number of workgroups in three words at `offset_bytes` of a buffer.
+  /// Records a dispatch whose number of workgroups is in three words at `offset_bytes` of a buffer.
   void dispatch_indirect(const vk::raii::CommandBuffer& commands, const Buffer& group_count,
                          vk::DeviceSize offset_bytes) const;
 

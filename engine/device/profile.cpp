@@ -12,17 +12,17 @@
 namespace promin::gpu {
 namespace {
 
-/// The differences for every CPU device, whether its driver is known or not.
+/// Changes the profile for every CPU device, whether its driver is known or not.
 void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
-  // Threads that Mesa's CPU driver has unless it is told otherwise (LP_MAX_THREADS).
+  // Number of threads of Mesa's CPU driver unless the environment sets another number (LP_MAX_THREADS).
   constexpr uint32_t kMostThreads = 32;
   profile.fetches_film_texels = true;
   profile.target_dispatch_ms = 100.0;
-  // It compiles kernels at their first dispatch, which may take minutes if other processes use the cores. Nothing can
-  // interrupt it: its threads would continue with freed memory.
+  // The driver compiles kernels at their first dispatch, which may take minutes if other processes use the cores. A
+  // dispatch cannot be interrupted: the driver's threads would continue with freed memory.
   profile.most_silence_s = 3600.0;
   profile.most_group_rows = std::min(traits.core_count, kMostThreads);
-  // Fewer paths make more dispatches, more do not fit in the caches (docs/performance_log.md).
+  // Fewer paths need more dispatches, and more paths do not fit into the caches (docs/performance_log.md).
   profile.most_stream_paths = 1U << 16;
   profile.sorts_rays = true;
   profile.most_frames_in_flight = 1;
@@ -31,21 +31,21 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
   profile.measured_rays = 1U << 14;
 }
 
-/// Packets of 4: of 1, 2, 3, 4, 6 and 8 rays and of 2, 4 and 8 pixels no other number was faster on both versions of
-/// Mesa that were measured (docs/performance_log.md).
+/// Sets packets of 4 rays. Packets of 1, 2, 3, 4, 6 and 8 rays and of 2, 4 and 8 pixels were measured on two versions
+/// of Mesa, and no other size was faster on both (docs/performance_log.md).
 void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.pixel_packet_size = 4;
   // Compiling the showcase for packets takes 0.9 s longer with 22.3.6 and 2.6 s with 25.0.7, once on a machine; tracing
-  // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md). So many samples cost a
-  // tenth of a second at most where the driver's cache has either kernel, and save seconds where it has none.
+  // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md). This number of samples
+  // costs at most a tenth of a second if the driver's cache has both kernels, and saves seconds if it has neither.
   profile.samples_that_repay_packets = 1U << 19;
   profile.ray_packet_size = 4;
   profile.may_cut_loops = true;
   profile.ray_traversal = {.steps_together = 2, .waits_with_solids = true};
 }
 
-/// Packets look into their leaves after each step: pictures take 0.78 to 0.94 of the time with lavapipe 25.0.7, where
-/// 22.3.6 takes 0.96 to 1.4 (docs/performance_log.md). Versions between were not measured.
+/// Lets packets test their leaves after each step. With this, pictures take 0.78 to 0.94 of the time with lavapipe
+/// 25.0.7, and 0.96 to 1.4 of the time with 22.3.6 (docs/performance_log.md). Versions between were not measured.
 void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
 }
@@ -62,16 +62,16 @@ uint32_t mesa_version(std::string_view driver_info) {
   return version;
 }
 
-/// The differences for a driver from a version of Mesa on.
+/// Changes of the profile for a driver, from a version of Mesa on.
 struct DriverRow {
   VkDriverId driver;
   uint32_t first_mesa_version;
   void (*suit)(DeviceProfile&, const DeviceTraits&);
 };
 
-/// The one place that knows drivers. Forms of traversal that suit a driver, or a processor under it, are chosen here
-/// too: a field of DeviceProfile, where need be one of DeviceTraits, and a row. SwiftShader has none: it is
-/// treated as any CPU device.
+/// The table of drivers; no other code depends on the driver. A form of traversal that suits a driver or its processor
+/// is chosen here too: with a field of DeviceProfile, a field of DeviceTraits if needed, and a row of this table.
+/// SwiftShader has no row: it is treated like any CPU device.
 constexpr std::array kDrivers{DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, 0, suit_lavapipe},
                               DriverRow{VK_DRIVER_ID_MESA_LLVMPIPE, 25, suit_newer_lavapipe}};
 

@@ -19,7 +19,7 @@ using spv::Op;
 constexpr size_t kHeaderWords = 5;
 constexpr size_t kIdBoundWord = 3;
 
-/// Of one instruction, the first with its opcode and length.
+/// The words of one instruction. The first word has the opcode and the length.
 using Words = std::span<const uint32_t>;
 
 Op op_of(Words instruction) {
@@ -40,7 +40,7 @@ void visit_instructions(std::span<const uint32_t> spirv, const std::function<boo
   }
 }
 
-/// The instruction's own id, if it has one.
+/// Returns the id of the instruction's result, if it has one.
 std::optional<uint32_t> result_of(Words instruction) {
   bool has_result = false;
   bool has_type = false;
@@ -49,15 +49,15 @@ std::optional<uint32_t> result_of(Words instruction) {
   return instruction[has_type ? 2 : 1];
 }
 
-/// From its OpLabel to its terminator.
+/// The instructions of a block, from its OpLabel to its terminator.
 struct Block {
   std::vector<Words> instructions;
   bool is_live = true;
 
   uint32_t label() const { return instructions.front()[1]; }
   Words terminator() const { return instructions.back(); }
-  /// The instruction before the terminator, if it is of this kind: OpLoopMerge of a loop's first block, or
-  /// OpSelectionMerge. Else empty.
+  /// Returns the instruction before the terminator if it has this opcode: OpLoopMerge in the first block of a loop, or
+  /// OpSelectionMerge. Otherwise returns an empty span.
   Words merge(Op kind) const {
     if (instructions.size() < 2) return {};
     const Words before = instructions[instructions.size() - 2];
@@ -66,7 +66,7 @@ struct Block {
 };
 
 struct Function {
-  /// OpFunction and its parameters.
+  /// OpFunction and the function's parameters.
   std::vector<Words> head;
   std::vector<Block> blocks;
   bool is_live = false;
@@ -74,7 +74,7 @@ struct Function {
   uint32_t id() const { return head.front()[2]; }
 };
 
-/// The known values of ids of bools (0 and 1) or 32-bit integers.
+/// The known values of ids that are bools (0 and 1) or 32-bit integers.
 class KnownValues {
  public:
   KnownValues(uint32_t id_bound, std::span<const SpecializationConstant> constants)
@@ -87,7 +87,7 @@ class KnownValues {
   std::optional<uint32_t> of(uint32_t id) const { return values_.at(id); }
   bool is_bool(uint32_t type) const { return is_bool_.at(type); }
 
-  /// Of an instruction before the first function.
+  /// Records the value of a constant, for an instruction before the first function.
   void learn_constant(Words instruction) {
     switch (op_of(instruction)) {
       case Op::OpDecorate:
@@ -121,7 +121,7 @@ class KnownValues {
     }
   }
 
-  /// Of an instruction in a function, but for OpPhi.
+  /// Records the value of a result, for an instruction in a function other than OpPhi.
   void learn_result(Words instruction) {
     if (instruction.size() > 3 && result_of(instruction)) {
       learn(instruction, evaluate(op_of(instruction), instruction.subspan(3)));
@@ -141,7 +141,7 @@ class KnownValues {
   }
 
  private:
-  /// Returns the value of an operation, if it is one that conditions use and its operands are known.
+  /// Returns the value of an operation if conditions use such operations and its operands are known.
   std::optional<uint32_t> evaluate(Op op, Words operands) const {
     const auto operand = [&](size_t i) {
       return i < operands.size() && operands[i] < values_.size() ? values_[operands[i]] : std::nullopt;
@@ -169,7 +169,7 @@ class KnownValues {
         return *a - *b;
       case Op::OpIMul:
         return *a * *b;
-      // By more than 31 is undefined.
+      // A shift by more than 31 is undefined.
       case Op::OpShiftRightLogical:
         return *b < 32 ? std::optional(*a >> *b) : std::nullopt;
       case Op::OpShiftLeftLogical:
@@ -196,7 +196,7 @@ class KnownValues {
   std::vector<SpecializationConstant> constants_;
   std::vector<std::optional<uint32_t>> values_;
   std::vector<std::optional<uint32_t>> spec_ids_;
-  /// By types' ids.
+  /// For each id of a type, whether the type is a bool or a 32-bit integer.
   std::vector<bool> is_scalar_;
   std::vector<bool> is_bool_;
 };
@@ -229,7 +229,7 @@ struct Module {
   }
 };
 
-/// Finds unreachable code of a function, and writes the remainder.
+/// Finds the unreachable code of a function, and writes the reachable code.
 class FunctionPruner {
  public:
   FunctionPruner(Function& function, KnownValues& values) : function_(function), values_(values) {
@@ -237,7 +237,7 @@ class FunctionPruner {
       block_of_.emplace_back(block.label(), &block);
     }
     std::ranges::sort(block_of_);
-    // Each round finds more known values, because fewer blocks lead to others, and thus fewer live blocks. No round
+    // In each round fewer blocks can be reached, so more values are known, and then fewer blocks are live. No round
     // marks live code as dead.
     size_t before = function_.blocks.size();
     for (size_t now = mark_live_blocks(); now != before; now = mark_live_blocks()) before = now;
@@ -274,8 +274,8 @@ class FunctionPruner {
     return *found->second;
   }
 
-  /// The only block that a conditional branch leads to, if that is known. A branch from the end of a loop to its begin
-  /// stays, because a loop without one is not valid.
+  /// Returns the only block to which a conditional branch can lead, if it is known. A branch from the end of a loop to
+  /// its begin stays, because SPIR-V allows no loop without one.
   std::optional<uint32_t> known_target(const Block& block) const {
     const Words terminator = block.terminator();
     if (op_of(terminator) != Op::OpBranchConditional) return std::nullopt;
@@ -296,7 +296,7 @@ class FunctionPruner {
         return {terminator[2], terminator[3]};
       case Op::OpSwitch: {
         std::vector<uint32_t> targets = {terminator[2]};
-        // Pairs of a literal of 32 bits and a label.
+        // The operands are pairs of a 32-bit literal and a label.
         for (size_t i = 4; i < terminator.size(); i += 2) targets.push_back(terminator[i]);
         return targets;
       }
@@ -309,7 +309,7 @@ class FunctionPruner {
     return from.is_live && std::ranges::count(successors(from), label) > 0;
   }
 
-  /// If every value with which the block may be entered is known and all are equal.
+  /// Returns the value of an OpPhi if all values with which the block may be entered are known and equal.
   std::optional<uint32_t> phi_value(Words phi, uint32_t label) const {
     std::optional<uint32_t> common;
     for (size_t i = 3; i + 1 < phi.size(); i += 2) {
@@ -321,7 +321,8 @@ class FunctionPruner {
     return common;
   }
 
-  /// Blocks come before those that they dominate, so a value is found before its use, except for phis.
+  /// Blocks come before the blocks that they dominate, so a value is found before its use. Only OpPhi may use a later
+  /// value.
   size_t mark_live_blocks() {
     for (const Block& block : function_.blocks) {
       for (const Words instruction : block.instructions) {
@@ -381,7 +382,8 @@ class FunctionPruner {
     out[first] = word(Op::OpPhi, static_cast<uint32_t>(out.size() - first));
   }
 
-  /// A block must stay if a live block names it as the end of its selection or loop, or as its continue target.
+  /// Writes a block that is never executed. It must stay if a live block names it as the end of its selection or loop,
+  /// or as its continue target.
   void write_dead(const Block& block, std::vector<uint32_t>& out) const {
     bool is_merge = false;
     std::optional<uint32_t> loop;
@@ -405,7 +407,7 @@ class FunctionPruner {
 
   Function& function_;
   KnownValues& values_;
-  /// Sorted by label.
+  /// The blocks, sorted by label.
   std::vector<std::pair<uint32_t, Block*>> block_of_;
 };
 
@@ -427,7 +429,7 @@ std::vector<uint32_t> prune_functions(Module& module, KnownValues& values) {
     for (const uint32_t called : pruner.called_functions()) open.push_back(called);
     pruner.write(written.emplace_back(&*found, std::vector<uint32_t>()).second);
   }
-  // In their old order.
+  // Sorts the functions in their original order.
   std::ranges::sort(written, {}, [](const auto& entry) { return entry.first; });
   std::vector<uint32_t> words;
   for (const auto& [function, left] : written) words.insert(words.end(), left.begin(), left.end());
@@ -452,8 +454,8 @@ bool is_constant(Op op) {
   }
 }
 
-/// Returns the operands that can be ids, for an instruction with a result. Where this function does not know the
-/// instruction, some of them are literals.
+/// Returns the operands of an instruction with a result that can be ids. For instructions that this function does not
+/// know, some of these operands are literals.
 Words operands_of(Words instruction) {
   size_t first = 3;
   size_t count = instruction.size();
@@ -486,7 +488,8 @@ Words operands_of(Words instruction) {
   return instruction.subspan(first, std::min(count, instruction.size() - first));
 }
 
-/// Writes what comes before the functions: constants have their values, and what nothing uses is left out.
+/// Writes the instructions before the functions. Constants have their known values, and unused definitions are left
+/// out.
 class HeadWriter {
  public:
   HeadWriter(const Module& module, const KnownValues& values, Words functions, uint32_t id_bound)
@@ -498,11 +501,11 @@ class HeadWriter {
     }
     for (const Words instruction : head_) {
       if (const auto id = result_of(instruction)) is_defined_.at(*id) = true;
-      // Nothing else there is made of constants: the words of other instructions are literals, types and variables.
+      // Only constants are composed of other constants here: the other operands are literals, types and variables.
       const Op op = op_of(instruction);
       if (op == Op::OpTypeArray || op == Op::OpVariable || op == Op::OpExecutionModeId) use(instruction);
     }
-    // A constant comes after those that it is made of.
+    // A constant comes after its components, so the loop runs backwards.
     for (const Words instruction : std::views::reverse(head_)) {
       if (!is_constant(op_of(instruction))) continue;
       const uint32_t id = instruction[2];
@@ -550,7 +553,7 @@ class HeadWriter {
 
   const std::vector<Words>& head_;
   const KnownValues& values_;
-  /// By ids: those that the written module defines, but for names and decorations.
+  /// For each id, whether the written module defines it. Names and decorations do not count.
   std::vector<bool> is_defined_;
   std::vector<bool> is_used_;
 };

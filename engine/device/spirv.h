@@ -17,14 +17,14 @@ struct SpecializationConstant {
 /// Returns whether a SPIR-V module declares a specialisation constant with this SpecId.
 bool has_specialization_constant(std::span<const uint32_t> spirv, uint32_t id);
 
-/// Returns the module for these values of its specialization constants, which it no longer has; a constant that is not
-/// given keeps its default. Blocks behind branches that depend on constants alone, functions that are called from such
-/// blocks only, and constants that nothing uses are left out. The result computes the same. Two sets of constants that
-/// differ in what the shader does not read give the same words.
-/// Drivers remove dead code too, but later: lavapipe first puts all functions into one and unrolls their loops, and a
-/// scene of one sphere would pay for every other shape. A function with a loop whose first block begins with an OpPhi,
-/// which glslang does not write, is left whole.
-/// Throws std::logic_error if the words are not a SPIR-V module, or if a specialization constant is neither a bool nor
+/// Returns the module with these values in place of its specialization constants. A constant without a given
+/// value keeps its default. The function removes blocks that branches on constants never reach, functions that
+/// are called only from such blocks, and constants that nothing uses. The result computes the same as the
+/// module. Two sets of constants that differ only in constants that the shader does not read give the same
+/// words. Drivers remove dead code too, but later: lavapipe first inlines all functions and unrolls their
+/// loops, so a scene of one sphere would pay for every other shape. The function does not change a function
+/// with a loop whose first block begins with an OpPhi; glslang does not write such loops. Throws
+/// std::logic_error if the words are not a SPIR-V module, or if a specialization constant is neither a bool nor
 /// an integer of 32 bits.
 std::vector<uint32_t> specialize(std::span<const uint32_t> spirv, std::span<const SpecializationConstant> constants);
 

@@ -19,15 +19,15 @@ namespace {
 
 using namespace layout;
 
-/// The number of triangles that a thread takes at a time.
+/// The number of triangles that a thread processes at a time.
 constexpr size_t kChunkSize = 16384;
 
 uint32_t bits_of(float value) {
   return std::bit_cast<uint32_t>(value);
 }
 
-/// Packs corners as corner0, corner1 and corner2 of shaders/trace/primitives/triangle.glsl and triangle_corners read
-/// them.
+/// Packs the corners in the form that shaders/trace/primitives/triangle.glsl and triangle_corners read: corner0,
+/// corner1 and corner2.
 Primitive pack(const TrianglePart& part) {
   const auto& [a, b, c] = part;
   return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),
@@ -53,7 +53,7 @@ uint32_t hash_of(std::initializer_list<uint64_t> words) {
   return static_cast<uint32_t>(hash.value() >> 48);
 }
 
-/// The value of Primitive::c.w.
+/// Returns the value of Primitive::c.w: hashes of the object and of the primitive.
 uint32_t hashes_of(size_t object, uint32_t primitive) {
   return hash_of({object}) | hash_of({object, primitive}) << 16;
 }
@@ -135,7 +135,8 @@ class Collector {
     return mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[triangle];
   }
 
-  /// Adds the triangles of a mesh of which none has several parts: the position of each is known in advance.
+  /// Adds the triangles of a mesh in which no triangle has several parts, so that the position of each is known in
+  /// advance.
   void add_whole(const Mesh& mesh, uint32_t flags) {
     const std::span<const uint32_t> degenerate = cut_triangles_.degenerate_triangles(object_);
     result_.degenerate_count += degenerate.size();
@@ -167,7 +168,7 @@ class Collector {
     result_.order += static_cast<uint32_t>(mesh.triangles.size());
   }
 
-  /// Adds the triangles of a mesh, some of which may be in parts.
+  /// Adds the triangles of a mesh in which some triangles may have several parts.
   void add_cut(const Mesh& mesh, uint32_t flags) {
     auto skipped = cut_triangles_.degenerate_triangles(object_).begin();
     result_.degenerate_count += cut_triangles_.degenerate_triangles(object_).size();

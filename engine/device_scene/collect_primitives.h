@@ -18,10 +18,10 @@ namespace promin {
 /// Attributes of vertices other than positions. Each array is empty, or has a record for every vertex so far that has
 /// the attribute.
 struct VertexRecords {
-  /// Normals with w = 0; empty without smooth meshes.
+  /// Normals with w = 0; empty if there are no smooth meshes.
   std::vector<vec4> normals;
   std::vector<vec4> colors;
-  /// As Mesh::uvs and Mesh::tangents.
+  /// Texture coordinates and tangents in the form of Mesh::uvs and Mesh::tangents.
   std::vector<vec4> uvs;
   std::vector<vec4> tangents;
 
@@ -29,23 +29,23 @@ struct VertexRecords {
   size_t count() const { return std::max({normals.size(), colors.size(), uvs.size(), tangents.size()}); }
 };
 
-/// Primitives, boxes and surfaces in (object, primitive) order; the tree reorders them afterwards.
+/// Primitives, boxes and surfaces in (object, primitive) order, before the tree reorders them.
 struct Collected {
-  /// All primitives except unbounded ones and degenerate triangles; surfaces and boxes correspond to them.
+  /// All primitives except unbounded primitives and degenerate triangles. `surfaces` and `boxes` have the same indices.
   UnsetVector<layout::Primitive> bounded;
   UnsetVector<layout::SurfaceRecord> bounded_surfaces;
   UnsetVector<Bounds> boxes;
   std::vector<layout::Primitive> unbounded;
   std::vector<layout::SurfaceRecord> unbounded_surfaces;
-  /// See PackedSurfaces.
+  /// Attributes of the vertices; see PackedSurfaces.
   VertexRecords vertices;
   PrimitiveNumbers numbers;
-  /// The number of all primitives so far.
+  /// The number of primitives so far, of all kinds.
   uint32_t order = 0;
   uint64_t degenerate_count = 0;
 };
 
-/// Collects a checked scene's primitives. Throws RunError if there are more than the layout can hold.
+/// Returns the primitives of a checked scene. Throws RunError if there are more than the layout can hold.
 Collected collect_primitives(const world::Scene& scene);
 
 /// Throws RunError with the text "`who` `count` `what`" if the count exceeds `most`.

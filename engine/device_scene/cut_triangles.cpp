@@ -13,7 +13,7 @@ namespace {
 using Point = std::array<float, 3>;
 
 Point point_of(const vec3& v) {
-  // -0 counts as 0 here, because positions are compared by value.
+  // The addition turns -0 into 0, because positions are compared by value.
   return {v.x + 0.0F, v.y + 0.0F, v.z + 0.0F};
 }
 
@@ -23,10 +23,10 @@ std::array<Point, 2> edge_of(const vec3& a, const vec3& b) {
   return p < q ? std::array{p, q} : std::array{q, p};
 }
 
-/// A side of a part, with the points strictly inside it, from the smaller end to the larger.
+/// The points strictly inside a side of a part, sorted from the smaller end of the side to the larger.
 using Points = std::span<const Point>;
 
-/// `corners` with the points inside the sides 01, 12 and 20.
+/// Cuts `corners` at the points inside the sides 01, 12 and 20.
 void cut_at(const TrianglePart& corners, const std::array<Points, 3>& inside, std::vector<TrianglePart>& parts) {
   const auto side = static_cast<size_t>(
       std::find_if(inside.begin(), inside.end(), [](const Points& points) { return !points.empty(); }) -
@@ -42,7 +42,7 @@ void cut_at(const TrianglePart& corners, const std::array<Points, 3>& inside, st
   const Point& point = inside[side][middle];
   PartCorner cut;
   cut.position = {point[0], point[1], point[2]};
-  // The points lie in a line, so lengths are as good as coordinates.
+  // The points lie on a line, so coordinates could replace lengths.
   const dvec3 edge = dvec3(b.position) - dvec3(a.position);
   const double s = glm::length(dvec3(cut.position) - dvec3(a.position)) / glm::length(edge);
   cut.weights = glm::mix(a.weights, b.weights, s);
@@ -50,7 +50,7 @@ void cut_at(const TrianglePart& corners, const std::array<Points, 3>& inside, st
   Points far = inside[side].subspan(middle + 1);
   if (!(point_of(a.position) < point_of(b.position))) std::swap(near, far);
 
-  // The parts keep the place of each corner, and share the new side, which has no points inside.
+  // Both parts keep the positions of their corners, and share the new side, which has no points inside.
   TrianglePart first = corners;
   first[next] = cut;
   std::array<Points, 3> first_inside = inside;
@@ -65,7 +65,7 @@ void cut_at(const TrianglePart& corners, const std::array<Points, 3>& inside, st
   cut_at(second, second_inside, parts);
 }
 
-/// Sets that are joined when they share something (union-find).
+/// Sets of elements (union-find). Two sets are joined if they share an element.
 class Groups {
  public:
   uint32_t add() {
@@ -103,7 +103,7 @@ CutTriangles::CutTriangles(const world::Scene& scene) {
     for (const uint32_t i : degenerate_.back()) {
       const uvec3& corners = mesh->triangles[i];
       const std::array p{mesh->positions[corners.x], mesh->positions[corners.y], mesh->positions[corners.z]};
-      // If two corners of the triangle coincide, its neighbours share a whole edge.
+      // If two corners of the triangle coincide, its neighbours share a whole edge, so nothing must be cut.
       if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
       const uint32_t group = groups.add();
       for (size_t side = 0; side < 3; ++side) {
@@ -128,7 +128,7 @@ std::span<const CutTriangles::Point> CutTriangles::points_inside(const vec3& a, 
   const auto found = line_of_edge_.find(edge);
   if (found == line_of_edge_.end()) return {};
   const std::vector<Point>& line = lines_[found->second];
-  // Along a line the order of the coordinates is the order of the points.
+  // On a line, points are sorted by their coordinates.
   return {std::upper_bound(line.begin(), line.end(), edge[0]), std::lower_bound(line.begin(), line.end(), edge[1])};
 }
 

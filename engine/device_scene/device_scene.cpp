@@ -23,16 +23,16 @@ gpu::Buffer upload(const gpu::Device& device, std::span<const std::byte> bytes) 
   return buffer;
 }
 
-/// Records of one kind in the buffer of shading.
+/// Records of one kind and their place in the buffer of shading data.
 struct Placed {
   std::span<const std::byte> bytes;
   uint64_t offset = 0;
-  /// The index of its first record, in its own stride.
+  /// The index of the first record, in units of the records' stride.
   uint32_t first_index = 0;
   uint64_t end() const { return offset + bytes.size(); }
 };
 
-/// Places records at the next multiple of their stride from `offset` on.
+/// Places records at the first multiple of their stride from `offset` on.
 template <typename Records>
 Placed place(const Records& records, uint64_t offset) {
   constexpr uint64_t kStride = sizeof(typename Records::value_type);
@@ -40,7 +40,8 @@ Placed place(const Records& records, uint64_t offset) {
   return {std::as_bytes(std::span(records)), first * kStride, static_cast<uint32_t>(first)};
 }
 
-/// Returns whether these are the same bytes in host memory at the same place; packed data never changes.
+/// Returns whether both have the same host memory at the same place in the buffer. Packed data never changes, so the
+/// bytes are then equal.
 bool is_same(const Placed& a, const Placed& b) {
   return a.bytes.data() == b.bytes.data() && a.bytes.size() == b.bytes.size() && a.offset == b.offset;
 }
@@ -49,7 +50,7 @@ void write(gpu::Buffer& buffer, const Placed& placed) {
   if (!placed.bytes.empty()) buffer.write(placed.bytes, placed.offset);
 }
 
-/// The tables that these materials use.
+/// Returns the tables that these materials use.
 std::vector<uvec4> make_tables(std::span<const Material> materials) {
   const auto looks_up_lobes = [](const Material& m) { return std::holds_alternative<MetallicRoughness>(m.model); };
   const auto looks_up_sheens = [](const Material& m) {
@@ -69,7 +70,7 @@ bool are_skies_equal(const Environment& a, const Environment& b) {
   return a.sky == b.sky && a.rotation == b.rotation && a.intensity == b.intensity;
 }
 
-/// At least the largest alignment that Vulkan allows a device to require for a texel view.
+/// At least the largest alignment that Vulkan allows a device to require for a texel view, in bytes.
 constexpr uint64_t kTexelViewAlignment = 256;
 
 constexpr uint64_t align(uint64_t offset, uint64_t alignment) {
@@ -90,7 +91,7 @@ struct DeviceScene::PlacedTail {
   Placed glasses;
   Placed lobe_tables;
   Placed sky;
-  /// The last, because they change most often in number.
+  /// Lights come last, because their number changes most often.
   Placed lights;
   uint64_t end() const { return lights.end(); }
 };
@@ -113,7 +114,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)))),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
-      // The size grows in steps, so that scenes of about the same depth share pipelines.
+      // The size is rounded up, so that scenes of about the same depth share pipelines.
       stack_size_((packed.stack_size + 7) / 8 * 8),
       is_mostly_solids_(packed.solid_count > packed.bounded_count / 2) {
   const VertexRecords& vertices = packed.surfaces.vertices;
@@ -169,7 +170,7 @@ void DeviceScene::set_environment(const Environment& environment) {
 
 std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_tables_for(std::span<const Material> materials) const {
   std::vector<uvec4> tables = make_tables(materials);
-  // They are the same for all scenes, so existing data is not written again.
+  // The tables are the same for all scenes, so existing tables are not written again.
   if (tables == *tail_.lobe_tables) return tail_.lobe_tables;
   return std::make_shared<const std::vector<uvec4>>(std::move(tables));
 }
@@ -204,10 +205,11 @@ std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
 }
 
 gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
-  // The buffer has room for some more lights, so that switching them on needs no other buffer.
+  // The buffer has space for some more lights, so that switching them on needs no larger buffer.
   constexpr uint64_t kSpareBytes = 16 * sizeof(layout::LightRecord);
   const uint64_t bytes = tail_end + kSpareBytes;
-  // Texels of images are words: a view of them holds a quarter of what one of four words does.
+  // Texels of images are single words. A view of them therefore holds fewer bytes than one with texels of four words:
+  // a quarter.
   const vk::PhysicalDeviceLimits& limits = device_->limits();
   const uint64_t most_words_bytes =
       std::max<uint64_t>(limits.maxStorageBufferRange, limits.maxTexelBufferElements * sizeof(uint32_t));
@@ -225,7 +227,7 @@ gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {
 
 void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
   vk::raii::BufferView texels = buffer.make_texel_view();
-  // Without images it contains words that nothing reads.
+  // Without images the view contains words that nothing reads.
   vk::raii::BufferView image_texels =
       buffer.make_word_view(image_words_bytes_ == 0 ? 0 : image_words_offset_,
                             std::max<vk::DeviceSize>(image_words_bytes_, sizeof(uint32_t)));

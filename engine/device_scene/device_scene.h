@@ -19,31 +19,31 @@ namespace promin {
 /// The parts of a scene that can be replaced separately.
 struct ShadingParts {
   std::span<const Material> materials;
-  /// Textures, which are never replaced, as their images.
+  /// Textures, which are never replaced. Their images are not replaced either.
   std::span<const Texture> textures;
   std::span<const Light> lights;
   Environment environment;
-  /// Solids of glass, which are never replaced; null if no view needs them.
+  /// Solids of glass, which are never replaced; null if no view needs this data.
   std::shared_ptr<const GlassSolids> glass_solids = nullptr;
 };
 
 /// A scene in device memory. Tree, primitives and surfaces are permanent; materials, lights and environment can be
-/// replaced. Keeps no reference to the PackedScene.
+/// replaced. The object keeps no reference to the PackedScene.
 class DeviceScene {
  public:
-  /// Uploads the scene; scenes for casts need no shading. Throws vk::SystemError, and RunError if a device limit is
-  /// exceeded.
+  /// Uploads the scene. Scenes for casts need no shading data. Throws vk::SystemError, and RunError if a device limit
+  /// is exceeded.
   DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading = {});
 
   // The device must not read the scene while a setter runs. If a setter needs more space, it replaces the buffer of
-  // shading, which must then be bound again (Film::bind_scene).
+  // shading data, which the caller must then bind again (Film::bind_scene).
   void set_materials(std::span<const Material> materials);
   void set_lights(std::span<const Light> lights);
   void set_environment(const Environment& environment);
 
-  /// Returns the scene's part of the constants of pictures and casts.
+  /// Returns the constants of pictures and casts that depend on the scene.
   const SceneConstants& constants() const { return constants_; }
-  /// The index in Scene::lights of each light on the device.
+  /// Returns the index in Scene::lights of each light on the device.
   const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
   uint32_t stack_size() const { return stack_size_; }
   /// Returns whether the tree has more solids than triangles.
@@ -51,15 +51,16 @@ class DeviceScene {
   /// Returns the size of the scene in device memory.
   uint64_t size_bytes() const;
 
-  /// The buffers that traversal reads: nodes and primitives, as storage buffers and as texels.
+  /// Returns the buffers that traversal reads: nodes and primitives, each as a storage buffer and as texels.
   std::vector<gpu::BoundBuffer> geometry() const;
-  /// Returns whether all of it is read as texels (DeviceProfile::most_texel_bytes): CONSTANT_FETCHES_TEXELS.
+  /// Returns whether shaders read the whole scene as texels (DeviceProfile::most_texel_bytes); it is the value of
+  /// CONSTANT_FETCHES_TEXELS.
   bool fetches_texels() const { return fetches_texels_; }
-  /// The buffers that shading reads, as storage buffers and as texels.
+  /// Returns the buffers that shading reads, each as a storage buffer and as texels.
   std::vector<gpu::BoundBuffer> shading() const;
 
-  /// The number of bytes copied to the device so far: geometry and surfaces, and everything else. Tests use it to check
-  /// the cost of a change.
+  /// The number of bytes copied to the device so far: for geometry and surfaces, and for everything else. Tests use it
+  /// to check the cost of a change.
   struct Uploads {
     uint64_t geometry = 0;
     uint64_t shading = 0;
@@ -67,26 +68,26 @@ class DeviceScene {
   const Uploads& uploads() const { return uploads_; }
 
  private:
-  /// Sets the environment's colours, without its sky, and whether the sky is visible.
+  /// Stores the environment's colours without its sky, and whether the sky is visible.
   void take_colors(const Environment& environment);
   gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
   /// The replaceable parts, which lie behind the surfaces.
   struct Tail {
-    // All parts except the lights are shared between tails that do not change them.
+    // All parts except the lights are shared with earlier tails until they change.
     std::shared_ptr<const PackedMaterials> materials = std::make_shared<const PackedMaterials>();
     /// The tables of lobes and of sheens, each only if a material uses it.
     std::shared_ptr<const std::vector<uvec4>> lobe_tables = std::make_shared<const std::vector<uvec4>>();
     std::shared_ptr<const PackedSky> sky = std::make_shared<const PackedSky>();
     PackedLights lights;
   };
-  /// The positions of the parts of a tail.
+  /// The positions of a tail's parts in the buffer.
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
   PackedMaterials pack_materials(std::span<const Material> materials) const;
   std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
-  /// Copies the changed parts of the tail, or all of it into a larger buffer if needed. If that cannot be created,
-  /// nothing changes.
+  /// Copies the changed parts of the tail to the device, or the whole tail to a larger buffer if needed. If this buffer
+  /// cannot be created, nothing changes.
   void write_tail(Tail tail);
 
   const gpu::Device* device_;
@@ -94,11 +95,11 @@ class DeviceScene {
   gpu::Buffer primitives_;
   vk::raii::BufferView node_texels_;
   vk::raii::BufferView primitive_texels_;
-  /// The size of surfaces and vertices, at the head of the buffer of shading.
+  /// Size in bytes of surfaces and vertices, which are at the head of the buffer of shading data.
   uint64_t head_bytes_ = 0;
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};
-  /// The words of images in it, and a view of them.
+  /// The offset of the images' words in the buffer, and a view of these words.
   vk::DeviceSize image_words_offset_ = 0;
   vk::DeviceSize image_words_bytes_ = 0;
   vk::raii::BufferView image_texels_{nullptr};

@@ -19,7 +19,7 @@ namespace {
 
 using layout::Primitive;
 
-/// Counts primitives by the bits of their first corner.
+/// Counts primitives, indexed by the bits of their first corner.
 class CornerCounts {
  public:
   void add(const Primitive& p) { ++counts_[bucket_of(p)]; }
@@ -41,7 +41,7 @@ class CornerCounts {
   std::vector<uint32_t> counts_ = std::vector<uint32_t>(size_t{1} << kBits);
 };
 
-/// The data that a primitive and its copies share.
+/// The data that a primitive and its copies have in common.
 struct Shown {
   std::array<uint32_t, 10> words;
   uint32_t material;
@@ -76,7 +76,7 @@ float transmission_of(const Unlit& /*model*/) {
   return 0.0F;
 }
 
-/// Keeps those elements whose index is not in `dropped`, which is in order.
+/// Keeps the elements whose index is not in `dropped`, which is sorted.
 template <typename Elements>
 void keep_others(Elements& elements, const std::vector<size_t>& dropped) {
   auto next = dropped.begin();
@@ -93,7 +93,7 @@ void keep_others(Elements& elements, const std::vector<size_t>& dropped) {
 
 }  // namespace
 
-// Textures are ignored, so that scenes for casts, which lack them, have the same trees.
+// Textures are ignored, so that scenes for casts, which have no textures, have the same trees.
 bool hides_copies(const Material& material) {
   return !has_holes(material) &&
          std::visit([](const auto& model) { return transmission_of(model); }, material.model) == 0.0F;
@@ -102,7 +102,7 @@ bool hides_copies(const Material& material) {
 DroppedCopies drop_copies(const world::Scene& scene, Collected& collected) {
   DroppedCopies copies;
   const std::span<const Primitive> all = collected.bounded;
-  // Parts of triangles have weights of their own, so they are no copies.
+  // Parts of triangles have their own weights, so they are not copies.
   if (all.size() <= kMostCopies || !collected.numbers.parts.empty()) return copies;
   CornerCounts counts;
   for (const Primitive& p : all) counts.add(p);

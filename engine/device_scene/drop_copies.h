@@ -12,25 +12,25 @@
 
 namespace promin {
 
-/// If there are more identical primitives than this, the tree contains only the first: a ray that hits one hits all,
-/// and drivers end loops of so many iterations (trace/kernels/cut_loops.h). Smaller groups are kept, so that the trees
-/// of other scenes do not change.
+/// If there are more identical primitives than this, the tree contains only the first. A ray that hits one of them hits
+/// all, and drivers end loops with so many iterations (trace/kernels/cut_loops.h). Smaller groups are kept, so that the
+/// trees of other scenes do not change.
 inline constexpr uint32_t kMostCopies = 1024;
 
 /// The primitives that were left out as copies of others.
 struct DroppedCopies {
-  /// The numbers of the copies in order, by the number of the primitive that stands for them.
+  /// The sorted numbers of the copies, indexed by the number of the primitive that replaces them.
   std::map<uint32_t, std::vector<uint32_t>> by_first;
-  /// Their materials.
+  /// The materials of the primitives that were left out.
   std::set<uint32_t> materials;
 };
 
-/// Returns whether a surface of the material hides everything behind it, whatever its textures are. Only then does one
-/// surface look the same as many at the same place.
+/// Returns whether a surface of the material hides everything behind it, for all textures. Only then does one surface
+/// look the same as many surfaces at the same place.
 bool hides_copies(const Material& material);
 
-/// Leaves out copies of a primitive. The first of them is the nearest hit wherever they are hit, because all have equal
-/// t. Only copies with the same material, which must hide copies, are left out.
+/// Removes copies of primitives. Identical primitives have equal t for every ray, so the first of them is always the
+/// nearest hit. Only copies with the same material are removed, and only if this material hides copies.
 DroppedCopies drop_copies(const world::Scene& scene, Collected& collected);
 
 }  // namespace promin

@@ -27,12 +27,12 @@
 namespace promin {
 namespace {
 
-/// Returns the alpha cutoff of each image (pack_images). If several masks share an image, the first one counts.
+/// Returns the alpha cutoff for each image (pack_images). If several masks use an image, the first one counts.
 std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
   std::vector<float> cutoffs(scene.images.size(), 0.0F);
   for (const Material& material : scene.materials) {
     const TextureSlot& slot = base_slot(material);
-    // For casts there are no textures.
+    // A scene for casts has no textures.
     if (material.alpha_mode != AlphaMode::kMask || is_absent(material) || slot.texture >= scene.textures.size())
       continue;
     float& cutoff = cutoffs[scene.textures[slot.texture].image];
@@ -49,7 +49,7 @@ std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
 
 using namespace layout;
 
-/// The number of triangles or references that a thread takes at a time.
+/// The number of triangles or references that a thread processes at a time.
 constexpr size_t kChunkSize = 16384;
 
 /// Time that a process waits for a shared tree that another process is building and that may hang.
@@ -61,7 +61,8 @@ Bounds clip(const Primitive& p, const Bounds& window) {
   return clip_triangle(triangle_corners(p), window);
 }
 
-/// The tree's references, ordered by kind within each leaf: traversal takes a leaf kind by kind.
+/// Returns the tree's references, sorted by kind within each leaf, because traversal tests the primitives of a leaf
+/// kind by kind.
 UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> bounded) {
   UnsetVector<uint32_t> references = bvh.references;
   const auto is_before = [&](uint32_t a, uint32_t b) { return bounded[a].c.z < bounded[b].c.z; };
@@ -75,7 +76,8 @@ UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primit
   return references;
 }
 
-/// Center and max-norm radius of a box: no corner is farther from the center in any axis.
+/// Returns the center and the max-norm radius of a box: on each axis, no corner is farther from the center than the
+/// radius.
 vec4 center_and_radius(const Bounds& box) {
   if (box.is_empty()) return vec4(0.0F);
   const vec3 center = box.center();
@@ -83,7 +85,7 @@ vec4 center_and_radius(const Bounds& box) {
   return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
 }
 
-/// Returns a hash of the geometry, without the assignment of primitives to objects.
+/// Returns a hash of the geometry. It does not depend on the assignment of primitives to objects.
 uint64_t hash_geometry(std::span<const Primitive> bounded) {
   Hash64 hash;
   hash.add(bounded.size());
@@ -95,15 +97,15 @@ uint64_t hash_geometry(std::span<const Primitive> bounded) {
   return hash.value();
 }
 
-/// Sets the kinds of the primitives, and the number that are not triangles.
+/// Sets the kinds of the primitives and the number of primitives that are not triangles.
 void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
-  std::array<uint32_t, 32> counts{};  // one for each bit of the kinds
+  std::array<uint32_t, 32> counts{};  // One count for each bit of the kinds.
   for (const Primitive& p : bounded) ++counts[p.c.z];
   for (uint32_t kind = 0; kind < counts.size(); ++kind) packed.kinds |= uint32_t{counts[kind] > 0} << kind;
   packed.solid_count = static_cast<uint32_t>(bounded.size()) - counts[KIND_TRIANGLE];
 }
 
-/// Packs the parts of a scene other than its tree, whose references exist already.
+/// Packs all parts of a scene except its tree. The tree's references must exist.
 void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected, uint64_t texture_bytes) {
   packed.numbers = std::move(collected.numbers);
   packed.features = geometry_features(scene.objects);
@@ -131,7 +133,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.tree_bounds = center_and_radius(tree_bounds);
 }
 
-/// Builds the tree over the collected primitives.
+/// Builds the tree of the collected primitives.
 void build_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options) {
   const Stopwatch building;
@@ -152,7 +154,7 @@ void build_tree(PackedScene& packed, const world::Scene& scene, const Collected&
   packed.references = sort_leaves_by_kind(bvh, collected.bounded);
 }
 
-/// Uses the tree of a file. Throws InputError if it is damaged or belongs to other geometry.
+/// Uses the tree of a file. Throws InputError if the tree is damaged or belongs to another geometry.
 void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   const Stopwatch reading;
   const auto file = std::make_shared<const BvhFile>(bvh_file);
@@ -165,7 +167,7 @@ void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   packed.file = file;
 }
 
-/// Returns whether the file contains the tree. Replaces the warnings by the faults of an existing file.
+/// Returns whether the file contains the scene's tree. If the file exists and has faults, they replace the warnings.
 bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
   packed.warnings.clear();
   std::error_code error;
@@ -180,11 +182,12 @@ bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file
   }
 }
 
-/// Uses the tree of the file, or builds it and writes the file for waiting processes.
+/// Uses the tree of the file. If there is none, builds the tree and writes the file for other processes, which wait for
+/// it.
 void share_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options, const std::filesystem::path& bvh_file) {
   const Stopwatch sharing;
-  // Files appear complete, so reading needs no lock.
+  // A file appears completely or not at all, so reading needs no lock.
   if (find_shared_tree(packed, bvh_file)) return;
   const std::filesystem::path folder = bvh_file.parent_path();
   std::error_code error;
@@ -201,7 +204,7 @@ void share_tree(PackedScene& packed, const world::Scene& scene, const Collected&
   packed.bvh_ms = sharing.ms();
 }
 
-/// Packs a scene with the tree that `make_tree` gives it.
+/// Packs a scene with the tree that `make_tree` makes.
 template <typename MakeTree>
 PackedScene pack(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
   Collected collected = collect_primitives(scene);

@@ -22,11 +22,11 @@
 #include "shared/layout.h"
 #include "textures/pack_images.h"
 
-// Packs a scene's geometry and its surfaces into the device layout of shaders/shared/layout.h. Both follow the order of
-// the tree's leaves. Does not use Vulkan.
+// Packs a scene's geometry and surfaces into the device layout of shaders/shared/layout.h. Both are stored in the order
+// of the tree's leaves. This code does not use Vulkan.
 namespace promin {
 
-/// The data of primitives for shading, in leaf order: material numbers and vertices.
+/// Data of primitives that shading needs, in leaf order: material numbers and vertices.
 struct PackedSurfaces {
   UnsetVector<layout::SurfaceRecord> surfaces;
   /// Attributes of the vertices that the records refer to.
@@ -40,73 +40,73 @@ struct PackedSurfaces {
 struct PackedScene {
   /// At least one node; empty if a file contains the nodes.
   UnsetVector<layout::Node> nodes;
-  /// Null if the tree was built.
+  /// The BVH file; null if the tree was built.
   std::shared_ptr<const BvhFile> file;
-  /// See TreeView::references.
+  /// The references of the leaves; see TreeView::references.
   UnsetVector<uint32_t> references;
-  /// The primitives of the tree in leaf order, then the unbounded ones; at least one.
+  /// The primitives of the tree in leaf order, then the unbounded primitives; at least one.
   UnsetVector<layout::Primitive> primitives;
   uint32_t unbounded_count = 0;
   PackedSurfaces surfaces;
   PrimitiveNumbers numbers;
-  /// Primitives that are left out because they are copies of another.
+  /// Primitives that are left out because they are copies of other primitives.
   DroppedCopies copies;
   /// The features that the geometry uses.
   FeatureMask features;
-  /// For each of Scene::materials, whether something that is drawn uses it.
+  /// For each of Scene::materials, whether a visible primitive uses it.
   std::vector<bool> shown_materials;
-  /// The number of triangles that are never hit.
+  /// The number of degenerate triangles, which no ray hits.
   uint64_t degenerate_count = 0;
   /// Center and max-norm radius of the tree's primitives.
   vec4 tree_bounds{0.0F};
-  /// Entries that the traversal stack needs.
+  /// Number of entries that the traversal stack needs.
   uint32_t stack_size = 1;
   /// The number of primitives in the tree: all except unbounded ones, copies and degenerate triangles.
   uint32_t bounded_count = 0;
-  /// The number of these that are not triangles.
+  /// The number of primitives in the tree that are not triangles.
   uint32_t solid_count = 0;
-  /// See TreeView::kinds.
+  /// The kinds of primitive in the tree; see TreeView::kinds.
   uint32_t kinds = 0;
   uint64_t geometry_hash = 0;
   BvhStats bvh;
-  /// Milliseconds of the builder, or of reading and checking the file; for a shared tree that was built here including
-  /// waiting and writing.
+  /// Time of the builder, or time for reading and checking the file, in milliseconds. For a shared tree that this
+  /// process built, it includes waiting and writing.
   double bvh_ms = 0.0;
-  /// Problems with the file of pack_scene_sharing.
+  /// Problems with the file that pack_scene_sharing() used.
   std::vector<Problem> warnings;
 
-  /// Returns the tree, whether its nodes lie here or in the file. It is valid as long as this object.
+  /// Returns the tree; its nodes are in this object or in the file. The view is valid as long as this object exists.
   TreeView tree() const;
   uint32_t first_unbounded() const { return static_cast<uint32_t>(references.size()); }
-  /// The number of primitives: triangles in parts count once, degenerate ones too.
+  /// Returns the number of primitives. A triangle in parts counts once, and degenerate triangles count too.
   uint64_t primitive_count() const { return numbers.first_order.empty() ? 0 : numbers.first_order.back(); }
   uint64_t size_bytes() const;
 };
 
 /// Packs a checked scene's objects. Throws UsageError for an unknown builder, and RunError if counts exceed the layout
-/// (2^27 primitives, 2^24 - 1 nodes), and as pack_images does for images in `texture_bytes`.
+/// (2^27 primitives, 2^24 - 1 nodes). Throws the same errors as pack_images() for images in `texture_bytes`.
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options = {},
                        uint64_t texture_bytes = kDefaultTextureBytes);
 
 /// Packs a checked scene's objects with the tree of a file. Throws InputError for a file that is damaged or belongs to
-/// another scene, and RunError as above.
+/// another scene, and RunError like pack_scene().
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene,
                             uint64_t texture_bytes = kDefaultTextureBytes);
 
-/// The number of primitives from which a shared tree is kept in a file. The default builder makes smaller trees in a
-/// few milliseconds (docs/jobs.md has figures), and a shared folder may take as long for a file.
+/// The smallest number of primitives for which a shared tree is kept in a file. The default builder builds smaller
+/// trees in a few milliseconds (docs/jobs.md has figures), and access to a file in a shared folder may take as long.
 inline constexpr size_t kLeastShared = 100'000;
 
-/// Packs a checked scene's objects with a BVH file that several processes share: the first builds and writes it under a
-/// lock, the others wait and map it. A file that is damaged or of another scene is built again. If the file cannot be
-/// written, each process builds the tree, with a warning. Trees of fewer primitives than kLeastShared are built without
-/// a file. Creates the file's folder if it is missing. Throws what pack_scene does, and Cancelled if the options'
-/// progress returns false, also while waiting.
+/// Packs a checked scene's objects with a BVH file that several processes share: the first process builds and writes
+/// the file under a lock; the other processes wait and map the file. If the file is damaged or belongs to another
+/// scene, the tree is built again. If the file cannot be written, each process builds the tree, with a warning. A tree
+/// with fewer primitives than kLeastShared is built without a file. Creates the file's folder if it is missing. Throws
+/// the same errors as pack_scene(), and Cancelled if the options' progress returns false, also while waiting.
 PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
                                std::string_view builder, const BuildOptions& options = {},
                                uint64_t texture_bytes = kDefaultTextureBytes);
 
-/// Packs with the tree that the options of a Renderer or a Caster request.
+/// Packs a scene with the tree that the options of a Renderer or a Caster request.
 template <typename Options>
 PackedScene pack_scene_by(const Options& options, const world::Scene& scene,
                           uint64_t texture_bytes = kDefaultTextureBytes) {
@@ -116,7 +116,7 @@ PackedScene pack_scene_by(const Options& options, const world::Scene& scene,
   return pack_scene_sharing(*options.shared_bvh, scene, options.builder, how, texture_bytes);
 }
 
-/// Applies find_tree_faults to the scene's own tree.
+/// Calls find_tree_faults() for the scene's own tree.
 TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});
 
 }  // namespace promin

@@ -38,7 +38,7 @@ static_assert(static_cast<uint>(TextureWrap::kRepeat) == WRAP_REPEAT &&
 
 constexpr float kLeastAlpha = std::numeric_limits<float>::min();
 
-/// Packs a model's numbers into the places that its shader file gives them.
+/// Packs a model's numbers into the members that the model's shader file reads.
 class MaterialPacker {
  public:
   explicit MaterialPacker(const TextureTables& tables) : tables_(tables) {}
@@ -97,14 +97,15 @@ class MaterialPacker {
     return {vec4(m.color, 0.0F), {}, {}, {}, {}, {}};
   }
 
-  /// Of the dielectric at normal incidence, before the strength of its reflection.
+  /// Returns the reflectance of the dielectric at normal incidence, before it is multiplied by the strength of the
+  /// reflection.
   static dvec3 reflectance_of(const MetallicRoughness& m) {
-    // KHR_materials_ior: 0 stands for a dielectric that reflects all.
+    // KHR_materials_ior: an index of 0 stands for a dielectric that reflects all light.
     const double slope = (static_cast<double>(m.ior) - 1.0) / (static_cast<double>(m.ior) + 1.0);
     return slope * slope * dvec3(m.specular_color);
   }
 
-  /// The bits of the extension's number, 0 where there is none.
+  /// Adds a record of rare properties. Returns the bits of its number; 0 if the material has no such properties.
   float add_extension(const MetallicRoughness& m) {
     if (!is_extended(m)) return 0.0F;
     const float thickness = m.iridescence_thickness_maximum;
@@ -125,7 +126,7 @@ class MaterialPacker {
     return std::bit_cast<float>(static_cast<uint>(packed_.extensions.size()));
   }
 
-  /// Materials of the same glass share its number, and their solids count as one.
+  /// Returns the number of a glass. Materials with the same glass share its number, and their solids count as one.
   uint number_of_glass(const GlassRecord& record) {
     const auto is_same = [&](const GlassRecord& other) { return std::memcmp(&other, &record, sizeof(record)) == 0; };
     const auto found = std::ranges::find_if(packed_.glasses, is_same);
@@ -139,7 +140,7 @@ class MaterialPacker {
     packed_.glasses.push_back(record);
     return number;
   }
-  /// The glass's number, 0 where it is none.
+  /// Adds the glass of a material. Returns its number; 0 if the material is no glass.
   uint add_glass(const Phong& m, bool is_clear) {
     if (!is_clear && !hangs_on_angle(m)) return 0;
     return number_of_glass(
@@ -150,7 +151,7 @@ class MaterialPacker {
     if (!is_clear) return 0;
     dvec3 absorption(0.0);
     for (int i = 0; i < 3; ++i) {
-      // A medium that absorbs everything still transmits a little over 2^-24 of the distance.
+      // A medium that absorbs all light is stored as one that transmits a little over 2^-24 of the light.
       const double left = std::max(static_cast<double>(m.attenuation_color[i]), 0x1p-24);
       absorption[i] = std::max(0.0, -std::log2(left)) / static_cast<double>(m.attenuation_distance);
     }
@@ -167,8 +168,8 @@ class MaterialPacker {
     return std::bit_cast<float>(number_of(slot));
   }
 
-  /// Returns the slot's number, from 1 on; 0 if there is no texture or no image. Equal slots of a material, as those of
-  /// occlusion, roughness and metal often are, share a number and are looked up once.
+  /// Returns the slot's number, from 1 on; 0 if there is no texture or no image. Equal slots of a material share a
+  /// number, so the shader reads the texture once; the slots of occlusion, roughness and metal are often equal.
   uint number_of(const TextureSlot& slot) {
     if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0;
     const Texture& texture = tables_.textures[slot.texture];
@@ -185,10 +186,10 @@ class MaterialPacker {
 
   const TextureTables& tables_;
   PackedMaterials packed_;
-  size_t first_slot_ = 0;  // of the material at hand
+  size_t first_slot_ = 0;  // The first slot of the current material.
 };
 
-/// The least difference of the cosines of a spot's angles for which fp32 still tells points between them apart.
+/// The smallest difference of the cosines of a spot light's angles at which fp32 can distinguish points between them.
 constexpr double kLeastFalloffWidth = 1e-5;
 
 LightRecord pack(const Light& light) {

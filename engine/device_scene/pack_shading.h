@@ -11,11 +11,11 @@
 #include "shared/layout.h"
 #include "textures/pack_images.h"
 
-// Packs the data for shading other than primitives into the layout of shaders/shared/layout.h. Each kind is packed
-// separately, because each changes separately.
+// Packs the data for shading, except primitives, into the layout of shaders/shared/layout.h. Each kind of data has its
+// own function, because each kind changes separately.
 namespace promin {
 
-/// Tables of textures, which materials refer to.
+/// Tables to which the records of materials refer.
 struct TextureTables {
   std::span<const Texture> textures;
   std::span<const PlacedImage> images;
@@ -23,11 +23,11 @@ struct TextureTables {
 
 struct PackedMaterials {
   std::vector<layout::MaterialRecord> records;
-  /// The textures that records refer to, numbered from 1.
+  /// The texture slots, numbered from 1.
   std::vector<layout::TextureSlotRecord> slots;
-  /// Rare properties of materials, numbered likewise.
+  /// Rare properties of materials, numbered from 1.
   std::vector<layout::ExtensionRecord> extensions;
-  /// Materials that transmit light, numbered likewise.
+  /// The glasses of materials that transmit light, numbered from 1.
   std::vector<layout::GlassRecord> glasses;
 };
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables = {});
@@ -35,7 +35,7 @@ PackedMaterials pack_materials(std::span<const Material> materials, const Textur
 /// The lights that are on.
 struct PackedLights {
   std::vector<layout::LightRecord> records;
-  /// The index in Scene::lights of each record's light.
+  /// For each record, the index of its light in Scene::lights.
   std::vector<uint32_t> numbers;
 };
 PackedLights pack_lights(std::span<const Light> lights);

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// Squared length of the shortest vector between points of the lattice (i, g i) mod `modulus`.
+/// Returns the squared length of the shortest vector between points (i, g i) mod `modulus` of the lattice.
 uint64_t shortest_vector2(uint32_t generator, uint32_t modulus) {
   const auto wrap = [modulus](uint64_t d) { return std::min(d % modulus, modulus - d % modulus); };
   uint64_t shortest2 = std::numeric_limits<uint64_t>::max();
@@ -24,7 +24,7 @@ uint64_t shortest_vector2(uint32_t generator, uint32_t modulus) {
   return shortest2;
 }
 
-/// The share of the weight of a filter 2 wide that lies before x in -1...1.
+/// Returns the fraction of a filter's weight that lies before x, for a filter of width 2 with x in -1...1.
 double share_before(PixelFilter filter, double x) {
   switch (filter) {
     case PixelFilter::kBox:
@@ -36,7 +36,7 @@ double share_before(PixelFilter filter, double x) {
       return 0.5 + 0.5 * std::erf(end * x) / std::erf(end);
     }
     case PixelFilter::kBlackmanHarris: {
-      // The integral of the window's four cosines (Harris 1978).
+      // The integral of the four cosine terms of the window (Harris 1978).
       const double t = 0.5 * (1.0 + x);
       constexpr std::array kTerms = {-0.48829 / 2.0, 0.14128 / 4.0, -0.01168 / 6.0};
       double sum = 0.35875 * t;
@@ -52,7 +52,7 @@ double share_before(PixelFilter filter, double x) {
 }  // namespace
 
 double place_of_share(PixelFilter filter, double width, double u) {
-  // The share grows with the place.
+  // The fraction increases with the position, so a bisection finds it.
   double low = -1.0;
   double high = 1.0;
   while (true) {
@@ -74,8 +74,8 @@ vec2 sample_point(const View& view, uint32_t generator, uint32_t index) {
 }
 
 uint32_t lattice_generator(uint32_t count) {
-  // The search is quadratic. For more points the golden ratio's nearest coprime is good enough (Niederreiter 1992, ch.
-  // 5).
+  // The search takes quadratic time. For more points, the integer nearest to the golden ratio that is coprime is good
+  // enough (Niederreiter 1992, ch. 5).
   constexpr uint32_t kLargestSearched = 1024;
   const uint32_t modulus = count + 1;
   if (count > kLargestSearched) {

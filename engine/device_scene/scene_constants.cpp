@@ -15,7 +15,7 @@ uvec4 counts_of(const SceneConstants& scene) {
   return {scene.first_unbounded, scene.unbounded_count, scene.light_count, layout::LOOP_CHECK_TURNS};
 }
 
-/// As shaders/shade/glass.glsl keeps the media that a ray is in.
+/// Returns the media around the eye, in the form in which shaders/shade/glass.glsl stores the media that contain a ray.
 uvec2 media_around(const SceneConstants& scene, const vec3& eye) {
   uint64_t media = 0;
   if (scene.glass_solids == nullptr) return uvec2(0);
@@ -40,10 +40,10 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
   const double pixel = 2.0 * half_height / view.size.y;
   const dvec3 right = glm::cross(dvec3(camera.look), dvec3(camera.up)) * pixel;
   const dvec3 up = dvec3(camera.up) * pixel;
-  // A sample's share of a pixel, along a side (shaders/shade/textures.glsl).
+  // Side length of a sample's share of a pixel (shaders/shade/textures.glsl).
   const uint32_t samples = view.error_target ? view.error_target->max_samples : view.samples_per_pixel;
   const auto cone = static_cast<float>(pixel / std::sqrt(static_cast<double>(samples)));
-  // A ray's interval is open, but what lies on the viewport itself is drawn.
+  // A ray's interval is open, but a surface exactly at the near plane must be drawn.
   const float before_near = camera.near > 0.0F ? std::nextafter(camera.near, 0.0F) : 0.0F;
   const Backdrop backdrop = scene.backdrop.value_or(Backdrop());
   layout::ViewConstants constants{
@@ -82,7 +82,7 @@ layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& vie
           .sampling = uvec4(view.samples_per_pixel, std::bit_cast<uint32_t>(range.sample_point.x),
                             divide_up(size.x, layout::BLOCK_SIZE), is_orthographic),
           .counts = counts_of(scene),
-          // Kernels that know glass may trace scenes without it, which have no limits.
+          // Kernels with glass may also trace scenes without glass, which have no limits.
           .outcome = uvec4(0, scene.has_glass ? layout::MOST_TREE_RAYS : ~0U,
                            std::bit_cast<uint32_t>(scene.has_glass ? layout::LEAST_TREE_WEIGHT : 0.0F),
                            std::bit_cast<uint32_t>(range.sample_point.y))};

@@ -13,56 +13,58 @@
 #include "scene/glass_solids.h"
 #include "shared/layout.h"
 
-// The blocks of constants that shaders read. One function computes each complete block from its arguments. Does not use
-// Vulkan.
+// The blocks of constants that shaders read. Each function computes a complete block from its arguments. This code does
+// not use Vulkan.
 namespace promin {
 
-/// The scene's part of these constants.
+/// The constants that depend only on the scene.
 struct SceneConstants {
   /// Center and max-norm radius of the tree's primitives.
   vec4 tree_bounds{0.0F};
-  /// The first records of materials, lights, normals and colours in their views of the buffer of shading.
+  /// Index of the first record of materials, lights, normals and colours, each in its view of the buffer of shading
+  /// data.
   uvec4 first_index{0};
   uvec4 first_lookup{0};
   uvec4 first_texture{0};
-  /// x = the first GlassRecord.
+  /// x is the index of the first GlassRecord.
   uvec4 first_glass{0};
-  /// The solids in which the camera may be, and for each material the number of its glass, 0 if it bounds no volume.
+  /// The solids in which the camera may be. For each material, the number of its glass; 0 if the material bounds no
+  /// volume.
   std::shared_ptr<const GlassSolids> glass_solids;
   std::vector<uint32_t> media;
-  /// Whether any material transmits light.
+  /// True if any material transmits light.
   bool has_glass = false;
-  /// The unbounded primitives, which lie behind those of the tree.
+  /// Index of the first unbounded primitive; the unbounded primitives follow those of the tree.
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;
   uint32_t light_count = 0;
   vec3 ambient{0.0F};
   vec3 background{0.0F};
-  /// Whether the sky is visible in place of the background.
+  /// True if the sky is visible in place of the background.
   bool shows_sky = false;
-  /// The backdrop, which replaces both if there is one.
+  /// The backdrop; it replaces sky and background.
   std::optional<Backdrop> backdrop;
   std::array<vec4, 9> irradiance{};
 };
 
-/// The constants of a view: its camera and picture, computed in double.
+/// Returns the constants of a view, which describe its camera and picture. They are computed in double.
 layout::ViewConstants make_view_constants(const SceneConstants& scene, const View& view);
 
-/// The constants of casts, which have no camera.
+/// Returns the constants of casts, which have no camera.
 layout::ViewConstants make_cast_constants(const SceneConstants& scene);
 
-/// One sample of each pixel of a range of blocks.
+/// A piece of work: one sample of each pixel of a range of blocks.
 struct TileRange {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   uint32_t sample = 0;
-  /// Position in the pixel (device_scene/sampling.h).
+  /// Position of the sample in the pixel (device_scene/sampling.h).
   vec2 sample_point{0.5F};
 };
 layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,
                                     const TileRange& range);
 
-/// Casts rays [first, end).
+/// Returns the constants of a dispatch that casts rays [first, end).
 layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_ray, uint32_t end_ray);
 
 }  // namespace promin

@@ -18,8 +18,8 @@ uint32_t reverse_bits(uint32_t x) {
   return (x & 0x55555555U) << 1 | (x & 0xAAAAAAAAU) >> 1;
 }
 
-/// Each bit of the result depends only on lower bits of x (Laine and Karras, "Stratified Sampling for Stochastic
-/// Transparency", 2011, with Burley's constants).
+/// Permutes the bits of x so that each bit of the result depends only on lower bits of x (Laine and Karras, "Stratified
+/// Sampling for Stochastic Transparency", 2011, with Burley's constants).
 uint32_t permute_upwards(uint32_t x, uint32_t seed) {
   x += seed;
   x ^= x * 0x6C50B47CU;
@@ -29,7 +29,8 @@ uint32_t permute_upwards(uint32_t x, uint32_t seed) {
   return x;
 }
 
-/// Sobol's second dimension, as a fraction of 2^32: its direction numbers are the rows of Pascal's triangle mod 2.
+/// Returns a number of Sobol's second dimension, as a fraction of 2^32. Its direction numbers are the rows of Pascal's
+/// triangle mod 2.
 uint32_t second_sobol(uint32_t index) {
   uint32_t result = 0;
   for (uint32_t direction = 0x80000000U; index != 0; index >>= 1, direction ^= direction >> 1) {
@@ -38,7 +39,7 @@ uint32_t second_sobol(uint32_t index) {
   return result;
 }
 
-/// In the middle of one of 2^23 parts of 0...1.
+/// Returns the middle of one of 2^23 intervals of 0...1.
 float fraction(uint32_t bits) {
   return static_cast<float>(bits >> 9) * 0x1p-23F + 0x1p-24F;
 }
@@ -50,7 +51,7 @@ ScrambledPoints::ScrambledPoints(const uvec2& pixel) {
 }
 
 vec2 ScrambledPoints::at(uint32_t index) const {
-  // The first dimension is the index with its bits reversed, so they are in the permutation's order.
+  // The first dimension is the index with reversed bits, so the bits have the order that the permutation needs.
   const uint32_t x = reverse_bits(permute_upwards(index, seeds_[0]));
   const uint32_t y = reverse_bits(permute_upwards(reverse_bits(second_sobol(index)), seeds_[1]));
   return {fraction(x), fraction(y)};

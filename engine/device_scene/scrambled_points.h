@@ -11,11 +11,11 @@ namespace promin {
 
 /// The sample points of a pixel if their number is not known in advance: the first two Sobol dimensions with Owen
 /// scrambling by a hash of the pixel's position (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). The first
-/// 2^m of them are a (0, m, 2)-net, so a pixel that takes more samples keeps its earlier ones. Coordinates are odd
+/// 2^m points are a (0, m, 2)-net, so a pixel that takes more samples keeps its earlier ones. Coordinates are odd
 /// multiples of 2^-24 in 0...1, computed by integer operations only.
 class ScrambledPoints {
  public:
-  /// Creates the points of the pixel at this position of the whole picture.
+  /// Creates the points of the pixel at this position in the whole picture.
   explicit ScrambledPoints(const uvec2& pixel);
 
   vec2 at(uint32_t index) const;
@@ -25,7 +25,7 @@ class ScrambledPoints {
 };
 
 /// Maps uniform points to samples that are distributed by a filter's weight, by linear interpolation in a table of
-/// place_of_share. This misplaces at most 2^-12 of the weight, by less than the distance between two entries.
+/// place_of_share. The interpolation moves at most 2^-12 of the weight, by less than the distance between two entries.
 class FilterPlaces {
  public:
   explicit FilterPlaces(const View& view);

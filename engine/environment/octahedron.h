@@ -7,11 +7,12 @@
 #include "promin/math.h"
 
 // The map of all directions onto a square: directions are projected onto an octahedron, whose upper half is viewed from
-// above and whose lower half is unfolded. Coordinates are 0...1, (0.5, 0.5) is +Y, the corners are -Y, x of the square
-// goes with +X and y with +Z. It needs one division and no angles; shaders/shade/environment.glsl has the same map.
+// above and whose lower half is unfolded. Coordinates are 0...1. The point (0.5, 0.5) is +Y and the corners are -Y. The
+// x axis of the square corresponds to +X and its y axis to +Z. The map needs one division and no angles;
+// shaders/shade/environment.glsl has the same map.
 namespace promin {
 
-/// Takes a direction of any length but 0.
+/// Returns the place of a direction, which may have any length except 0.
 template <typename Vector3>
 glm::vec<2, typename Vector3::value_type> octahedral_place(const Vector3& direction) {
   using Real = typename Vector3::value_type;
@@ -26,7 +27,7 @@ glm::vec<2, typename Vector3::value_type> octahedral_place(const Vector3& direct
   return {Real(0.5) + Real(0.5) * x, Real(0.5) + Real(0.5) * z};
 }
 
-/// Returns the point of the octahedron |x| + |y| + |z| = 1 for a place; normalised it is the direction.
+/// Returns the point of the octahedron |x| + |y| + |z| = 1 for a place. Normalised, it is the direction of the place.
 inline dvec3 octahedral_point(const dvec2& place) {
   double x = 2.0 * place.x - 1.0;
   double z = 2.0 * place.y - 1.0;

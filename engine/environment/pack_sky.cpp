@@ -32,12 +32,13 @@ constexpr Level kLevels[] = {
 };
 constexpr uint32_t kLevelCount = std::size(kLevels);
 
-/// Number of directions of a lobe for a texel of each level except the sharpest. Few are enough, because the sky is
-/// blurred beforehand; a panorama, which may contain a sun, gets twice as many.
+/// Number of directions of a lobe for a texel of each level except the sharpest. Few directions are enough, because the
+/// sky is blurred beforehand; a panorama, which may contain a sun, gets twice as many.
 constexpr uint32_t kLobeSamples[kLevelCount] = {0, 16, 32, 64, 192, 512};
 
-/// The sharpest side of studio and gradient: their edges are some degrees wide. Against an integration with 20,000
-/// directions the studio errs by .014 (rms) at roughness 0, .018 at .1 and .2, .003 at 1, of a mean of .48.
+/// Side of the sharpest level for the studio and gradients, whose edges are some degrees wide. Compared with an
+/// integration over 20,000 directions, the studio's error is .014 (rms) at roughness 0, .018 at .1 and .2, and .003 at
+/// 1; the mean radiance is .48.
 constexpr uint32_t kSmoothSide = 256;
 constexpr uint32_t kLeastPanoramaSide = 128;
 constexpr uint32_t kMostSide = 512;
@@ -47,14 +48,14 @@ uint32_t side_of(const Environment& environment) {
     uint32_t operator()(const Studio&) const { return kSmoothSide; }
     uint32_t operator()(const GradientSky&) const { return kSmoothSide; }
     uint32_t operator()(const Panorama& panorama) const {
-      // The horizon, which is the panorama's width, is as long as two sides.
+      // The horizon has the panorama's width, and is as long as two sides of the square.
       return std::clamp(std::bit_ceil((panorama.image->size.x + 1) / 2), kLeastPanoramaSide, kMostSide);
     }
   };
   return std::visit(Side(), environment.sky);
 }
 
-/// The mean radiance of each texel, looked up `count` times along each of its sides.
+/// Returns the mean radiance of each texel, from `count` x `count` lookups in the texel.
 SkyMap look_up_sky(const Environment& environment, uint32_t side, int count, unsigned thread_count) {
   SkyMap map(static_cast<int>(side));
   const double step = 1.0 / (count * static_cast<double>(side));
@@ -77,8 +78,8 @@ SkyMap look_up_sky(const Environment& environment, uint32_t side, int count, uns
   return map;
 }
 
-/// Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps", SIGGRAPH 2001: the bands 0,
-/// 1 and 2 of the radiance, weighted by 1, 2/3 and 1/4, which is the cosine's share over pi.
+/// Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps", SIGGRAPH 2001: Returns the
+/// bands 0, 1 and 2 of the radiance, multiplied by 1, 2/3 and 1/4, which are the cosine's coefficients divided by pi.
 std::array<vec4, 9> project_irradiance(const SkyMap& map) {
   std::array<dvec3, 9> sums{};
   double weights = 0.0;
@@ -106,24 +107,25 @@ std::array<vec4, 9> project_irradiance(const SkyMap& map) {
   return result;
 }
 
-/// A direction of a lobe around +Z, and the map that provides the radiance around it.
+/// A direction of a lobe around +Z, and the map from which its radiance is read.
 struct LobeSample {
   vec3 direction;
   float weight;
   uint32_t map;
-  /// The share of the next, coarser map.
+  /// The weight of the next coarser map.
   float coarser;
 };
 
-/// The i-th of n numbers of van der Corput's sequence to the base 2.
+/// Returns number i of van der Corput's sequence to the base 2.
 double radical_inverse(uint32_t i) {
   double inverse = 0.0;
   for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5) inverse += (i & 1) != 0 ? digit : 0.0;
   return inverse;
 }
 
-/// Half vectors distributed by GGX at Hammersley points. A sample stands for the solid angle 4 / (n D) and is read from
-/// the map whose texels have that size (Colbert and Krivanek, GPU Gems 3, ch. 20). The weights' sum is 1.
+/// Returns samples of a lobe: half vectors that are distributed by GGX at Hammersley points. A sample stands for the
+/// solid angle 4 / (n D) and is read from the map whose texels have this size (Colbert and Krivanek, GPU Gems 3, ch.
+/// 20). The weights add up to 1.
 std::vector<LobeSample> sample_lobe(double roughness, uint32_t count, const std::vector<SkyMap>& maps) {
   const double alpha = roughness * roughness;
   std::vector<LobeSample> samples;
@@ -138,7 +140,7 @@ std::vector<LobeSample> sample_lobe(double roughness, uint32_t count, const std:
     const double spread = cosine2 * (alpha * alpha - 1.0) + 1.0;
     const double density = alpha * alpha / (pi * spread * spread);
     const double texels = 4.0 / (count * density) * std::pow(maps.front().side(), 2) / (4.0 * pi);
-    // Half a level sharper, because interpolation blurs too.
+    // The level is half a level sharper, because interpolation blurs too.
     const double level = std::clamp(0.5 * std::log2(texels) - 0.5, 0.0, static_cast<double>(maps.size()) - 1.001);
     const double map = std::floor(level);
     samples.push_back(
@@ -150,14 +152,14 @@ std::vector<LobeSample> sample_lobe(double roughness, uint32_t count, const std:
   return samples;
 }
 
-/// Two unit vectors at right angles to n and to each other.
+/// Returns two unit vectors that are perpendicular to n and to each other.
 std::pair<vec3, vec3> make_tangents(const vec3& n) {
   const vec3 other = std::abs(n.y) < 0.9F ? vec3(0.0F, 1.0F, 0.0F) : vec3(1.0F, 0.0F, 0.0F);
   const vec3 tangent = glm::normalize(glm::cross(other, n));
   return {tangent, glm::cross(n, tangent)};
 }
 
-/// `maps` are the sky ever coarser.
+/// Blurs the sky with a lobe. `maps` are the sky at decreasing resolutions.
 SkyMap blur(const std::vector<SkyMap>& maps, uint32_t side, const std::vector<LobeSample>& lobe,
             unsigned thread_count) {
   SkyMap blurred(static_cast<int>(side));
@@ -209,7 +211,7 @@ PackedSky pack_sky(const Environment& environment, unsigned thread_count) {
   PackedSky packed;
   packed.side = side_of(environment);
   if (packed.side == 0) return packed;
-  // Panoramas may have any detail, and get more lookups than smooth skies.
+  // A panorama may contain any detail, so it gets more lookups than smooth skies.
   Environment looked_up = environment;
   auto* panorama = std::get_if<Panorama>(&looked_up.sky);
   const uint32_t factor = panorama == nullptr ? 1 : 2;

@@ -15,24 +15,24 @@ namespace promin {
 struct PackedSky {
   /// Side of the sharpest level in texels, a power of two from 128 to 512; 0 if there is no sky.
   uint32_t side = 0;
-  /// The levels of shaders/shade/sky_levels.def one after the other, each with side + 2 rows of side + 1 entries: its
-  /// texels with a border of one (environment/sky_map.h), two neighbours of a row in an entry, each texel as three half
-  /// floats from the lowest bits on.
+  /// The levels of shaders/shade/sky_levels.def, one after the other. A level has side + 2 rows of side + 1 entries:
+  /// its texels with a border of one texel (environment/sky_map.h). An entry has two neighbouring texels of a row. A
+  /// texel is three half floats, stored from the lowest bits on.
   std::vector<glm::uvec4> texels;
-  /// Coefficients of the irradiance divided by pi; w is 0. With the unit normal (x, y, z) they are those of 1, y, z, x,
-  /// xy, yz, 3zz - 1, zx and xx - yy.
+  /// Coefficients of the irradiance divided by pi; w is 0. For the unit normal (x, y, z) they are the coefficients of
+  /// 1, y, z, x, xy, yz, 3zz - 1, zx and xx - yy.
   std::array<vec4, 9> irradiance{};
 };
 
-/// Texels along each side of a level, by the side of the sharpest one and the level's number.
+/// Returns the number of texels along a side of a level.
 uint32_t side_of_level(uint32_t sharpest_side, uint32_t level);
 
 /// Prefilters an environment's sky: each texel of level i is the mean over a GGX lobe of its roughness, viewed along
-/// its normal, which is what a rough white metal reflects. Uses up to `thread_count` threads (0: all cores); the result
-/// does not depend on their number. Empty if there is no sky.
+/// its normal. This is the radiance that a rough white metal reflects. Uses up to `thread_count` threads (0: all
+/// cores); the result does not depend on their number. Empty if there is no sky.
 PackedSky pack_sky(const Environment& environment, unsigned thread_count = 0);
 
-/// Returns the size of pack_sky's texels without computing them.
+/// Returns the size in bytes of the texels of pack_sky() without computing them.
 uint64_t packed_sky_bytes(const Environment& environment);
 
 }  // namespace promin

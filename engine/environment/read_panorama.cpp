@@ -21,7 +21,7 @@ vec3 to_linear(const vec3& codes) {
   return {channel(0), channel(1), channel(2)};
 }
 
-/// Makes finite negative numbers 0, and counts them in a sentence, which is empty without such numbers.
+/// Sets finite negative numbers to 0. Returns a sentence with their number; empty if there are no such numbers.
 std::string remove_negatives(Image& image, const std::string& name) {
   size_t count = 0;
   std::ostringstream first;

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// The old pixels that a new pixel covers along an axis: [first, end), the first and the last partly.
+/// The old pixels that a new pixel covers along an axis: [first, end). It covers the first and the last one partly.
 struct Covered {
   uint32_t first;
   uint32_t end;
@@ -36,13 +36,15 @@ Covered covered_by(uint32_t i, uint32_t new_count, uint32_t old_count) {
   return {first, beyond, first + 1 - begin, end - (beyond - 1)};
 }
 
-/// Sets each of a row's pixels to the mean of those up to `reach` on both sides, around the sphere.
+/// Sets each pixel of a row to the mean of the pixels at a distance of up to `reach` on both sides. The row wraps
+/// around the sphere.
 void blur_row(vec3* row, uint32_t width, uint32_t reach) {
   if (reach == 0) return;
   const std::vector<dvec3> old(row, row + width);
   const uint32_t count = 2 * reach + 1;
   for (uint32_t x = 0; x < width; ++x) {
-    // Summed again for each pixel and not incrementally, because a rounding error of a sun that has left would remain.
+    // The sum is computed again for each pixel. An incremental sum would keep a rounding error after a sun has left the
+    // range.
     dvec3 sum(0.0);
     for (uint32_t i = 0; i < count; ++i) sum += old[(x + width - reach + i) % width];
     row[x] = vec3(sum / static_cast<double>(count));
@@ -65,7 +67,7 @@ Panorama shrink_panorama(const Panorama& panorama, uint32_t most_width, unsigned
     std::vector<dvec3> sums(size.x, dvec3(0.0));
     std::vector<double> weights(size.x, 0.0);
     for (uint32_t from_y = rows.first; from_y < rows.end; ++from_y) {
-      // Rows are the shorter the nearer they are to a pole.
+      // The circles of rows are shorter near a pole.
       const double row_weight = rows.part(from_y) * std::sin(std::numbers::pi * (from_y + 0.5) / from.size.y);
       for (uint32_t x = 0; x < size.x; ++x) {
         const Covered& column = columns[x];

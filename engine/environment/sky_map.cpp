@@ -16,7 +16,7 @@ void SkyMap::fill_border() {
     at(-1, i) = at(0, last - i);
     at(side_, i) = at(last, last - i);
   }
-  // All corners meet at -Y.
+  // All corners of the map are the direction -Y.
   at(-1, -1) = at(last, last);
   at(side_, side_) = at(0, 0);
   at(-1, side_) = at(last, 0);
@@ -37,7 +37,8 @@ vec4 SkyMap::look_up(const vec3& direction) const {
 }
 
 double solid_angle_density(const dvec2& place) {
-  // A face of the octahedron lies 1 / sqrt(3) from the middle, and is sqrt(3) times as large as its projection.
+  // A face of the octahedron has the distance 1 / sqrt(3) from the centre, and its area is sqrt(3) times that of its
+  // projection.
   const dvec3 point = octahedral_point(place);
   const double squared = glm::dot(point, point);
   return 4.0 / (squared * std::sqrt(squared));

@@ -14,9 +14,9 @@ class SkyMap {
  public:
   explicit SkyMap(int side) : side_(side), texels_(static_cast<size_t>(side + 2) * static_cast<size_t>(side + 2)) {}
 
-  /// Texels along each side, without the border.
+  /// Returns the number of texels along a side, without the border.
   int side() const { return side_; }
-  /// A texel, linear RGB; x and y from -1, which is the border, to side().
+  /// Returns a texel, linear RGB. x and y are in -1...side(); -1 and side() are the border.
   const vec4& at(int x, int y) const { return texels_[index(x, y)]; }
   vec4& at(int x, int y) { return texels_[index(x, y)]; }
 
@@ -32,14 +32,15 @@ class SkyMap {
   }
 
   int side_;
-  /// w is unused: four floats are one register.
+  /// The texels. w is unused, because four floats fit into one register.
   std::vector<vec4> texels_;
 };
 
-/// The solid angle of a part of the map around a place, per area of the map, in steradian.
+/// Returns the solid angle of a part of the map around a place, divided by its area in the map, in steradian.
 double solid_angle_density(const dvec2& place);
 
-/// Returns a map of half the side, at least 2. Each texel is the mean of four, weighted by their solid angles.
+/// Returns a map with half the side; the result's side is at least 2. Each texel is the mean of four texels, weighted
+/// by their solid angles.
 SkyMap halve(const SkyMap& map);
 
 }  // namespace promin

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Returns the direction before the rotation of the world by an angle about +Y, from +Z towards +X.
+/// Returns the direction before the world was rotated by an angle about +Y, from +Z towards +X.
 dvec3 turn_back(const dvec3& v, double angle) {
   if (angle == 0.0) return v;
   const double sine = std::sin(angle);
@@ -21,7 +21,7 @@ dvec3 turn_back(const dvec3& v, double angle) {
   return {cosine * v.x - sine * v.z, v.y, sine * v.x + cosine * v.z};
 }
 
-/// Takes unit directions in the sky's own space.
+/// Returns the radiance of each kind of sky for unit directions in the sky's own space.
 struct Radiance {
   dvec3 direction;
 
@@ -46,7 +46,7 @@ struct Radiance {
     const double y = height * std::acos(std::clamp(direction.y, -1.0, 1.0)) / pi - 0.5;
     const double left = std::floor(x);
     const double above = std::floor(y);
-    // x is from -0.5 to width - 0.5.
+    // x lies in -0.5...width - 0.5.
     const uint32_t x0 = left < 0.0 ? image.size.x - 1 : static_cast<uint32_t>(left);
     const uint32_t x1 = x0 + 1 < image.size.x ? x0 + 1 : 0;
     const auto y0 = static_cast<uint32_t>(std::max(above, 0.0));

@@ -9,9 +9,10 @@
 namespace promin {
 namespace {
 
-// White that faces the viewer is shown as 0.79 (sRGB): its radiance is .36 from all around and .27 from the light that
-// casts shadows (docs/model.md, "Studio"). In front of the viewer the floor is dark, so that metals, which mirror it,
-// show where they bend; behind the scene it is as bright as the backdrop, which glass shows.
+// A white surface that faces the viewer is displayed as 0.79 (sRGB): its radiance is .36 from the surroundings and .27
+// from the light that casts shadows (docs/model.md, "Studio"). In front of the viewer the floor is dark, so that its
+// reflection shows the curvature of metals. Behind the scene the floor is as bright as the backdrop, which is visible
+// through glass.
 struct Ends {
   double front;
   double back;
@@ -19,14 +20,15 @@ struct Ends {
 constexpr Ends kHorizon = {0.20, 0.36};
 constexpr Ends kFloor = {0.05, 0.24};
 constexpr double kCeiling = 0.16;
-/// -y and y from which on floor and ceiling are all that there is.
+/// The values of -y and y from which only floor and ceiling are visible.
 constexpr double kFloorDepth = 0.2;
 constexpr double kCeilingHeight = 0.6;
-/// A lamp's radiance falls from full at 1 minus this of its half size to 0 at 1 plus this.
+/// The width of a lamp's edge, relative to its half size. The radiance decreases from full at 1 minus this width to 0
+/// at 1 plus this width.
 constexpr double kEdge = 0.15;
 
-/// A soft rectangle in the sky, in degrees. The azimuth is counted from the viewer to the right; the size as seen from
-/// the scene.
+/// A soft rectangle in the sky. Angles are in degrees: the azimuth is counted from the viewer to the right, and the
+/// size is as seen from the scene.
 struct Lamp {
   double azimuth_deg;
   double elevation_deg;
@@ -48,7 +50,7 @@ dvec3 direction_of(double azimuth, double elevation) {
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
 
-/// A lamp in the form for testing directions.
+/// A lamp in a form in which directions can be tested quickly.
 class HungLamp {
  public:
   explicit HungLamp(const Lamp& lamp)
@@ -62,7 +64,7 @@ class HungLamp {
 
   double radiance(const dvec3& direction) const {
     const double cosine = glm::dot(direction, middle_);
-    // Beyond its corners, without angles.
+    // The direction lies beyond the lamp's corners; no angles are needed.
     if (cosine < least_cosine_) return 0.0;
     return radiance_ * share(std::atan2(glm::dot(direction, right_), cosine), half_width_) *
            share(std::atan2(glm::dot(direction, up_), cosine), half_height_);
@@ -86,7 +88,7 @@ class HungLamp {
 
 double studio_radiance(const dvec3& direction) {
   static const std::array<HungLamp, 4> kLamps = {HungLamp(kKey), HungLamp(kFill), HungLamp(kRim), HungLamp(kTop)};
-  // From the front to the back.
+  // Runs from 0 at the front to 1 at the back.
   const double way = 0.5 - 0.5 * direction.z;
   const double horizon = std::lerp(kHorizon.front, kHorizon.back, way);
   const double floor = std::lerp(kFloor.front, kFloor.back, way);

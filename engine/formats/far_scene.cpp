@@ -58,7 +58,7 @@ Bounds bounds_of_object(const Scene& scene, const Object& object, const std::vec
   return bounds;
 }
 
-/// Two digits.
+/// Returns the number as text with two digits.
 std::string to_text(double number) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, number, std::chars_format::general, 2);
@@ -87,7 +87,7 @@ dvec3 round_middle(const Bounds& bounds) {
   const double size = size_of(bounds);
   if (size == 0.0) return middle;
   const double step = std::exp2(std::floor(std::log2(size)) - 2.0);
-  // Sums with 0 are never -0.
+  // The addition of 0 turns -0 into 0.
   return glm::round(middle / step) * step + 0.0;
 }
 

@@ -25,11 +25,11 @@ struct Magic {
   std::string_view bytes;
   std::string_view name;
   std::string_view cure;
-  /// Where the bytes lie.
+  /// Position of the bytes in the file.
   size_t offset = 0;
 };
 
-/// Archive formats, by bytes that each such file has.
+/// Archive formats, recognised by bytes that every such file has.
 constexpr Magic kArchives[] = {
     {"PK\x03\x04"sv, "a zip archive", kUnpack},
     {"PK\x05\x06"sv, "a zip archive", kUnpack},
@@ -42,7 +42,7 @@ constexpr Magic kArchives[] = {
     {"ustar"sv, "a tar archive", kUnpack, 257},
 };
 
-/// Formats that promin does not read, by such bytes.
+/// Formats that promin does not read, recognised by bytes that every such file has.
 constexpr Magic kMagics[] = {
     {"Kaydara FBX Binary"sv, "FBX", kBlender},
     {"; FBX "sv, "FBX", kBlender},
@@ -61,12 +61,12 @@ constexpr Magic kMagics[] = {
     {"# vtk DataFile"sv, "VTK", "open it in ParaView and export glTF or PLY"},
 };
 
-/// File name endings of other programs' scenes that are archives.
+/// File name extensions of other programs' scenes that are archives.
 constexpr Magic kEndings[] = {{".usdz", "USD", kBlender},
                               {".blend", "a compressed Blender file", kBlender},
                               {".3mf", "3MF", "export STL by the program that wrote it"}};
 
-/// Kinds by the root element of an XML file.
+/// Kinds of XML files, recognised by the root element.
 constexpr Magic kRoots[] = {{"<COLLADA", "COLLADA", kBlender}, {"<X3D", "X3D", kMeshLab}};
 
 constexpr Magic kOffWords[] = {
@@ -90,7 +90,8 @@ uint32_t read_u32(std::string_view bytes, size_t offset) {
   return number;
 }
 
-/// A chunk 0x4D4D that is the whole file, with one of the chunks in it that come first.
+/// Returns whether the file is a 3DS scene: a chunk 0x4D4D that is the whole file and begins with one of the usual
+/// first chunks.
 bool is_3ds(std::string_view bytes, uint64_t size_bytes) {
   if (bytes.size() < 8 || !bytes.starts_with("MM") || read_u32(bytes, 2) != size_bytes) return false;
   return bytes.substr(6, 2) == "\x02\0"sv || bytes.substr(6, 2) == "\x3D\x3D"sv;
@@ -109,7 +110,8 @@ bool has_three_numbers(std::string_view line) {
   return true;
 }
 
-/// By the first line that is neither empty nor a comment, and for NFF the next.
+/// Returns the kind of a text file, from the first line that is neither empty nor a comment; for NFF also from the next
+/// line.
 FileKind kind_of_text(std::string_view text) {
   TextLines lines(text);
   std::string_view keyword;
@@ -123,7 +125,7 @@ FileKind kind_of_text(std::string_view text) {
     if (keyword == "mtllib" || ((keyword == "v" || keyword == "vn") && has_numbers))
       return readable_kind("OBJ", ".obj");
     if (keyword == "b" && has_numbers) return readable_kind("NFF", ".nff");
-    // A group or object statement of OBJ alone is not enough.
+    // A group or object statement is not enough to recognise OBJ.
     if (keyword == "o" || keyword == "g" || keyword == "s") keyword = {};
   }
   if (keyword != "v" || !lines.advance()) return {};
@@ -131,7 +133,7 @@ FileKind kind_of_text(std::string_view text) {
   return take_word(line) == "from" ? readable_kind("NFF", ".nff") : FileKind{};
 }
 
-/// The kinds that promin reads.
+/// Returns the kind of a file that promin can read; an unknown kind for other files.
 FileKind find_readable_kind(std::string_view bytes, uint64_t size_bytes) {
   const std::string_view text = skip_to_text(bytes);
   if (bytes.starts_with("glTF")) return readable_kind("glTF", ".glb");

@@ -9,7 +9,7 @@
 namespace promin {
 namespace {
 
-/// A broken exporter repeats a fault for every vertex; this is the largest number of problems to print.
+/// The largest number of problems to print. A faulty exporter may repeat a fault for every vertex.
 constexpr size_t kMaxProblems = 50;
 constexpr size_t kMaxWord = 80;
 

@@ -34,7 +34,7 @@ struct SceneFormat {
   std::string_view ending;
   Scene (*load)(const LoadOptions&, LoadReport&);
   bool has_variants = false;
-  /// Returns whether the format only stores a mesh.
+  /// True if files of the format contain only a mesh.
   bool is_mesh = false;
 };
 
@@ -43,10 +43,11 @@ bool has_anything_to_draw(const Scene& scene) {
                      [&](const Object& object) { return primitive_count(scene, object) > 0; });
 }
 
-/// A triangle's area in the sheared plane must be a normal float (shaders/trace/primitives/triangle.glsl).
+/// The smallest size of a mesh that rays can hit. A triangle's area in the sheared plane must be a normal float
+/// (shaders/trace/primitives/triangle.glsl).
 constexpr float kSmallestMesh = 1e-18F;
 
-/// Warns of meshes that are not refused for their size, but are too small to be hit.
+/// Warns of meshes that are large enough to be loaded but too small to be hit.
 void warn_of_tiny_meshes(const VertexBounds& bounds, Scene& scene) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
@@ -90,7 +91,8 @@ std::vector<bool> find_shown_materials(const Scene& scene) {
   return is_shown;
 }
 
-/// Whether a channel of a texture, which starts at this bit of a texel, is above 0 somewhere; true without a texture.
+/// Returns whether a channel of a texture is above 0 anywhere; true without a texture. The channel starts at bit `bit`
+/// of a texel.
 bool has_any(const Scene& scene, const TextureSlot& slot, int bit) {
   if (!slot.exists()) return true;
   const std::vector<uint32_t>& texels = scene.images[scene.textures[slot.texture].image]->texels;
@@ -103,7 +105,7 @@ bool is_rough_glass(const Scene& scene, const Material& material) {
          has_any(scene, model->metallic_roughness_texture, 8) && has_any(scene, model->transmission_texture, 0);
 }
 
-/// Warns of glass that blurs the sky alone (docs/model.md, "Glass").
+/// Warns of glass that blurs only the sky (docs/model.md, "Glass").
 void warn_of_rough_glass(Scene& scene) {
   const std::vector<bool> is_shown = find_shown_materials(scene);
   size_t first = 0;
@@ -131,7 +133,7 @@ void warn_of_stray_geometry(Scene& scene) {
                            (count == 1 ? "it" : "them") + " out");
 }
 
-/// Converts other texts for JSON, EXR files and Python.
+/// Converts names that are not UTF-8, because JSON, EXR files and Python need UTF-8.
 void show_names_in_utf8(Scene& scene) {
   const auto show = [](auto& parts) {
     for (auto& part : parts) part.name = to_utf8(part.name);
@@ -157,7 +159,7 @@ std::string name_endings() {
   return "a file with one of the extensions " + known;
 }
 
-/// Throws InputError where this is a folder; it names the first scenes in it.
+/// Throws InputError if the path is a folder. The message names the first scenes in the folder.
 void refuse_folder(const std::filesystem::path& file) {
   constexpr size_t kMostNamed = 2;
   std::error_code error;
@@ -187,7 +189,7 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
   throw InputError({"scene.file.ending", what + ", and the file is " + kind.name, file.string(), kind.cure});
 }
 
-/// Throws InputError where the first bytes of a file that cannot be loaded say that its ending is wrong.
+/// Throws InputError if the first bytes of a file that cannot be loaded show that its extension is wrong.
 void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& format) {
   const FileKind kind = find_file_kind(file);
   const auto has_ending = [&](const SceneFormat& other) { return kind.ending == other.ending; };
@@ -197,8 +199,9 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
   throw InputError({"scene.file.ending", "the file is " + kind.name, file.string(), kind.cure});
 }
 
-/// An empty picture could be mistaken for one of the scene. Throws InputError if a mesh has nothing to draw, or if a
-/// scene cannot draw any of its visible parts. A scene without visible parts gets a warning.
+/// Checks that there is something to draw, because an empty picture could be mistaken for a picture of the scene.
+/// Throws InputError if a mesh has nothing to draw, or if a scene cannot draw any of its visible parts. A scene without
+/// visible parts gets a warning.
 void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
   if (has_anything_to_draw(scene)) return;
   refuse_wrong_ending(report.file(), format);
@@ -223,7 +226,7 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
                       "files with the extension " + std::string(format.ending) + " have no material variants",
                       file.string(), "remove the variant"});
   }
-  // Reading a pipe could wait forever.
+  // The program could wait forever for the data of a pipe, so pipes are refused.
   if (!is_regular_file(find_input(file))) {
     throw InputError({"file.kind", "the scene is not a regular file", file.string(), "give the scene's file"});
   }
@@ -238,11 +241,11 @@ Scene load_by_format(const std::filesystem::path& file, const LoadOptions& optio
   }
 }
 
-/// The largest number of times that a file is read again. Each time, fp32 coordinates near the new center are up to
+/// The largest number of times that a file is read again. Each time, fp32 coordinates near the new center can be up to
 /// 2^24 times as fine.
 constexpr int kMostMoves = 3;
 
-/// Reads a file, and reads it again around a center if its coordinates are too coarse in fp32. Gives the warnings that
+/// Reads a file, and reads it again around a center if its coordinates are too coarse in fp32. Adds the warnings that
 /// depend on bounds.
 Scene load_near_center(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   Scene scene = load_by_format(file, options, report);

@@ -15,7 +15,7 @@
 namespace promin {
 namespace {
 
-/// Pictures of light store linear values, while colours of textures are sRGB values.
+/// Converts light to sRGB: pictures of light store linear values, but colours of textures are sRGB values.
 void encode_light(std::span<uint32_t> texels) {
   std::array<uint32_t, 256> codes{};
   for (size_t i = 0; i < codes.size(); ++i) {
@@ -27,7 +27,7 @@ void encode_light(std::span<uint32_t> texels) {
   }
 }
 
-/// In most files far more than the part before the size, and still fast to read.
+/// Number of bytes that contain the picture's size in most files, and that are still read fast.
 constexpr uint64_t kHeadBytes = uint64_t{1} << 16;
 
 void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureBytes& read, uint64_t most_bytes) {
@@ -56,7 +56,7 @@ bool tells_size(std::span<const std::byte> head) {
   }
 }
 
-/// The libraries' warning about a picture that could be decoded; empty if there is none.
+/// Decodes a picture. Returns the libraries' warning about a picture that could be decoded; empty if there is none.
 std::string decode(PictureSource& source) {
   TextureImage& image = *source.image;
   if (!source.takes_texels) {
@@ -70,7 +70,7 @@ std::string decode(PictureSource& source) {
   return picture.warning;
 }
 
-/// Materials that share a picture for several uses have a source for each.
+/// Reports a picture's problem. Materials that use a picture for several uses have a source for each use.
 void report_problem(const PictureSource& source, LoadReport& report) {
   Fault fault = *source.problem;
   if (!fault.value.starts_with(source.title)) fault.place = "image " + source.title;

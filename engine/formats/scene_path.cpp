@@ -13,7 +13,8 @@ namespace promin {
 namespace fs = std::filesystem;
 namespace {
 
-/// "http:", "file:", also "C:". A colon after a slash or without a name before it is an ordinary character.
+/// Returns whether a name begins with a scheme: "http:", "file:", also "C:". A colon after a slash, or without a name
+/// before it, is an ordinary character.
 bool has_scheme(const std::string& name) {
   const size_t colon = name.find(':');
   return colon != std::string::npos && colon > 0 && std::all_of(name.begin(), name.begin() + colon, [](char c) {
@@ -21,13 +22,13 @@ bool has_scheme(const std::string& name) {
          });
 }
 
-/// The path that a name means: both slashes divide it, and dot segments are removed first (RFC 3986, 5.2.4).
+/// Returns the path for a name. Both slashes separate its parts, and dot segments are removed first (RFC 3986, 5.2.4).
 fs::path path_of(std::string name) {
   std::replace(name.begin(), name.end(), '\\', '/');
   return fs::path(name).lexically_normal();
 }
 
-/// Whether a file lies in a folder, links resolved.
+/// Returns whether a file is in a folder, after links are resolved.
 bool lies_in(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   const fs::path real_folder = fs::canonical(folder, error);
@@ -44,12 +45,12 @@ std::vector<std::string> list_names(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     names.push_back(entry->path().filename().string());
   }
-  // A folder has them in any order.
+  // The system lists a folder in any order, so the names are sorted.
   std::sort(names.begin(), names.end());
   return names;
 }
 
-/// The path in a folder that is nearest to one that does not exist there; empty where none is near.
+/// Returns the path in a folder that is most similar to a path that does not exist there; empty if none is similar.
 fs::path nearest_path(const fs::path& folder, const fs::path& missing) {
   fs::path nearest;
   for (const fs::path& part : missing) {

@@ -10,11 +10,12 @@
 
 namespace promin {
 
-/// Returns the file that a scene names relative to itself, with either slash and dot segments removed (RFC 3986,
-/// 5.2.4). A scene from an untrusted source must not read outside its own folder. Refuses files that, after resolving
-/// links, lie neither in this folder nor in the report's root; schemes; absolute paths without a root; folders; and, if
-/// `must_exist`, missing files, with a suggestion of a similar name. Returns nullopt after reporting the reason, or if
-/// the file is missing and need not exist.
+/// Returns the file that a scene names relative to itself. Both slashes separate parts of the name, and dot segments
+/// are removed (RFC 3986, 5.2.4). A scene from an untrusted source must not read outside its own folder. The function
+/// refuses files that are neither in this folder nor in the report's root after links are resolved. It also refuses
+/// schemes, absolute paths without a root, and folders. If `must_exist`, it refuses missing files and suggests a
+/// similar name. It returns nullopt if it refuses the file, after adding the reason to the report, and if the file is
+/// missing and need not exist.
 std::optional<std::filesystem::path> find_beside_scene(const std::string& name, const std::string& place,
                                                        bool must_exist, LoadReport& report);
 

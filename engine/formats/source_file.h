@@ -11,15 +11,16 @@
 
 namespace promin {
 
-/// A file that a scene is read from.
+/// A file from which a scene was read.
 struct SourceFile {
   std::filesystem::path file;
-  /// The stamp taken just before the file was read, so that a later change differs from it. nullopt if the file was
-  /// missing.
+  /// The stamp of the file just before it was read, so that a later change causes another stamp. nullopt if the file
+  /// was missing.
   std::optional<FileStamp> stamp;
 };
 
-/// Does what load_scene does, and returns each file that was read or missing, the scene's own first, also if it throws.
+/// Loads a scene as load_scene() of promin/load_scene.h does. `sources` receives each file that was read or found
+/// missing, the scene's own file first, also if the function throws.
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options, std::vector<SourceFile>& sources);
 
 }  // namespace promin

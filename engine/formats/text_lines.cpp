@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::string_view kSpace = " \t\r\f\v";
 
-/// Whether a character is in kSpace.
+/// Returns whether a character is in kSpace.
 constexpr bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n');
 }
 
-/// Splitting into words is the most frequent operation on a text.
+/// Returns the next word. This is a template, because splitting into words is the most frequent operation on a text.
 template <bool kHasComments>
 std::string_view take_part(std::string_view& line) {
   size_t begin = 0;
@@ -55,7 +55,7 @@ bool TextLines::advance() {
   if (rest_.empty()) return false;
   const char* const begin = rest_.data();
   const char* const end = begin + rest_.size();
-  // Kept between lines, so that a file whose lines end in \r is not searched to its end for each line.
+  // The position is kept between lines, so that a file whose lines end in \r is not searched to its end for each line.
   if (line_feed_ == nullptr || line_feed_ < begin) {
     const void* const found = std::memchr(begin, '\n', rest_.size());
     line_feed_ = found == nullptr ? end : static_cast<const char*>(found);
@@ -95,9 +95,9 @@ std::optional<double> parse_any_number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool is_whole = end == word.data() + word.size();
   if (error == std::errc() && is_whole) return number;
-  // Too large or too small for a double.
+  // The number is too large or too small for a double.
   if (error == std::errc::result_out_of_range && is_whole) return std::strtod(std::string(word).c_str(), nullptr);
-  // The C library of Windows wrote infinity and NaN so: "-1.#INF", "1.#QNAN".
+  // The C library of Windows wrote infinity and NaN as "-1.#INF" and "1.#QNAN".
   const size_t mark = word.find(".#");
   if (mark == std::string_view::npos) return std::nullopt;
   const double infinite = std::numeric_limits<double>::infinity();

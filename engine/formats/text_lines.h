@@ -25,28 +25,29 @@ class TextLines {
   /// Moves to the next line. Returns false at the end.
   bool advance();
 
-  /// The current line without its end.
+  /// Returns the current line without its line end.
   std::string_view line() const { return line_; }
-  /// Its number, from 1 on.
+  /// Returns the number of the current line; the first line has the number 1.
   uint64_t number() const { return number_; }
-  /// The place of the line for messages: "line 12".
+  /// Returns the place of the current line for messages: "line 12".
   std::string place() const { return "line " + std::to_string(number_); }
 
  private:
   std::string_view rest_;
   std::string_view line_;
-  /// The next \n from rest_ on, or the end of the text; outdated if it lies before rest_.
+  /// The next \n from rest_ on, or the end of the text; not valid if it is before rest_.
   const char* line_feed_ = nullptr;
   uint64_t number_;
 };
 
-/// Removes and returns the next word of a line; empty at its end or at a comment.
+/// Removes and returns the next word of a line; empty at the end of the line and at a comment.
 std::string_view take_word(std::string_view& line);
 
-/// Removes and returns the next word of a line in a format without comments in lines; empty at its end.
+/// Removes and returns the next word of a line, in a format without comments within lines; empty at the end of the
+/// line.
 std::string_view take_field(std::string_view& line);
 
-/// The rest of a line without spaces around it.
+/// Returns the rest of a line without spaces around it.
 std::string_view trim(std::string_view line);
 
 /// Returns the finite decimal number that is the whole word; nullopt for other words ("nan", "inf", "0,5", "1e999").
@@ -56,7 +57,7 @@ std::optional<double> parse_number(std::string_view word);
 /// other words.
 std::optional<double> parse_any_number(std::string_view word);
 
-/// Returns the integer that is the whole word and fits; else nullopt.
+/// Returns an integer if it is the whole word and fits into 64 bits; nullopt for other words.
 std::optional<int64_t> parse_integer(std::string_view word);
 
 }  // namespace promin

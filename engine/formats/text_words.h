@@ -9,7 +9,8 @@
 
 namespace promin {
 
-/// Reads words from a text in which line ends hardly matter. # begins a comment up to the end of the line.
+/// Reads words from a text in which line ends separate words like spaces. # begins a comment, which ends at the end of
+/// the line.
 class TextWords {
  public:
   explicit TextWords(std::string_view text) : lines_(text) { advance(); }

@@ -7,7 +7,7 @@
 namespace promin {
 namespace {
 
-/// Newell's normal: right for polygons that are concave or not quite flat.
+/// Returns Newell's normal, which is right for polygons that are concave or not quite flat.
 dvec3 normal_of(std::span<const vec3> corners) {
   dvec3 normal(0.0);
   const dvec3 origin(corners[0]);
@@ -17,7 +17,7 @@ dvec3 normal_of(std::span<const vec3> corners) {
   return normal;
 }
 
-/// Drops the axis that the normal is closest to; the polygon comes out counter-clockwise.
+/// Projects the polygon along the axis that is nearest to the normal. The result is counter-clockwise.
 std::vector<dvec2> flatten(std::span<const vec3> corners) {
   const dvec3 normal = normal_of(corners);
   const dvec3 size = glm::abs(normal);
@@ -30,12 +30,12 @@ std::vector<dvec2> flatten(std::span<const vec3> corners) {
   return flat;
 }
 
-/// Twice the area of a, b, c: positive when they turn left.
+/// Returns twice the area of the triangle a, b, c; positive if it is counter-clockwise.
 double turn(const dvec2& a, const dvec2& b, const dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// A ring of the corners that are not yet cut off.
+/// Divides a polygon into triangles. It has a ring of the corners that are not yet cut off.
 class EarClipper {
  public:
   explicit EarClipper(std::vector<dvec2> points) : points_(std::move(points)) {
@@ -58,7 +58,7 @@ class EarClipper {
         i = (i + 1) % ring_.size();
         ++tries;
       }
-      // A polygon that crosses itself may have no ear; then any corner is used.
+      // A polygon that crosses itself may have no ear. Then any corner is cut off.
       triangles.emplace_back(at(i, -1), at(i, 0), at(i, 1));
       ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(i));
       i %= ring_.size();
@@ -73,7 +73,8 @@ class EarClipper {
   }
   double turn_at(size_t i) const { return turn(points_[at(i, -1)], points_[at(i, 0)], points_[at(i, 1)]); }
 
-  /// A corner that turns left and whose triangle holds no other corner.
+  /// Returns whether corner i is an ear: the polygon turns left there, and the corner's triangle contains no other
+  /// corner.
   bool is_ear(size_t i) const {
     if (turn_at(i) <= 0.0) return false;
     const dvec2 a = points_[at(i, -1)];

@@ -18,7 +18,7 @@ ChannelFile::ChannelFile(const std::filesystem::path& file) : file_(file), pictu
     for (size_t i = 0; i < part.channel_count; ++i) {
       const ProminPicturesChannel& channel = part.channels[i];
       const std::string group = part_of_channel(channel.name);
-      // R, G and B of the first part are the picture, whatever the part is called.
+      // R, G and B of the first part are the picture, for every name of the part.
       const bool is_ours = part_count == 1 || group == part_name || (number == 0 && group == kColorPart);
       channels_.push_back({is_ours ? channel.name : part_name + "." + channel.name,
                            channel.sample == PROMIN_PICTURES_UINT32, parts_.back().size, number, i});

@@ -18,7 +18,7 @@ struct NamedColor {
   uint32_t code;
 };
 
-/// https://www.w3.org/TR/css-color-4/#named-colors
+/// Names of colours from https://www.w3.org/TR/css-color-4/#named-colors
 constexpr NamedColor kNamedColors[] = {
     {"aqua", 0x00FFFF},    {"black", 0x000000},  {"blue", 0x0000FF},  {"brown", 0xA52A2A},  {"cyan", 0x00FFFF},
     {"fuchsia", 0xFF00FF}, {"gray", 0x808080},   {"green", 0x008000}, {"grey", 0x808080},   {"lime", 0x00FF00},
@@ -31,9 +31,9 @@ vec3 color_of_code(uint32_t code) {
   return vec3(dvec3(bytes) / 255.0);
 }
 
-/// Reads the digits behind "#".
+/// Reads the digits after "#".
 std::optional<uint32_t> read_code(std::string digits) {
-  // Each digit of the short form stands for two.
+  // In the short form each digit stands for two equal digits.
   if (digits.size() == 3) digits = {digits[0], digits[0], digits[1], digits[1], digits[2], digits[2]};
   uint32_t code = 0;
   const char* end = digits.data() + digits.size();

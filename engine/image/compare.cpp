@@ -36,7 +36,7 @@ void check_sizes(const Image& reference, const Image& test) {
   }
 }
 
-/// Sums of a row, so that the total does not depend on the number of threads.
+/// The sums of one row. The total is computed from the rows in order, so it does not depend on the number of threads.
 struct RowDifference {
   double sum = 0.0;
   double squares = 0.0;

@@ -15,13 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Memory for the rows of all parts of a file together, unless the smallest number of rows needs more.
+/// Memory in bytes for the rows of all parts of a file together. It is exceeded if the smallest number of rows needs
+/// more.
 constexpr uint64_t kMostBandBytes = uint64_t{4} << 20;
 constexpr uint32_t kLeastRows = 32;
-/// Channels that a message names, of each file.
+/// The largest number of channels of each file that a message names.
 constexpr size_t kMostNamed = 5;
 
-/// Of both files the channels of one name.
+/// The channels of both files that have the same name.
 struct ChannelPair {
   const FileChannel* reference = nullptr;
   const FileChannel* test = nullptr;
@@ -34,8 +35,8 @@ std::vector<const FileChannel*> sort_by_name(const ChannelFile& file) {
   return sorted;
 }
 
-/// Describes channels that only one file has; both lists are sorted by name: "only b.exr has Z", or nothing where there
-/// is none.
+/// Describes the channels that only one file has: "only b.exr has Z"; empty if there are none. Both lists are sorted by
+/// name.
 std::string name_missing(const fs::path& file, const std::vector<const FileChannel*>& channels,
                          const std::vector<const FileChannel*>& others) {
   std::vector<const FileChannel*> missing;
@@ -52,7 +53,7 @@ std::string name_size(const uvec2& size) {
   return std::to_string(size.x) + "x" + std::to_string(size.y);
 }
 
-/// Pairs of channels in the order of the first file.
+/// Returns pairs of channels with equal names, in the order of the first file.
 std::vector<ChannelPair> pair_channels(const ChannelFile& reference, const ChannelFile& test) {
   const std::vector<const FileChannel*> of_reference = sort_by_name(reference);
   const std::vector<const FileChannel*> of_test = sort_by_name(test);

@@ -13,10 +13,10 @@
 namespace promin {
 namespace {
 
-/// Ranks of a channel group, such as CryptoObject00.RGBA.
+/// Number of ranks in a group of channels, such as CryptoObject00.RGBA.
 constexpr size_t kRanksOfGroup = 2;
 
-/// MurmurHash3_x86_32 with seed 0 (Appleby, public domain algorithm).
+/// Returns MurmurHash3_x86_32 of a text with seed 0 (Appleby, public domain algorithm).
 uint32_t murmur3(std::string_view text) {
   constexpr uint32_t kC1 = 0xCC9E2D51;
   constexpr uint32_t kC2 = 0x1B873593;
@@ -44,7 +44,7 @@ std::string hex(uint32_t number) {
   return text;
 }
 
-/// A layer of mattes: its names by index, and the coverage of each pixel.
+/// Adds a layer of mattes. `names` are the names by index; the coverage is given for each pixel.
 void add_layer(const std::string& layer, const std::vector<std::string>& names,
                const std::vector<CoverageRanks>& coverage, Cryptomatte& result) {
   std::vector<uint32_t> ids;
@@ -62,7 +62,7 @@ void add_layer(const std::string& layer, const std::vector<std::string>& names,
     }
   }
   for_each_pixel(coverage.size(), [&](size_t pixel) {
-    // Of one name are one.
+    // The mattes of the pixel. Objects with the same name form one matte.
     std::array<std::pair<uint32_t, float>, kCoverageRanks> mattes{};
     size_t count = 0;
     for (const Coverage& covered : coverage[pixel]) {

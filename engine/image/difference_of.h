@@ -7,8 +7,8 @@
 
 namespace promin {
 
-/// Returns the absolute difference of two values of a channel; infinite if only one of them is finite, or if neither is
-/// and they differ.
+/// Returns the absolute difference of two values of a channel. It is infinite if only one value is finite, or if
+/// neither is finite and they differ.
 inline double difference_of(double a, double b) {
   if (std::isfinite(a) && std::isfinite(b)) return std::abs(a - b);
   const bool is_same = a == b || (std::isnan(a) && std::isnan(b));

@@ -12,10 +12,10 @@
 namespace promin {
 namespace {
 
-/// Larger values are clamped to this: beyond it the curves are flat, and products cannot overflow.
+/// Larger values are clamped to this, because the curves are flat beyond it and products could overflow.
 constexpr double kMostRadiance = 1e9;
 
-/// As shaders/window/tone_mapping.glsl has it.
+/// Maps a colour like map_neutral in shaders/window/tone_mapping.glsl.
 dvec3 map_neutral(dvec3 c) {
   const double least = std::min({c.x, c.y, c.z});
   c -= least < 0.08 ? least - 6.25 * least * least : 0.04;
@@ -32,14 +32,15 @@ dvec3 map_aces(const dvec3& c) {
 
 const dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
-/// Reinhard et al. 2002, equation 4, with a luminance of 4 shown as white.
+/// Maps a colour with equation 4 of Reinhard et al. 2002. A luminance of 4 is displayed as white.
 dvec3 map_reinhard(const dvec3& c) {
   const double luminance = glm::dot(kLuminance, c);
   return c * ((1.0 + luminance / 16.0) / (1.0 + luminance));
 }
 
-/// Sobotka's AgX in Wrensch's approximation ("Minimal AgX Implementation", 2023): in a space of its own, stops between
-/// -12.47 and 4.03 by a sigmoid, back, and from its display's curve to linear light.
+/// Maps a colour with Sobotka's AgX in Wrensch's approximation ("Minimal AgX Implementation", 2023). The colour is
+/// converted to AgX's own space. There, a sigmoid is applied to stops between -12.47 and 4.03. The result is converted
+/// back, and from its display's curve to linear light.
 dvec3 map_agx(const dvec3& c) {
   const glm::dmat3 inset(0.842479062253094, 0.0423282422610123, 0.0423756549057051,  //
                          0.0784335999999992, 0.878468636469772, 0.0784336,           //
@@ -76,12 +77,12 @@ dvec3 map_tones(ToneMapping mapping, const dvec3& c) {
   return c;
 }
 
-/// The part of a pixel that is not unlit.
+/// Returns the fraction of a pixel that is not unlit.
 double lit_share(const vec4& unlit) {
   return std::max(1.0 - static_cast<double>(unlit.w), 0.0);
 }
 
-/// The radiance of that part if it filled the pixel.
+/// Returns the radiance that the lit part would have if it filled the pixel.
 dvec3 lit_radiance(const vec3& radiance, const vec4& unlit) {
   return (dvec3(radiance) - dvec3(unlit)) / lit_share(unlit);
 }
@@ -124,7 +125,7 @@ vec3 apply(const DisplayTransform& display, const vec3& radiance) {
   if (display.tone_mapping == ToneMapping::kNone) return vec3(exposed);
   dvec3 shown(0.0);
   for (int i = 0; i < 3; ++i) {
-    // Written so that a NaN becomes 0.
+    // The comparison is written so that a NaN becomes 0.
     if (exposed[i] > 0.0) shown[i] = std::min(exposed[i], kMostRadiance);
   }
   return vec3(map_tones(display.tone_mapping, shown));

@@ -11,8 +11,8 @@ namespace promin {
 
 /// Returns a code of 0...255 with noise, to be rounded, so that gradients show no bands. The noise has a triangular
 /// distribution of one step to either side, which makes the error's mean and variance the same for all codes (Lipshitz
-/// et al., "Quantization and Dither: A Theoretical Survey", 1992). Within a step of 0 and 255, which codes cannot
-/// exceed, it has a uniform distribution of half that width, which keeps the mean. The noise depends only on the
+/// et al., "Quantization and Dither: A Theoretical Survey", 1992). Codes cannot exceed 0 and 255, so within one step of
+/// these the noise has a uniform distribution of half the width, which keeps the mean. The noise depends only on the
 /// position in the whole picture. shaders/window/dither.glsl computes the same.
 inline float dithered(float code, uint32_t x, uint32_t y, uint32_t channel) {
   const uint32_t first = mix_bits(x + mix_bits(y + mix_bits(channel)));

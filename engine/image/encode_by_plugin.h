@@ -16,7 +16,7 @@ namespace promin {
 /// Encodes a whole picture in a format that the plugin writes (image/plugin/pictures.h).
 class PluginEncoder {
  public:
-  /// Writes to an existing file. Throws RunError if the plugin is missing.
+  /// Creates an encoder that writes to an existing file. Throws RunError if the plugin is missing.
   PluginEncoder(std::filesystem::path file, std::string_view format, const uvec2& size, size_t pixel_bytes);
 
   /// Adds the next rows in the format's layout.

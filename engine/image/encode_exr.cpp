@@ -48,7 +48,7 @@ class ByteStream final : public Imf::OStream {
 struct FileChannel {
   std::string name;
   Imf::PixelType type = Imf::FLOAT;
-  /// Its place among a pixel's words.
+  /// Index of the channel among a pixel's words.
   size_t word = 0;
 };
 
@@ -90,7 +90,7 @@ Imf::Compression compression_of(ExrCompression compression) {
   return kCompressions[static_cast<size_t>(compression)];
 }
 
-/// The rows that are compressed together.
+/// Returns the number of rows that are compressed together.
 size_t rows_of_block(Imf::Compression compression) {
   return compression == Imf::ZIP_COMPRESSION ? 16 : compression == Imf::PIZ_COMPRESSION ? 32 : 1;
 }
@@ -99,10 +99,10 @@ size_t count_block_bytes(const PictureHeader& header, size_t pixel_bytes, Imf::C
   return rows_of_block(compression) * pixel_bytes * header.size.x;
 }
 
-/// Replaces "zip" by "zips", the same for single rows, where a picture is wide and has many channels: blocks would take
-/// more memory than all else, or one thread would compress them. Such files are hardly larger, because a row of one
-/// channel is about as long as the 32 KiB that the compressor looks back. The choice must not depend on the machine,
-/// because the file's bytes depend on the choice.
+/// Replaces "zip" by "zips", the same compression for single rows, if a picture is wide and has many channels. Blocks
+/// would otherwise use more memory than everything else, or one thread would compress all of them. Such files are
+/// hardly larger, because a row of one channel is about as long as the 32 KiB that the compressor looks back. The
+/// choice must not depend on the machine, because the file's bytes depend on the choice.
 Imf::Compression fit_compression(const PictureHeader& header, size_t pixel_bytes) {
   constexpr size_t kMostBytes = size_t{8} << 20;
   const Imf::Compression compression = compression_of(header.exr.compression);
@@ -110,17 +110,17 @@ Imf::Compression fit_compression(const PictureHeader& header, size_t pixel_bytes
   return compression == Imf::ZIP_COMPRESSION && is_large ? Imf::ZIPS_COMPRESSION : compression;
 }
 
-/// How many threads compress an EXR; 0 means the caller's thread alone. OpenEXR holds two blocks of rows for each
-/// thread, and three copies of each block.
+/// Returns the number of threads that compress an EXR; 0 means only the caller's thread. For each thread, OpenEXR holds
+/// two blocks of rows, and three copies of each block.
 unsigned count_threads(size_t block_bytes) {
   constexpr size_t kMostBytes = size_t{128} << 20;
   constexpr size_t kCopies = 2 * 3;
   return static_cast<unsigned>(std::min<size_t>(kMostBytes / (kCopies * block_bytes), core_count()));
 }
 
-/// Grows OpenEXR's pool to this number of threads, or to as many as the system starts, and returns the number. It adds
-/// one thread at a time, because OpenEXR's pool survives a failure to start one thread, but not a failure to start the
-/// second of two.
+/// Enlarges OpenEXR's pool of threads to this number, or to as many threads as the system starts. Returns the number of
+/// threads. It adds one thread at a time, because OpenEXR's pool survives a failure to start one thread, but not a
+/// failure to start the second of two.
 int grow_pool(unsigned count) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
@@ -148,7 +148,7 @@ Imf::Header make_header(const PictureHeader& header, const std::vector<FileChann
   return result;
 }
 
-/// The nearest, or the largest that is finite; what is not a number stays so.
+/// Returns the nearest 16-bit float, at most the largest finite one. NaN stays NaN.
 half to_half(uint32_t word) {
   const auto value = std::bit_cast<float>(word);
   constexpr float kLargestHalf = 65504.0F;
@@ -156,7 +156,7 @@ half to_half(uint32_t word) {
   return value < -kLargestHalf ? half(-kLargestHalf) : half(value);
 }
 
-/// The channels of some pixels, as the file keeps them.
+/// Returns the channels of some pixels in the format of the file.
 std::vector<char> pick(const std::vector<FileChannel>& channels, size_t word_count, std::span<const uint32_t> words) {
   const size_t stride = count_pixel_bytes(channels);
   const size_t pixel_count = words.size() / word_count;
@@ -206,7 +206,7 @@ class ExrEncoder::Impl {
   }
 
   void finish() {
-    // Offsets of rows are written at the end, where OpenEXR does not report failures.
+    // The destructor writes the offsets of rows. OpenEXR does not report failures there.
     output_.reset();
     bytes_.check();
   }
@@ -222,7 +222,7 @@ class ExrEncoder::Impl {
     }
   }
 
-  /// Encodes the next rows, as the file keeps them.
+  /// Encodes the next rows, which are in the format of the file.
   void encode(size_t row_count, const char* native) {
     const IMATH_NAMESPACE::V2i origin(static_cast<int>(lo_.x), static_cast<int>(lo_.y + row_));
     Imf::FrameBuffer frame;
@@ -239,7 +239,7 @@ class ExrEncoder::Impl {
   }
 
   uvec2 size_;
-  /// Where the pixels lie in the whole picture.
+  /// Position of the pixels in the whole picture.
   uvec2 lo_;
   size_t word_count_;
   PictureBytes& bytes_;

@@ -11,19 +11,19 @@
 
 namespace promin {
 
-/// Encodes an EXR file by OpenEXR. Equal pixels give equal bytes.
+/// Encodes an EXR file with OpenEXR. Equal pixels give equal bytes.
 class ExrEncoder {
  public:
-  /// The bytes must outlive it. All functions throw RunError if bytes cannot be written, and std::runtime_error for
-  /// other failures of OpenEXR.
+  /// `bytes` must outlive the encoder. All functions throw RunError if bytes cannot be written, and std::runtime_error
+  /// for other failures of OpenEXR.
   ExrEncoder(PictureBytes& bytes, const PictureHeader& header);
   ~ExrEncoder();
   ExrEncoder(const ExrEncoder&) = delete;
   ExrEncoder& operator=(const ExrEncoder&) = delete;
 
-  /// Adds the next rows: for each pixel R, G, B and the header's channels, four bytes each.
+  /// Adds the next rows. Each pixel has R, G, B and the channels of the header, with four bytes each.
   void write_rows(std::span<const uint32_t> words);
-  /// Call it after the last row.
+  /// Completes the file. The caller calls it after the last row.
   void finish();
 
  private:

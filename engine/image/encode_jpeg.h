@@ -11,18 +11,18 @@
 
 namespace promin {
 
-/// Encodes a JPEG file in 8-bit sRGB without chroma subsampling (4:4:4) by libjpeg-turbo, which needs the whole
+/// Encodes a JPEG file in 8-bit sRGB without chroma subsampling (4:4:4), with libjpeg-turbo, which needs the whole
 /// picture. Equal pixels give equal bytes.
 class JpegEncoder {
  public:
-  /// Quality of libjpeg-turbo, of 100.
+  /// Quality setting of libjpeg-turbo; its maximum is 100.
   static constexpr int kQuality = 92;
 
-  /// The bytes must outlive it. All functions throw RunError if they cannot be written, and std::runtime_error for
-  /// other failures of libjpeg-turbo, for example a side of more than 65500 pixels.
+  /// `bytes` must outlive the encoder. All functions throw RunError if bytes cannot be written, and std::runtime_error
+  /// for other failures of libjpeg-turbo, for example if a side has more than 65500 pixels.
   JpegEncoder(PictureBytes& bytes, const uvec2& size);
 
-  /// Adds the next rows, three bytes per pixel.
+  /// Adds the next rows, with three bytes per pixel.
   void write_rows(std::span<const uint8_t> pixels);
   void finish();
 

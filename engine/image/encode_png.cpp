@@ -64,7 +64,7 @@ void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
   png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
   png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
   png_set_oFFs(png_, info_, 0, 0, PNG_OFFSET_PIXEL);
-  // The key that OpenImageIO wrote, so that equal pictures still give equal files.
+  // The key that OpenImageIO wrote in earlier versions. It is kept so that equal pictures still give equal files.
   std::array<char, 16> key{"oiio:ColorSpace"};
   std::array<char, 5> text{"sRGB"};
   std::array<png_text, 2> notes{};
@@ -76,7 +76,7 @@ void PngEncoder::write_header(const uvec2& size, bool has_alpha) {
   notes[1].key = scene_key_.data();
   notes[1].text = scene_.data();
   notes[1].itxt_length = scene_.size();
-  // Empty.
+  // The language is empty.
   notes[1].lang = notes[1].lang_key = scene_key_.data() + scene_key_.size();
   png_set_text(png_, info_, notes.data(), scene_.empty() ? 1 : 2);
   png_write_info(png_, info_);

@@ -15,18 +15,18 @@
 
 namespace promin {
 
-/// Encodes a PNG file in 8-bit sRGB by libpng. libpng returns from errors by longjmp, so no object with a destructor
-/// may be created between setjmp and a call of libpng. Equal pixels of equal scenes give equal bytes.
+/// Encodes a PNG file in 8-bit sRGB with libpng. libpng returns from errors by longjmp, so no object with a destructor
+/// may be created between setjmp and a call of libpng. Equal pixels of scenes with equal names give equal bytes.
 class PngEncoder {
  public:
-  /// The bytes must outlive it. All functions throw RunError if they cannot be written, and std::runtime_error for
-  /// other failures of libpng. An iTXt chunk named promin:scene stores `scene` unless it is empty.
+  /// `bytes` must outlive the encoder. All functions throw RunError if bytes cannot be written, and std::runtime_error
+  /// for other failures of libpng. If `scene` is not empty, an iTXt chunk named promin:scene stores it.
   PngEncoder(PictureBytes& bytes, const uvec2& size, bool has_alpha, const std::string& scene = "");
   ~PngEncoder();
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
 
-  /// Adds the next rows, three bytes per pixel, or four with alpha.
+  /// Adds the next rows, with three bytes per pixel, or four with alpha.
   void write_rows(std::span<const uint8_t> pixels);
   void finish();
 

@@ -14,7 +14,8 @@ inline bool is_color_channel(const std::string& channel) {
   return channel == "R" || channel == "G" || channel == "B";
 }
 
-/// Returns the part to which a channel belongs by its name, as in files of several parts by other programs.
+/// Returns the part to which a channel belongs according to its name, as in files of several parts that other programs
+/// write.
 inline std::string part_of_channel(const std::string& channel) {
   const size_t dot = channel.rfind('.');
   if (dot != std::string::npos) return channel.substr(0, dot);

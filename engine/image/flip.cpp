@@ -14,11 +14,11 @@
 namespace promin {
 namespace {
 
-// Sections and equations refer to the paper. All computations are in double.
+// Sections and equations in the comments refer to the FLIP paper. All computations are in double.
 
 constexpr double kPi = std::numbers::pi;
 
-/// A plane of numbers with the extent of a picture.
+/// A number for each pixel of a picture.
 class Plane {
  public:
   explicit Plane(const uvec2& size) : width_(size.x), height_(size.y), values_(static_cast<size_t>(size.x) * size.y) {}
@@ -41,10 +41,10 @@ void for_each_row(size_t rows, const std::function<void(size_t)>& task) {
   });
 }
 
-/// Weights at -radius...radius.
+/// The weights at the distances -radius...radius.
 using Kernel = std::vector<double>;
 
-/// Convolves rows with one kernel and columns with another; beyond the picture its border goes on.
+/// Convolves rows with one kernel and columns with another. Beyond the picture, the border pixels are repeated.
 Plane convolve(const Plane& source, const Kernel& along_x, const Kernel& along_y) {
   const uvec2 size(static_cast<uint32_t>(source.width()), static_cast<uint32_t>(source.height()));
   Plane by_row(size);
@@ -72,7 +72,8 @@ Plane convolve(const Plane& source, const Kernel& along_x, const Kernel& along_y
   return result;
 }
 
-/// Scales weights so that those above 0 sum to 1, and those below to -1 (section 4.2: no feature gives 0).
+/// Scales the weights so that the positive weights add up to 1 and the negative weights to -1 (section 4.2). A picture
+/// without features then gives 0.
 void normalize_signs(Kernel& kernel) {
   double positive = 0.0;
   double negative = 0.0;
@@ -90,11 +91,12 @@ Kernel make_kernel(int radius, const Function& weight_at) {
   return kernel;
 }
 
-// Colours. Linear RGB to XYZ (D65) and to the space whose axes the eye's contrast sensitivity is known of, equation 2.
+// Functions for colours. They convert linear RGB to XYZ (D65), and to the space for whose axes the eye's contrast
+// sensitivity is known (equation 2).
 
 using Matrix = glm::dmat3;
 
-// Columns are those of R, G and B, of IEC 61966-2-1 in exact fractions.
+// The columns are the XYZ colours of R, G and B (IEC 61966-2-1), in exact fractions.
 const Matrix kToXyz = glm::transpose(Matrix(10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0,  //
                                             2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0,    //
                                             1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0));
@@ -112,7 +114,7 @@ dvec3 opponent_to_rgb(const dvec3& c) {
   return to_rgb * (dvec3(y + c.y / 500.0, y, y - c.z / 200.0) * kWhite);
 }
 
-/// CIELAB with chroma that grows with lightness, as Hunt found (equation 3).
+/// Converts to CIELAB with a chroma that increases with lightness, as Hunt found (equation 3).
 dvec3 to_hunt_lab(const dvec3& rgb) {
   const dvec3 p = kToXyz * rgb / kWhite;
   constexpr double kBend = 6.0 / 29.0;
@@ -123,13 +125,13 @@ dvec3 to_hunt_lab(const dvec3& rgb) {
   return {lightness, 0.01 * lightness * 500.0 * (f(p.x) - f(p.y)), 0.01 * lightness * 200.0 * (f(p.y) - f(p.z))};
 }
 
-/// Equation 4.
+/// Returns the HyAB distance (equation 4).
 double hyab(const dvec3& a, const dvec3& b) {
   const dvec3 d = a - b;
   return std::abs(d.x) + std::hypot(d.y, d.z);
 }
 
-// The contrast sensitivity of the eye as sums of Gaussians, section 4.1.1 and table 1.
+// The eye's contrast sensitivity as sums of Gaussians (section 4.1.1 and table 1).
 
 struct Gaussian {
   double a;
@@ -149,7 +151,7 @@ double weight_of(const Gaussian& gaussian, double pixels, double pixels_per_degr
   return std::exp(-kPi * kPi * degrees * degrees / gaussian.b);
 }
 
-/// Filters a channel by a sum of Gaussians whose weights, all together, sum to 1.
+/// Filters a channel with a sum of Gaussians. All weights together add up to 1.
 Plane filter(const Plane& channel, std::span<const Gaussian> gaussians, double pixels_per_degree) {
   const int radius = sensitivity_radius(pixels_per_degree);
   Plane result(uvec2(channel.width(), channel.height()));
@@ -172,7 +174,7 @@ Plane filter(const Plane& channel, std::span<const Gaussian> gaussians, double p
   return result;
 }
 
-// Edges and points, section 4.2.
+// Detectors of edges and points (section 4.2).
 
 constexpr double kFeatureWidthDegrees = 0.082;
 
@@ -191,11 +193,11 @@ struct FeatureKernels {
   }
 };
 
-/// A picture as the steps of FLIP need it.
+/// The data of a picture that FLIP compares.
 struct Seen {
-  /// Filtered as the eye does, in Hunt's Lab: L, a and b.
+  /// The picture, filtered like the eye does, in Hunt's Lab: L, a and b.
   std::vector<dvec3> color;
-  /// How much of an edge and of a point there is at each pixel.
+  /// The strength of an edge and of a point at each pixel.
   std::vector<double> edge;
   std::vector<double> point;
 };
@@ -236,12 +238,13 @@ Seen see(const Image& picture, double pixels_per_degree) {
   return seen;
 }
 
-constexpr double kColorExponent = 0.7;    // q_c
-constexpr double kFeatureExponent = 0.5;  // q_f
-constexpr double kColorKnee = 0.4;        // p_c
-constexpr double kKneeError = 0.95;       // p_t
+constexpr double kColorExponent = 0.7;    // The paper's q_c.
+constexpr double kFeatureExponent = 0.5;  // The paper's q_f.
+constexpr double kColorKnee = 0.4;        // The paper's p_c.
+constexpr double kKneeError = 0.95;       // The paper's p_t.
 
-/// Section 4.1.3: the exponent, and the error relative to the largest possible one.
+/// Returns the colour error of section 4.1.3: the error relative to the largest possible error, with the exponent
+/// applied.
 double color_error(const dvec3& a, const dvec3& b) {
   static const double largest =
       std::pow(hyab(to_hunt_lab({0.0, 1.0, 0.0}), to_hunt_lab({0.0, 0.0, 1.0})), kColorExponent);
@@ -261,7 +264,7 @@ std::vector<float> flip_map(const Image& reference, const Image& test, double pi
     for (size_t i = begin; i < end; ++i) {
       const double feature = std::max(std::abs(a.edge[i] - b.edge[i]), std::abs(a.point[i] - b.point[i]));
       const double of_features = std::pow(feature / std::numbers::sqrt2, kFeatureExponent);
-      // Section 4.3: features amplify what differs in colour.
+      // Section 4.3: features amplify differences of colours.
       errors[i] = static_cast<float>(std::pow(color_error(a.color[i], b.color[i]), 1.0 - of_features));
     }
   });

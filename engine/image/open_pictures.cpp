@@ -28,7 +28,8 @@ constexpr const char* kFileName = "libpromin_pictures.so";
 constexpr const char* kListEnding = ".libraries";
 constexpr const char* kCure = "install all of promin, or name the plugin's folder in PROMIN_PLUGINS";
 
-/// The file of the program: the one that the system reports, else the name that the program was called by.
+/// Returns the file of the program: the file that the system reports, or otherwise the name with which the program was
+/// started.
 fs::path find_program() {
   const fs::path link = "/proc/self/exe";
   std::error_code error;
@@ -36,17 +37,18 @@ fs::path find_program() {
   return fs::exists(link, error) || called == nullptr ? link : fs::path(called);
 }
 
-/// The file that holds this code: a shared library, or the program itself.
+/// Returns the file that contains this code: a shared library, or the program itself.
 fs::path find_own_file() {
   Dl_info info{};
   link_map* map = nullptr;
   const bool is_found = dladdr1(reinterpret_cast<const void*>(&open_pictures), &info, reinterpret_cast<void**>(&map),
                                 RTLD_DL_LINKMAP) != 0;
-  // The loader has an empty name for the program, and dladdr only knows the name that it was called by.
+  // The loader stores an empty name for the program, and dladdr() only returns the name with which it was started.
   return is_found && map != nullptr && *map->l_name != '\0' ? fs::path(map->l_name) : find_program();
 }
 
-/// Where the loader looks for libraries of the program: folders linked into it, of the environment and of the system.
+/// Returns the folders in which the loader looks for libraries of the program: folders linked into the program, folders
+/// of the environment, and folders of the system.
 std::vector<fs::path> list_library_folders() {
   std::vector<fs::path> folders;
   void* program = dlopen(nullptr, RTLD_LAZY);
@@ -70,15 +72,16 @@ std::vector<fs::path> list_folders() {
     std::error_code error;
     const fs::path folder = fs::canonical(file, error).parent_path();
     if (error) continue;
-    // These folders lie beside a program: as built, and as installed with a library folder for each machine type.
+    // These folders are relative to a program: the first as built and as usually installed, the other as installed with
+    // a library folder for each type of machine.
     add(folder / "../lib/promin");
     add(folder / PROMIN_PLUGIN_FOLDER);
-    // This one lies beside a library, and in Python's package the plugin lies beside the module itself.
+    // This folder is relative to a library. In the Python package, the plugin is beside the module itself.
     add(folder / "promin");
     if (folder.filename() == "promin") add(folder);
   }
-  // A program elsewhere that holds this code: the package of the static library links the folder into it, and where
-  // that did not happen the library knows where it was to be installed.
+  // The code may be linked statically into a program in any folder. The package of the static library links the
+  // plugin's folder into the program; otherwise the library knows the folder where it was to be installed.
   for (const fs::path& folder : list_library_folders()) {
     if (folder.filename() == "promin") add(folder);
   }
@@ -106,14 +109,14 @@ void find_function(void* library, const char* name, const fs::path& file, Functi
   }
 }
 
-/// The plugin is opened with local symbols, so that those of OpenImageIO's libraries meet none of a Vulkan driver, and
-/// lazily, because few functions of these libraries are ever called. Nothing is closed again, because the libraries
-/// leave work for the end of the process.
+/// Flags for opening the plugin. Its symbols are local, so that the symbols of OpenImageIO's libraries do not conflict
+/// with those of a Vulkan driver. They are resolved lazily, because few functions of these libraries are called.
+/// Nothing is closed again, because the libraries run code at the end of the process.
 constexpr int kHow = RTLD_LAZY | RTLD_LOCAL;
 
-/// Opens what the plugin needs one by one, each library after those that it needs itself: its symbols are then sought
-/// among those few instead of among all 260, which halves the processor time. Whatever fails here, or stands no longer
-/// in the list, is opened with the plugin.
+/// Opens the libraries that the plugin needs one by one, each after the libraries that it needs itself. The loader then
+/// looks for its symbols in few libraries and not in all 260, which halves the processor time. Libraries that cannot be
+/// opened here or are missing in the list are opened together with the plugin.
 void open_libraries_of(const fs::path& plugin) {
   std::ifstream list(fs::path(plugin).replace_extension(kListEnding));
   for (std::string name; std::getline(list, name);) dlopen(name.c_str(), kHow);
@@ -131,10 +134,10 @@ fs::path find_plugin() {
        kCure});
 }
 
-/// OpenImageIO's libraries start threads before anyone calls them, and wait without an end or end the process where
-/// these or their memory are missing: one library starts four, OpenBLAS starts one for each core but the first. For an
-/// EXR, OpenEXR starts one for each core. Figures are of Debian 12, where 536 MiB suffice with one core and 672 with
-/// two.
+/// Throws RunError if threads or memory are too few. OpenImageIO's libraries start threads when they are loaded. If
+/// these or their memory are not available, the libraries wait forever or end the process. One library starts four
+/// threads, and OpenBLAS starts one for each core except the first. For an EXR, OpenEXR starts one for each core. The
+/// numbers were measured on Debian 12, where 536 MiB are enough with one core and 672 MiB with two.
 void check_limits() {
   constexpr uint64_t kBytes = uint64_t{416} << 20;
   constexpr uint64_t kCoreBytes = uint64_t{144} << 20;

@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// The plugin that reads picture files, and writes the rarer kinds, by the functions of image/plugin/pictures.h.
+/// The plugin that reads picture files and writes less common formats, with the functions of image/plugin/pictures.h.
 struct PicturesPlugin {
   decltype(&promin_pictures_interface) interface = nullptr;
   decltype(&promin_pictures_open) open = nullptr;
@@ -20,10 +20,10 @@ struct PicturesPlugin {
   decltype(&promin_pictures_close) close = nullptr;
 };
 
-/// Opens the plugin at the first call, which takes a fifth of a second, and keeps it open until the process ends. Any
-/// thread may call it. The plugin is searched in the folder that the environment variable PROMIN_PLUGINS names or, if
-/// it is not set, beside the library or program that contains this code, as CMake builds and installs it. Throws
-/// RunError if it is missing, cannot be loaded or has another interface.
+/// Returns the plugin. The first call opens it, which takes a fifth of a second; it stays open until the process ends.
+/// Any thread may call this function. It looks for the plugin in the folder that the environment variable
+/// PROMIN_PLUGINS names or, if it is not set, beside the library or program that contains this code, as CMake builds
+/// and installs it. Throws RunError if the plugin is missing, cannot be loaded or has another interface.
 const PicturesPlugin& open_pictures();
 
 }  // namespace promin

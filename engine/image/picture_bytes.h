@@ -13,20 +13,20 @@ namespace promin {
 /// The bytes of a picture file that is being encoded. They are buffered, because encoders write many small pieces.
 class PictureBytes {
  public:
-  /// Writes to `file`, which will become `target`. Throws RunError.
+  /// Creates a buffer that writes to `file`. `target` is the final name of the file, for messages. Throws RunError.
   PictureBytes(const std::filesystem::path& file, std::filesystem::path target);
   ~PictureBytes();
   PictureBytes(const PictureBytes&) = delete;
   PictureBytes& operator=(const PictureBytes&) = delete;
 
-  /// Writes at the current position. Returns false after a failure, and for all later calls.
+  /// Writes bytes at the current position. Returns false after a failure, also in all later calls.
   bool write(std::span<const std::byte> bytes) noexcept;
   uint64_t place() const { return begin_ + gathered_.size(); }
   void seek(uint64_t place) noexcept;
 
   /// Throws RunError if a write failed.
   void check() const;
-  /// Call it after the last byte. Throws RunError.
+  /// Writes the buffered bytes and closes the file. The caller calls it after the last byte. Throws RunError.
   void close();
 
  private:
@@ -34,9 +34,9 @@ class PictureBytes {
 
   std::filesystem::path target_;
   int descriptor_ = -1;
-  /// errno of the failure; 0 if there was none.
+  /// errno of the first failure; 0 if there was none.
   int error_ = 0;
-  /// File position of the buffered bytes.
+  /// Position in the file of the buffered bytes.
   uint64_t begin_ = 0;
   std::vector<std::byte> gathered_;
 };

@@ -15,7 +15,8 @@ inline bool is_jpeg(const std::filesystem::path& file) {
   return ending == ".jpg" || ending == ".jpeg";
 }
 
-/// Returns the plugin's format for a file with this ending (image/plugin/pictures.h); empty if it has none.
+/// Returns the plugin's format for a file with this extension (image/plugin/pictures.h); empty if the plugin does not
+/// write such files.
 inline std::string_view plugin_format_of(const std::filesystem::path& file) {
   const std::string ending = lower_case_ending(file);
   if (ending == ".webp") return "webp";
@@ -23,15 +24,15 @@ inline std::string_view plugin_format_of(const std::filesystem::path& file) {
   return ending == ".hdr" ? "hdr" : "";
 }
 
-/// Returns whether write_image writes linear light without named channels.
+/// Returns whether write_image() writes the file as linear light without named channels.
 inline bool is_radiance(const std::filesystem::path& file) {
   return lower_case_ending(file) == ".hdr";
 }
 
-/// The key of the metadata that names the scene of a picture.
+/// The key of the metadata entry with the name of a picture's scene.
 inline constexpr std::string_view kSceneKey = "promin:scene";
 
-/// The cure for an unknown ending.
+/// The cure for an unknown extension.
 inline constexpr const char* kUseKnownEnding = "use .exr, .png, .jpg, .webp, .tif or .hdr";
 
 }  // namespace promin

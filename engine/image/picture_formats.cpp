@@ -42,8 +42,8 @@ bool begins_with(std::span<const std::byte> file, std::string_view magic) {
   return true;
 }
 
-/// Whether the 18 bytes of a Targa header are ones: a palette or none, a kind of picture that there is, as many bits as
-/// a pixel can have.
+/// Returns whether 18 bytes can be a Targa header: whether it has a valid palette entry, an existing kind of picture,
+/// and a possible number of bits per pixel.
 bool is_targa(std::span<const std::byte> file) {
   constexpr size_t kHeaderBytes = 18;
   constexpr std::array kKinds = {1U, 2U, 3U, 9U, 10U, 11U};
@@ -72,7 +72,7 @@ std::optional<uvec2> read_told_size(std::span<const std::byte> file, const Pictu
   const auto number_at = [&](size_t place) {
     uint32_t number = 0;
     for (size_t i = 0; i < format.size_bytes; ++i) number |= byte_at(file, place + i) << (8 * i);
-    // Of a bitmap with its first row on top the height is negative.
+    // If the first row of a bitmap is the top row, its height is negative.
     return number > uint32_t{std::numeric_limits<int32_t>::max()} ? 0 - number : number;
   };
   return uvec2(number_at(format.width_at), number_at(format.height_at));

@@ -29,10 +29,10 @@ const Channel* find_channel(std::span<const Channel> channels, std::string_view 
   return found == channels.end() ? nullptr : &*found;
 }
 
-/// The channels from which an 8-bit picture is made; missing ones are null.
+/// The channels that are needed to make an 8-bit picture; missing channels are null.
 struct ShowingChannels {
   const Channel* alpha;
-  /// Aovs::unlit.
+  /// The channels of Aovs::unlit.
   std::array<const Channel*, 4> unlit;
 
   explicit ShowingChannels(std::span<const Channel> channels)
@@ -55,12 +55,12 @@ struct ShowingChannels {
   }
 };
 
-/// The words of an EXR that the encoder gets at a time: many rows, or few where a picture is wide and has many
-/// channels.
+/// The number of words of an EXR that the encoder receives at a time. It is many rows, or few if a picture is wide and
+/// has many channels.
 constexpr size_t kMostWords = size_t{4} << 20;
 
-/// Pixels [begin, end) one after the other, with the channels in the order of the EXR's spec; each channel is four
-/// bytes.
+/// Returns the pixels [begin, end) one after the other. A pixel has its channels in the order of the EXR's header, with
+/// four bytes each.
 std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> channels, size_t begin, size_t end) {
   const size_t stride = 3 + channels.size();
   std::vector<uint32_t> words((end - begin) * stride);
@@ -75,13 +75,13 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
   return words;
 }
 
-/// Returns the unmultiplied colour of light that covers a part of its pixel, for a PNG.
+/// Returns the colour of a PNG pixel that is partly covered: the light divided by the covered fraction.
 template <typename Light>
 Light unassociated(const Light& light, float alpha) {
   return alpha > 0.0F ? light / alpha : Light(0.0F);
 }
 
-/// `lo` is the place of the upper left pixel in the whole picture.
+/// Returns the encoded pixels. `lo` is the position of the upper left pixel in the whole picture.
 std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& channels, const DisplayTransform& display,
                                    const uvec2& lo) {
   const bool has_alpha = channels.alpha != nullptr;
@@ -112,7 +112,7 @@ std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& ch
   return bytes;
 }
 
-/// The name of the scene that the picture is of; empty where the metadata does not have it.
+/// Returns the name of the picture's scene; empty if the metadata has no such entry.
 std::string find_scene(const Metadata& metadata) {
   const auto found = std::ranges::find(metadata, kSceneKey, &Metadata::value_type::first);
   return found == metadata.end() ? "" : found->second;
@@ -122,7 +122,7 @@ void check(ProblemCode code, bool is_so, const std::string& what, const char* cu
   if (!is_so) throw UsageError({code, what, "", cure});
 }
 
-/// Throws UsageError where parts of a picture do not suit each other: encoders read as much as the sizes state.
+/// Throws UsageError if the parts of a picture have different sizes, because encoders read as much as the sizes state.
 void check_rows(const Image& image, std::span<const Channel> channels) {
   const size_t pixel_count = static_cast<size_t>(image.size.x) * image.size.y;
   check("picture.empty", pixel_count > 0, "the picture has no pixels", "give it a width and a height");
@@ -201,7 +201,7 @@ class PictureWriter::Impl {
       plugin_->write_rows(std::as_bytes(std::span(rows.pixels)));
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
-      // A JPEG stores the covered part in front of black.
+      // A JPEG has no alpha, so the picture is stored in front of black.
       const ShowingChannels showing = jpeg_ ? ShowingChannels(channels).without_alpha() : ShowingChannels(channels);
       const std::vector<uint8_t> pixels = encode_pixels(rows, showing, header_.display, lo);
       encode([&] {
@@ -242,7 +242,8 @@ class PictureWriter::Impl {
   PictureHeader header_;
   AtomicFile output_;
   PictureBytes bytes_;
-  // One of them has a value. It is destroyed before what it writes to.
+  // Exactly one of these encoders exists. It is declared last, so that it is destroyed before the bytes to which it
+  // writes.
   std::optional<ExrEncoder> exr_;
   std::optional<JpegEncoder> jpeg_;
   std::optional<PngEncoder> png_;

@@ -18,17 +18,17 @@ struct PictureHeader {
   uvec2 size{0};
   std::optional<CropPlacement> crop = std::nullopt;
   Metadata metadata = {};
-  /// Channels in addition to R, G and B, without values.
+  /// Channels in addition to R, G and B. They have no values here.
   std::vector<Channel> channels = {};
   DisplayTransform display = {};
   ExrOptions exr = {};
 };
 
-/// Writes a picture as write_image does, but some rows at a time. The file appears when it is complete; without
-/// commit() nothing remains.
+/// Writes a picture like write_image(), but some rows at a time. The file appears when it is complete. Without commit()
+/// no file remains.
 class PictureWriter {
  public:
-  /// Throws as write_image.
+  /// Throws the same errors as write_image().
   PictureWriter(const std::filesystem::path& file, const PictureHeader& header);
   ~PictureWriter();
   PictureWriter(PictureWriter&&) noexcept;

@@ -28,10 +28,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Of manifests and of pieces.
+/// Version of the format of manifests and pieces.
 constexpr int kFormat = 3;
 constexpr std::string_view kMagic = "promin piece 3";
-/// Longer than any header of a piece.
+/// The largest size of a piece's header in bytes; real headers are much shorter.
 constexpr size_t kMostHeaderBytes = 1U << 20;
 
 Json json_of(const Manifest& manifest) {
@@ -61,7 +61,8 @@ Manifest manifest_of(const Json& json) {
   return manifest;
 }
 
-/// Names of pieces become file names, so names in an untrusted folder must not lead out of it.
+/// Returns whether all names can be names of pieces. Names become file names, so names in an untrusted folder must not
+/// refer to files outside it.
 bool has_names_of_pieces(const Manifest& manifest) {
   constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
   return !manifest.pieces.empty() && std::ranges::all_of(manifest.pieces, [&](const std::string& name) {
@@ -77,7 +78,7 @@ std::string text_of(const Manifest& manifest) {
   return json_of(manifest).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// The manifest of a folder that has one. Throws InputError.
+/// Reads the manifest of a folder that has one. Throws InputError.
 Manifest read_manifest(const fs::path& folder) {
   const fs::path file = manifest_file(folder);
   const char* cure = "use another folder, or remove this one";
@@ -99,7 +100,7 @@ Manifest read_manifest(const fs::path& folder) {
       throw InputError({"job.version", "the job was made by another version of promin", file.string(), cure});
     }
     Manifest manifest = manifest_of(json);
-    // A manifest that was edited no longer matches its pieces.
+    // If a user has edited the manifest, it no longer matches its pieces.
     if (text_of(manifest) == text && has_names_of_pieces(manifest)) return manifest;
   } catch (const nlohmann::json::exception&) {
   }
@@ -110,7 +111,7 @@ std::string shown(const std::string& value) {
   return value.empty() ? "nothing" : "\"" + value + "\"";
 }
 
-/// The description of an option that a manifest lacks; manifests omit options with their default values.
+/// The text for an option that a manifest does not contain. Manifests omit options with their default values.
 constexpr std::string_view kLeftOut = "is not given or has its default value";
 
 /// Returns the first difference of two jobs, as a sentence.
@@ -166,7 +167,7 @@ bool has_strangers(const fs::path& folder) {
   return false;
 }
 
-/// Flushes the folder's entry of a new file to the disk.
+/// Flushes the entry of a new file in its folder to the disk.
 void flush_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -174,7 +175,7 @@ void flush_folder(const fs::path& folder) {
   close(descriptor);
 }
 
-/// The header of a piece, a line of JSON, and where its bytes begin.
+/// The header of a piece, a line of JSON, and the position where the piece's bytes begin.
 struct Header {
   Json json;
   size_t begin = 0;
@@ -203,7 +204,7 @@ std::optional<Header> read_header_of(const fs::path& file) {
   return read_header(magic + "\n" + line + "\n");
 }
 
-/// A piece's content, or its fault without place and cure.
+/// The content of a piece, or its fault without place and cure.
 using Reading = std::variant<Content, Problem>;
 
 Reading read_piece(const fs::path& file, const std::string& job, const std::string& name) {
@@ -232,9 +233,9 @@ Reading read_piece(const fs::path& file, const std::string& job, const std::stri
   }
 }
 
-/// Appends a line, completely or not at all, to a file that no other process writes.
+/// Appends a line to a file, completely or not at all. No other process writes the file.
 void append_line(const fs::path& file, const std::string& line, bool reaches_disk) {
-  // Threads take turns: a thread that fails removes what it has written.
+  // Only one thread at a time writes, because a thread that fails removes what it has written.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -249,7 +250,7 @@ void append_line(const fs::path& file, const std::string& line, bool reaches_dis
                   file.string(), "check the disk and permissions"});
 }
 
-/// Seconds since 1970.
+/// Returns the time in seconds since 1970.
 double now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -266,7 +267,8 @@ std::string text_of_line(const Json& line) {
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// Returns the version of the pieces' maker: that of a function, if the job states it, else promin's.
+/// Returns the version of the maker of pieces: if the job states the version of a function, that version, otherwise
+/// promin's.
 std::string version_of(const Manifest& manifest) {
   for (const auto& [name, value] : manifest.options) {
     if (name == "version") return value;
@@ -274,7 +276,8 @@ std::string version_of(const Manifest& manifest) {
   return PROMIN_VERSION;
 }
 
-/// Returns whether two makers are expected to give the same bits if their builds do. A program computes no fingerprint.
+/// Returns whether two makers are expected to give the same bits if they use the same build. Programs compute no
+/// fingerprint, so an empty fingerprint is not compared.
 bool is_same_device(const Maker& a, const Maker& b) {
   const bool may_differ = !a.fingerprint.empty() && !b.fingerprint.empty() && a.fingerprint != b.fingerprint;
   return a.made_on == b.made_on && !may_differ;
@@ -299,7 +302,7 @@ Job Job::create(const fs::path& folder, const Manifest& manifest) {
   make_folder(folder);
   promin::clear_leftovers(folder);
   std::error_code error;
-  // Others may create the same job at the same time; they write the same bytes.
+  // Other processes may create the same job at the same time. They write the same bytes.
   if (has_strangers(folder) && !fs::exists(manifest_file(folder), error)) {
     throw UsageError(
         {"job.folder.used", "the folder has files but no job", folder.string(), "use a new or an empty folder"});
@@ -453,7 +456,7 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
   for (size_t i = 0; i < missing.size(); ++i) {
     const size_t piece = missing[i];
     std::string why;
-    // Another process may have made it meanwhile.
+    // Another process may have made the piece meanwhile.
     if (job.state_of(piece, &why) == PieceState::kDone) continue;
     if (!before({piece, i, missing.size(), why})) return made;
     make_piece(job, piece, maker, make);

@@ -55,7 +55,7 @@ void KnownHashes::save() {
   try {
     write_text_file(file_, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   } catch (const RunError&) {
-    // Whoever comes later reads the file then.
+    // Later processes then read the file and hash it themselves.
     return;
   }
   has_more_ = false;

@@ -11,15 +11,15 @@
 
 namespace promin::jobs {
 
-/// A cache of the hashes of a job's large inputs, in `hashes.json` in its folder, by the files' paths and stamps.
-/// Without it every process that works on the job would read gigabytes before its first piece.
+/// A cache of the hashes of a job's large inputs, in `hashes.json` in its folder. It is indexed by the files' paths and
+/// stamps. Without it every process that works on the job would read gigabytes before its first piece.
 class KnownHashes {
  public:
-  /// Reads the cache if it exists; damaged entries are ignored.
+  /// Reads the cache if it exists. Damaged entries are ignored.
   explicit KnownHashes(const std::filesystem::path& folder);
 
-  /// Returns the same as describe_input. Reads the file only if its stamp is unknown. Throws InputError, also if the
-  /// file changes meanwhile.
+  /// Returns the same as describe_input(). Reads the file only if its stamp is unknown. Throws InputError, also if the
+  /// file changes while it is read.
   InputFile describe(const std::filesystem::path& file);
   /// Writes the cache for later processes; ignores failures.
   void save();

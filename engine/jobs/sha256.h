@@ -11,7 +11,7 @@
 
 namespace promin::jobs {
 
-/// Computes SHA-256 (FIPS 180-4) of data that is added in parts, by OpenSSL.
+/// Computes the SHA-256 (FIPS 180-4) of data that is added in parts, with OpenSSL.
 class Sha256 {
  public:
   Sha256();
@@ -21,7 +21,7 @@ class Sha256 {
 
   Sha256& add(std::span<const std::byte> bytes);
   Sha256& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
-  /// Returns the hash as 64 hexadecimal digits. Nothing may be added afterwards.
+  /// Returns the hash as 64 hexadecimal digits. No data may be added afterwards.
   std::string finish();
 
  private:
@@ -30,7 +30,7 @@ class Sha256 {
 };
 
 std::string sha256_of(std::string_view text);
-/// Returns the hash of a file's bytes. Throws InputError if it cannot be read.
+/// Returns the hash of a file's bytes. Throws InputError if the file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace promin::jobs

@@ -29,7 +29,7 @@ vec3 to_unit(const dvec3& v) {
 void pose_mesh(std::span<const dmat4> joint_matrices, const SkinInfluences& influences, Mesh& mesh) {
   for (size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
     const dmat4 matrix = blend(joint_matrices, influences, vertex);
-    // -0 becomes 0, as in meshes that are not posed.
+    // The addition turns -0 into 0, as in meshes that are not posed.
     mesh.positions[vertex] = vec3(matrix * dvec4(mesh.positions[vertex], 1.0)) + 0.0F;
     if (mesh.normals.empty()) continue;
     const Placement placement(matrix);

@@ -27,13 +27,13 @@ static_assert(std::endian::native == std::endian::little,
               "rays and hits have the same layout in the file as in memory");
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-/// No array of numbers has a larger header.
+/// The largest size of a header in bytes. No array of numbers has a larger header.
 constexpr uint32_t kMaxHeaderBytes = 1U << 16;
 constexpr const char* kCure =
     "save it with numpy.save(file, numpy.ascontiguousarray(rays, '<f4')), or '<f8', with rays of shape (N, 8)";
 
-/// The entries of a Python dictionary of literals with string keys, which is what a .npy header holds, each value as
-/// written. nullopt if the text is no such dictionary.
+/// Returns the entries of a Python dictionary of literals with string keys, each value as written; a .npy header
+/// contains such a dictionary. Returns nullopt if the text is not such a dictionary.
 std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std::string_view text) {
   std::map<std::string_view, std::string_view> entries;
   size_t at = 0;
@@ -57,7 +57,7 @@ std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std
     at = key_end + 1;
     if (!take(':')) return std::nullopt;
     skip_spaces();
-    // The value ends at a comma or brace outside of its own brackets.
+    // The value ends at a comma or brace that is outside the value's own brackets.
     const size_t first = at;
     for (int depth = 0; at < text.size() && (depth > 0 || (text[at] != ',' && text[at] != '}')); ++at) {
       if (text[at] == '(' || text[at] == '[') ++depth;
@@ -70,7 +70,7 @@ std::optional<std::map<std::string_view, std::string_view>> parse_dictionary(std
   return at == text.size() ? std::optional(entries) : std::nullopt;
 }
 
-/// Reads N from "(N, 8)", however it is spaced.
+/// Reads N from "(N, 8)", with any spacing.
 std::optional<uint64_t> parse_shape(std::string_view text) {
   std::string tight;
   for (const char c : text) {
@@ -85,7 +85,8 @@ std::optional<uint64_t> parse_shape(std::string_view text) {
   return count;
 }
 
-/// Prepares text of the file for a message: without what would move a terminal's cursor, and no longer than a line.
+/// Returns a text of the file for a message, without characters that move a terminal's cursor and not longer than a
+/// line.
 std::string make_printable(std::string_view text) {
   constexpr size_t kMost = 60;
   std::string quoted(text.substr(0, kMost));
@@ -104,7 +105,7 @@ struct RayArray {
   uint64_t ray_bytes = 0;
 };
 
-/// Reads the number of rays and their size from the header's dictionary.
+/// Reads the number of rays and the size of their numbers from the header's dictionary.
 RayArray parse_header(std::string_view header, const fs::path& file) {
   const auto entries = parse_dictionary(header);
   if (!entries || !entries->contains("descr") || !entries->contains("fortran_order") || !entries->contains("shape")) {
@@ -128,8 +129,8 @@ RayArray parse_header(std::string_view header, const fs::path& file) {
   return {*count, 8 * (is_double ? sizeof(double) : sizeof(float))};
 }
 
-/// Returns the header of an array with this number of rows and at least this number of bytes. `type` is written like
-/// numpy.dtype.descr, `columns` like the part of the shape after the number of rows.
+/// Returns the header of an array with this number of rows and at least this number of bytes. `type` has the form of
+/// numpy.dtype.descr. `columns` is the text of the shape after the number of rows.
 std::string make_header(std::string_view type, uint64_t rows, std::string_view columns, size_t least_bytes = 0) {
   std::string dictionary("{'descr': ");
   dictionary.append(type).append(", 'fortran_order': False, 'shape': (");
@@ -147,7 +148,7 @@ std::string make_header(std::string_view type, uint64_t rows, std::string_view c
   return header + dictionary;
 }
 
-/// Room for the header of an array whose number of rows is not known yet.
+/// Returns the space for the header of an array whose number of rows is not known yet.
 size_t largest_header(std::string_view type) {
   return make_header(type, std::numeric_limits<uint64_t>::max(), ",").size();
 }

@@ -16,19 +16,20 @@
 
 namespace promin {
 
-/// Reads rays from a NumPy file piece by piece: an array of N x 8 little-endian float32 or float64 in C order. A row is
-/// origin xyz, tmin, direction xyz, tmax. N may be 0. Supports NumPy's formats 1.0, 2.0 and 3.0 (numpy.lib.format).
+/// Reads rays from a NumPy file piece by piece. The file is an array of N x 8 little-endian float32 or float64 in C
+/// order. A row is origin xyz, tmin, direction xyz, tmax. N may be 0. Supports NumPy's formats 1.0, 2.0 and 3.0
+/// (numpy.lib.format).
 class RayReader {
  public:
-  /// Opens the file. Throws InputError if it is anything else, or shorter or longer than its header says.
+  /// Opens the file. Throws InputError if the file has other content, or is shorter or longer than its header says.
   explicit RayReader(const std::filesystem::path& file);
 
   uint64_t count() const { return count_; }
 
-  /// Moves to the ray with this index, from which read() continues.
+  /// Moves to the ray with this index. read() continues from there.
   void seek(uint64_t ray);
-  /// Reads the next rays, as many as fit in `rays`, but not more than remain. The center (Scene::center) is subtracted
-  /// from their origins in double; then float64 is rounded to float32. Throws InputError.
+  /// Fills `rays` with the next rays; there must be as many. The center (Scene::center) is subtracted from the origins
+  /// in double; then float64 is rounded to float32. Throws InputError.
   void read(std::span<Ray> rays, const dvec3& center = dvec3(0.0));
 
  private:
@@ -43,21 +44,21 @@ class RayReader {
   std::streamoff begin_ = 0;
 };
 
-/// Writes rays to a file for RayReader, completely or not at all. Throws RunError.
+/// Writes rays to a file that RayReader can read, completely or not at all. Throws RunError.
 void write_rays(const std::filesystem::path& file, std::span<const Ray> rays);
 
-/// Writes an array of one axis to a NumPy file piece by piece. The file appears complete on commit(), or not at all.
-/// Throws RunError.
+/// Writes an array of one axis to a NumPy file piece by piece. The complete file appears on commit(); without commit()
+/// no file appears. Throws RunError.
 class ArrayWriter {
  public:
-  /// Completes the file after all elements.
+  /// Completes the file after the last element.
   void commit();
-  /// Does the same for several files: either all of them appear or none.
+  /// Completes several files: either all of them appear or none.
   static void commit_together(std::initializer_list<ArrayWriter*> writers);
 
  protected:
-  /// `type` is written like numpy.dtype.descr. If `count`, the number of elements, is empty, the number written at the
-  /// end is used.
+  /// `type` has the form of numpy.dtype.descr. If `count` is empty, the number of elements is the number that was
+  /// written.
   ArrayWriter(const std::filesystem::path& file, std::string_view type, std::optional<uint64_t> count);
   void write(std::span<const std::byte> bytes, uint64_t count);
 
@@ -87,7 +88,7 @@ class CountWriter : public ArrayWriter {
   void write(std::span<const int32_t> counts) { ArrayWriter::write(std::as_bytes(counts), counts.size()); }
 };
 
-/// Writes the indices where the hits of each ray begin and where those of the last ray end, as little-endian uint64.
+/// Writes offsets as little-endian uint64: the index of each ray's first hit, and then the end of the last ray's hits.
 class OffsetWriter : public ArrayWriter {
  public:
   OffsetWriter(const std::filesystem::path& file, uint64_t count);

@@ -15,14 +15,14 @@
 namespace promin {
 namespace {
 
-/// kSamplePairs pairs are looked at. Two rays count as side by side within kNearOrigin of the cube's half side and
-/// kNearDirection of the direction's largest component.
+/// Number of pairs of rays that are tested. Two rays are side by side if their origins differ by at most kNearOrigin of
+/// the cube's half side, and their directions by at most kNearDirection of the direction's largest component.
 constexpr size_t kSamplePairs = 256;
 constexpr float kNearOrigin = 0.1F;
 constexpr float kNearDirection = 0.1F;
 
-/// A sort key has kLevels bits of each coordinate of the entry point and of the direction, the highest first. So there
-/// are kCells cells along each side of the cube of points and of the cube of directions.
+/// Number of bits in a sort key for each coordinate of the entry point and of the direction; the highest bits come
+/// first. There are kCells cells along each side of the cube of points and of the cube of directions.
 constexpr uint32_t kLevels = 5;
 constexpr float kCells = 1U << kLevels;
 constexpr uint32_t kKeyBits = 6 * kLevels;
@@ -34,12 +34,12 @@ static_assert(kKeyBits % kDigitBits == 0);
 /// The smallest number of rays for which a thread is worth its cost.
 constexpr size_t kLeastPart = 16384;
 
-// Keys are computed for this many rays at a time, loop by loop over arrays and without branches, which compilers turn
-// into vector instructions: ray by ray it takes five times as long.
+// Number of rays whose keys are computed at a time. Loops over arrays without branches become vector instructions; a
+// computation ray by ray takes five times as long.
 constexpr size_t kBlock = 64;
 using Block = std::array<float, kBlock>;
 
-// These return the first number where the second is NaN.
+// These functions return the first number if the second is NaN.
 float lesser(float a, float b) {
   return b < a ? b : a;
 }
@@ -47,13 +47,14 @@ float greater(float a, float b) {
   return b > a ? b : a;
 }
 
-/// The cell of x in [-1, 1], not yet rounded down. Any other x, NaN too, gives some number in [0, kCells).
+/// Returns the cell of x in [-1, 1] before it is rounded down. For any other x, also NaN, it returns some number in [0,
+/// kCells).
 float cell_of(float x) {
   return lesser(kCells - 1.0F, greater(0.0F, 0.5F * kCells * (x + 1.0F)));
 }
 
-/// Rounds a cell down and moves bit i of its number to bit 6 i: the product has copies of the number a bit less than 6
-/// apart, and copy i has its bit i there.
+/// Rounds a cell down and moves bit i of its number to bit 6 i. The product contains copies of the number at distances
+/// that are one bit less than 6, so bit i of copy i is at bit 6 i.
 uint32_t spread_bits(float cell) {
   static_assert(kLevels == 5);
   return (static_cast<uint32_t>(static_cast<int32_t>(cell)) * 0x108421U) & 0x1041041U;
@@ -79,7 +80,7 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
     scales[i] = 1.0F / greater(size_of_two, std::fabs(directions[2][i]));
   }
 
-  // From here on coordinates are in a cube from -1 to 1.
+  // The following coordinates are relative to a cube from -1 to 1.
   Block entry;
   Block exit;
   entry.fill(0.0F);
@@ -119,7 +120,7 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
     }
   }
   for (size_t i = 0; i < kBlock; ++i) {
-    // This is also false where anything is infinite or NaN.
+    // The condition is also false if a number is infinite or NaN.
     const bool enters = entry[i] <= exit[i] && sums[i] - sums[i] == 0.0F;
     keys[i] = enters ? keys[i] : kMissKey;
   }
@@ -157,7 +158,7 @@ std::span<const uint32_t> RaySorter::sort(std::span<const Ray> rays, const Scene
     }
   });
 
-  // There is a stable counting sort for each digit, the lowest first, and each thread sorts its part, so that the order
+  // The sort is a stable counting sort for each digit, the lowest digit first. Each thread sorts its part, so the order
   // does not depend on the number of threads.
   using Buckets = std::array<uint32_t, kBuckets>;
   std::vector<Buckets> buckets(part_count);

@@ -10,13 +10,13 @@
 #include "core/unset_vector.h"
 #include "promin/ray.h"
 
-// Orders rays so that they can be traced fast. Results do not depend on the order.
+// Orders rays so that they can be traced fast. The results of rays do not depend on the order.
 namespace promin {
 
-/// A cube around everything that rays may hit, except infinite planes.
+/// A cube around all geometry that rays may hit, except infinite planes.
 struct SceneCube {
   vec3 center{0.0F};
-  /// Half the cube's side; >= 0.
+  /// Half the cube's side, >= 0.
   float radius = 0.0F;
 };
 
@@ -27,22 +27,24 @@ inline vec3 scaled_direction(const Ray& ray) {
 }
 
 /// Returns the first ray of the i-th pair in a sample of all pairs of neighbouring rays. `ray_count` is at least 2. The
-/// sample steps by the golden ratio, because equal steps could all fall on the ends of a picture's rows.
+/// sample uses steps of the golden ratio, because with equal steps all samples could be at the ends of a picture's
+/// rows.
 inline size_t sampled_pair(size_t i, size_t ray_count) {
   return (i * size_t{0x9E3779B97F4A7C15}) % (ray_count - 1);
 }
 
-/// Returns whether most neighbouring rays have similar origins and directions, as those of a camera in pixel order do.
-/// It tests a sample of the pairs.
+/// Returns whether most neighbouring rays have similar origins and directions, like the rays of a camera in pixel
+/// order. The function tests a sample of the pairs.
 bool are_side_by_side(std::span<const Ray> rays, const SceneCube& cube);
 
-/// Sorts rays. It keeps its memory for the next call.
+/// Sorts rays. The object keeps its memory for the next call.
 class RaySorter {
  public:
-  /// Returns the rays' indices in an order in which rays that enter the cube close together and in similar directions
-  /// are neighbours, along a space-filling curve through entry point and direction (Aila & Karras, "Architecture
-  /// Considerations for Tracing Incoherent Rays", HPG 2010). Rays that miss the cube or have no direction come last. At
-  /// most 2^32 - 1 rays. The order is stable, and the same with any number of threads. It is valid until the next call.
+  /// Returns the rays' indices in a new order. Rays that enter the cube close together and in similar directions are
+  /// neighbours in it. The order follows a space-filling curve through entry point and direction (Aila & Karras,
+  /// "Architecture Considerations for Tracing Incoherent Rays", HPG 2010). Rays that miss the cube or have no direction
+  /// come last. There may be at most 2^32 - 1 rays. The order is stable and the same for every number of threads. The
+  /// result is valid until the next call.
   std::span<const uint32_t> sort(std::span<const Ray> rays, const SceneCube& cube);
 
  private:

@@ -16,23 +16,23 @@ constexpr uint32_t kTileRows = 4;
 constexpr uint32_t kTileWidth = 8;
 constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
-/// The number of neighbouring pairs of rays whose median distance is called a step here.
+/// The number of pairs of neighbouring rays in a sample. Their median distance is called a step here.
 constexpr size_t kSamplePairs = 255;
-/// The search for the end of a row looks at one ray in kStride. There is no end where that ray is less than kFarSteps
-/// from the one looked at before.
+/// The search for the end of a row tests one ray in kStride. If this ray is less than kFarSteps from the previous
+/// tested ray, the row does not end between them.
 constexpr size_t kStride = 16;
 constexpr float kFarSteps = 32.0F;
-/// The first ray of a row is at least this many steps from the last one of the row before.
+/// The smallest distance, in steps, between the last ray of a row and the first ray of the next row.
 constexpr float kLeastJump = 8.0F;
 /// Rays of neighbouring rows count as neighbours if they are at most this many steps apart.
 constexpr float kMostNeighbourSteps = 16.0F;
-/// Rows whose columns differ by less than this are not shifted: groups of four that are shifted by a ray trace as fast
-/// as rays outside of groups.
+/// The smallest shift between rows that is corrected. With a smaller shift, groups of four rays trace as fast as rays
+/// outside groups.
 constexpr float kLeastLag = 1.5F;
-/// A thread takes this many bands at a time; the rays that it leaves over are put behind them.
+/// Number of bands that a thread processes at a time. Rays that form no group of four are put behind them.
 constexpr size_t kChunkBands = 16;
 
-/// A ray's origin and direction as one place, in units of the scene.
+/// A ray's origin and direction as one point, in units of the scene.
 struct Place {
   vec3 origin{0.0F};
   vec3 direction{0.0F};
@@ -46,7 +46,7 @@ float dot(const Place& a, const Place& b) {
   return glm::dot(a.origin, b.origin) + glm::dot(a.direction, b.direction);
 }
 
-/// NaN where either ray has no direction.
+/// Returns the squared distance of two rays; NaN if either ray has no direction.
 float square_distance(const Place& a, const Place& b) {
   const Place difference = a - b;
   return dot(difference, difference);
@@ -68,7 +68,7 @@ class Rows {
 
   Place place_of(size_t ray) const { return {rays_[ray].origin * unit_, scaled_direction(rays_[ray])}; }
 
-  /// Prefetches a ray that is read soon, because waiting for memory would take most of the time.
+  /// Prefetches a ray that is read soon, because waiting for memory would otherwise take most of the time.
   void expect(size_t ray) const { __builtin_prefetch(&rays_[std::min(ray, rays_.size() - 1)]); }
 
   bool are_neighbours(const Place& a, const Place& b) const {
@@ -85,7 +85,7 @@ class Rows {
     return rows;
   }
 
-  /// Joins rows that lie next to each other to bands of up to kTileRows.
+  /// Joins rows that are next to each other into bands of up to kTileRows.
   std::vector<Band> join(std::span<Row> rows) const {
     std::vector<Band> bands;
     size_t first = 0;
@@ -110,15 +110,15 @@ class Rows {
     return *median;
   }
 
-  /// Whether the row that began at `start` ends after ray `last`: the next ray is nearer to the row's beginning than to
-  /// this ray.
+  /// Returns whether the row that begins at `start` ends with ray `last`: whether the next ray is nearer to the row's
+  /// beginning than to ray `last`.
   bool is_end(const Place& start, size_t last) const {
     const Place next = place_of(last + 1);
     const float jump = square_distance(place_of(last), next);
     return jump > kLeastJump * kLeastJump * square_step_ && square_distance(next, start) < jump;
   }
 
-  /// The ray before the largest jump between rays `a` and `b`, if one jump is much larger than the others.
+  /// Returns the ray before the largest jump between rays `a` and `b`, if one jump is much larger than all others.
   size_t find_jump(size_t a, size_t b) const {
     const Place place_a = place_of(a);
     const Place place_b = place_of(b);
@@ -130,20 +130,20 @@ class Rows {
     return a;
   }
 
-  /// Returns whether these rays may be one row and not two: the middle one is about halfway.
+  /// Returns whether these rays may be one row and not two: whether the middle ray is about halfway.
   bool is_one_row(const Place& start, size_t begin, size_t last) const {
     const float half_square = square_distance(start, place_of((begin + last) / 2));
     const float square = square_distance(start, place_of(last));
     return 16.0F * half_square > square && 16.0F * half_square < 9.0F * square;
   }
 
-  /// Finds the end of the row that begins at `begin`. `expected` is the length of the row before, or 0; most rows are
-  /// nearly as long.
+  /// Finds the end of the row that begins at `begin`. `expected` is the length of the previous row, or 0; most rows
+  /// have nearly the same length.
   size_t find_end(size_t begin, size_t expected) const {
     const size_t count = rays_.size();
     const Place start = place_of(begin);
     if (expected >= kStride && begin + expected + kStride < count) {
-      // Fetches the rays where the next row may end, a cache line at a time.
+      // Prefetches the rays around the expected end of the next row, one cache line at a time.
       for (size_t i = 0; i <= 2 * kStride; i += 2) expect(begin + 2 * expected - kStride + i);
       const size_t last = find_jump(begin + expected - kStride, begin + expected + kStride);
       if (is_end(start, last) && is_one_row(start, begin, last)) return last + 1;
@@ -174,19 +174,19 @@ class Rows {
   float square_step_;
 };
 
-/// Puts a chunk's rays into the order, fours first and those that make no fours last.
+/// Writes a chunk's rays in their new order: first the groups of four, then the rays that form no groups.
 class Sink {
  public:
   explicit Sink(uint32_t* next) : next_(next) {}
 
-  /// Puts rays of one row.
+  /// Writes rays of one row.
   void put(uint32_t first, uint32_t count) {
     const uint32_t whole = count / kPacketSize * kPacketSize;
     for (uint32_t i = 0; i < whole; ++i) *next_++ = first + i;
     for (uint32_t i = whole; i < count; ++i) rest_.push_back(first + i);
   }
 
-  /// Puts rays of two rows that lie next to each other.
+  /// Writes rays of two rows that are next to each other.
   void put_pair(uint32_t a, uint32_t count_a, uint32_t b, uint32_t count_b) {
     const uint32_t both = std::min(count_a, count_b) / 2 * 2;
     for (uint32_t i = 0; i < both; i += 2) {
@@ -236,14 +236,14 @@ class BandWalk {
   }
 
  private:
-  /// The next ray of a row, and where it is.
+  /// The next ray of a row, and its place.
   struct Head {
     uint32_t next = 0;
     uint32_t end = 0;
     /// The number of rays that the current tile takes.
     uint32_t taken = 0;
     Place place{};
-    /// The place along the rows, and how much farther each ray of this row is than the one before.
+    /// The ray's coordinate along the rows, and the distance between neighbouring rays of this row.
     float column = 0.0F;
     float step = 0.0F;
   };
@@ -268,8 +268,9 @@ class BandWalk {
     head.step = step > 0.5F * mean_step_ && step < 2.0F * mean_step_ ? step : mean_step_;
   }
 
-  /// Takes rays from each row that is not ahead of the others; false where no row has rays left. The row that is
-  /// furthest behind always gives rays, even where columns are NaN, because `column > farthest` is false for it.
+  /// Decides how many rays the tile takes from each row: none from rows that are ahead of the others. Returns false if
+  /// no row has rays left. The row that is furthest behind always gives rays, even if columns are NaN, because `column
+  /// > farthest` is then false.
   bool choose_tile() {
     const Head* last = nullptr;
     for (const Head& head : heads_) {
@@ -281,7 +282,7 @@ class BandWalk {
     return true;
   }
 
-  /// Puts rays of two neighbouring rows; the row that is behind first catches up with the other.
+  /// Writes rays of two neighbouring rows. The row that is behind first catches up with the other row.
   void put_pair(Head& a, Head& b, Sink& sink) const {
     if (a.taken == 0 || b.taken == 0 || !rows_.are_neighbours(a.place, b.place)) {
       sink.put(a.next, a.taken);
@@ -306,8 +307,8 @@ class BandWalk {
   Place zero_{};
   Place along_{};
   float mean_step_ = 0.0F;
-  /// Rows of the same length that begin and end side by side are taken to be side by side everywhere, so that none of
-  /// their other rays is looked at.
+  /// True if the rows have the same length and begin and end side by side. Such rows are assumed to be side by side
+  /// everywhere, so none of their other rays is read.
   bool is_regular_ = false;
 };
 
@@ -321,7 +322,7 @@ std::span<const uint32_t> RayTiler::tile(std::span<const Ray> rays, const SceneC
   if (bands.size() == rows.size()) return {};
   order_.resize(rays.size());
   for_each_chunk(bands.size(), kChunkBands, 0, [&](size_t begin, size_t end) {
-    // Fours begin at multiples of four; rows lie one after the other.
+    // Groups of four begin at multiples of four. The rows are stored one after the other.
     const std::span<Row> chunk_rows(bands[begin].data(), bands[end - 1].data() + bands[end - 1].size());
     uint32_t first = chunk_rows.front().begin;
     for (Row& row : chunk_rows) {

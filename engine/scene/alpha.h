@@ -6,9 +6,9 @@
 
 namespace promin {
 
-// The effects of a material's alpha on a picture (docs/model.md, "Alpha").
+// Functions for the effects of a material's alpha on a picture (docs/model.md, "Alpha").
 
-/// Returns whether the material is absent everywhere: textures and vertices can only reduce alpha.
+/// Returns whether the material is absent everywhere, because textures and vertices can only reduce alpha.
 inline bool is_absent(const Material& material) {
   return material.alpha_mode == AlphaMode::kMask && material.alpha < material.alpha_cutoff;
 }
@@ -18,8 +18,8 @@ inline bool has_holes(const Material& material) {
   return material.alpha_mode != AlphaMode::kOpaque;
 }
 
-/// Returns whether surfaces behind it may be visible. Absent triangles are holes; other absent shapes blend with alpha
-/// 0.
+/// Returns whether surfaces behind the material may be visible. Absent triangles are holes; other absent shapes blend
+/// with alpha 0.
 inline bool blends(const Material& material) {
   return material.alpha_mode == AlphaMode::kBlend || is_absent(material);
 }

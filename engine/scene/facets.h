@@ -12,14 +12,15 @@
 
 namespace promin {
 
-/// A triangle in the world, counterclockwise seen from outside. Solids are represented by the facets of their bounds.
+/// A triangle in the world, counterclockwise as seen from outside. Solids are represented by the facets of their
+/// bounds.
 struct Facet {
   std::array<dvec3, 3> corners;
-  /// Whether it is also visible from behind.
+  /// True if the facet is also visible from behind.
   bool shows_back = true;
 };
 
-/// Calls `use` with facets until it returns true. Returns whether it has.
+/// Calls `use` with facets until `use` returns true. Returns whether it has returned true.
 template <class Use>
 struct FacetFinder {
   const Scene& scene;
@@ -57,7 +58,7 @@ struct FacetFinder {
     return material >= scene.materials.size() || shows_backs(scene.materials[material]);
   }
 
-  /// Two triangles for each of the six sides.
+  /// Calls `use` with two triangles for each of the six sides.
   bool use_box(const Bounds& bounds) const {
     for (int axis = 0; axis < 3; ++axis) {
       const int u = (axis + 1) % 3;
@@ -79,8 +80,8 @@ struct FacetFinder {
   }
 };
 
-/// Calls `use` with the facets of a valid scene, except unbounded objects, until it returns true. Returns whether it
-/// has.
+/// Calls `use` with the facets of a valid scene, without unbounded objects, until `use` returns true. Returns whether
+/// it has returned true.
 template <class Use>
 bool any_facet(const Scene& scene, const Use& use) {
   for (const Object& object : scene.objects) {

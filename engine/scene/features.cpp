@@ -19,7 +19,7 @@ namespace {
 
 using namespace layout;
 
-/// The name of the feature of each bit that a scene may use; empty for other bits.
+/// The name of the feature of each bit that a scene may use; empty for all other bits.
 constexpr auto kSceneFeatures = [] {
   std::array<std::string_view, 32 * FEATURE_WORDS> names{};
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) names[BIT] = NAME;
@@ -34,7 +34,7 @@ constexpr auto kSceneFeatures = [] {
   return names;
 }();
 
-/// Whether every row of the tables has a bit of its own, apart from that of the debug view.
+/// Returns whether every row of the tables has its own bit. The bit of the debug view is an exception.
 constexpr bool are_bits_distinct() {
   std::array<int, 32 * FEATURE_WORDS> uses{};
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) ++uses[BIT];
@@ -51,7 +51,8 @@ constexpr bool are_bits_distinct() {
 }
 static_assert(are_bits_distinct(), "two rows of the tables, or a row and the debug view, have the same feature bit");
 
-/// Leaves are sorted by kind and traversed in the order of the table.
+/// Returns whether the numbers of kinds increase in the table: leaves are sorted by kind and traversed in the order of
+/// the table.
 constexpr bool do_kinds_ascend() {
   uint next = 0;
   bool result = true;
@@ -88,7 +89,7 @@ struct ShapeFeatures {
   }
 };
 
-/// Returns the features of a material model and of its values.
+/// Returns the features of a material, depending on its model and its values.
 struct MaterialFeatures {
   FeatureMask operator()(const Phong& phong) const {
     FeatureMask features = FEATURE_PHONG;
@@ -99,14 +100,14 @@ struct MaterialFeatures {
   }
   FeatureMask operator()(const MetallicRoughness& material) const {
     FeatureMask features = FEATURE_METALLIC_ROUGHNESS;
-    // A texture makes it smoother, never rougher.
+    // A texture can only make the material smoother, so the factor decides whether a mirror is possible.
     if (material.roughness < ROUGHEST_MIRROR || material.metallic_roughness_texture.exists()) {
       features |= FEATURE_MIRRORS;
     }
     if (has_sheen(material)) features |= FEATURE_SHEENS;
     if (scatters_through(material)) features |= FEATURE_DIFFUSE_TRANSMISSION;
     if (is_iridescent(material)) features |= FEATURE_IRIDESCENCE;
-    // The tangents need texture coordinates.
+    // The computation of tangents needs texture coordinates.
     if (is_anisotropic(material)) features |= FEATURE_ANISOTROPY | FEATURE_TEXTURES;
     if (has_specular_textures(material)) features |= FEATURE_SPECULAR_TEXTURES;
     if (!has_coat(material)) return features;
@@ -151,7 +152,7 @@ FeatureMask material_features(std::span<const Material> materials, const std::ve
     });
     if (has_holes(materials[i])) features |= FEATURE_HOLES;
     if (blends(materials[i])) features |= FEATURE_BLENDING;
-    // Glass acts as a mirror on total reflection.
+    // Glass reflects like a mirror on total reflection.
     if (is_clear(materials[i])) features |= FEATURE_GLASS | FEATURE_MIRRORS;
     if (parts_colors(materials[i])) features |= FEATURE_DISPERSION;
     if (!shows_backs(materials[i])) features |= FEATURE_ONE_SIDED;
@@ -203,7 +204,7 @@ FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, Featur
                              uint64_t primitive_count) {
   FeatureMask features = geometry | materials | lights | environment;
   if (lights.is_empty()) return features.without(FEATURE_SPECULAR);
-  // A single flat primitive casts no shadow; a solid shadows its own inside.
+  // A single flat primitive casts no shadow. A solid casts shadows on its own inside.
   FeatureMask solids;
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) solids |= FEATURE_##FEATURE;
 #include "promin/kinds/primitives.def"
@@ -222,7 +223,7 @@ FeatureMask features_of(const world::Scene& scene) {
 
 FeatureMask features_of(DebugView view) {
   FeatureMask features = FeatureMask::of_debug_view(static_cast<uint32_t>(view));
-  // NONE among the requests of debug_views.def.
+  // The request NONE of debug_views.def.
   const FeatureMask FEATURE_NONE;
   switch (view) {
     case DebugView::kNone:

@@ -12,12 +12,12 @@
 
 namespace promin {
 
-/// Returns the features of a scene's geometry alone. A picture needs these, those of materials and lights, and those
-/// that picture_features adds for their combination.
+/// Returns the features that a scene's geometry uses. A picture also needs the features of materials and lights, and
+/// the features that picture_features() adds for their combination.
 FeatureMask geometry_features(std::span<const world::Object> objects);
-/// Returns the features of the materials that are shown, by index.
+/// Returns the features of the visible materials. `is_shown` is indexed by material.
 FeatureMask material_features(std::span<const Material> materials, const std::vector<bool>& is_shown);
-/// The features of lights that are on.
+/// Returns the features of the lights that are on.
 FeatureMask light_features(std::span<const Light> lights);
 /// Returns the features of the scene's environment.
 FeatureMask environment_features(const Environment& environment);
@@ -25,21 +25,21 @@ FeatureMask environment_features(const Environment& environment);
 /// Returns the features that determine which primitives a ray can hit.
 FeatureMask primitive_features();
 
-/// The materials of objects that are drawn.
+/// Returns for each material whether a visible object uses it.
 std::vector<bool> find_shown_materials(std::span<const world::Object> objects, size_t material_count);
 
-/// Returns the features of a picture from those of its parts: without lights there are no highlights, and a single flat
-/// primitive casts no shadow.
+/// Returns the features of a picture from the features of its parts. Some combinations need fewer features: without
+/// lights there are no highlights, and a single flat primitive casts no shadow.
 FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, FeatureMask environment,
                              uint64_t primitive_count);
 
-/// The features that a picture of this scene needs, without camera and depth.
+/// Returns the features that a picture of this scene needs, without those of its camera and depth.
 FeatureMask features_of(const world::Scene& scene);
 
-/// The features that a pipeline for a debug view has beside the scene's.
+/// Returns the features that a pipeline for a debug view has in addition to the scene's.
 FeatureMask features_of(DebugView view);
 
-/// Returns whether a picture of these features displays unlit surfaces or a backdrop unchanged.
+/// Returns whether a picture with these features displays unlit surfaces or a backdrop without changing their colours.
 bool shows_unlit(FeatureMask features, DebugView view);
 
 /// Returns all features that a scene may use.

@@ -17,17 +17,17 @@ namespace {
 
 /// The field of view of framed cameras, 40 degrees.
 constexpr float kFramedYfov = 0.698131701F;
-/// The field of view of a camera within a scene, 60 degrees.
+/// The field of view of a camera inside a scene, 60 degrees.
 constexpr float kInsideYfov = 1.04719755F;
 
-/// The direction from which a scene is seen, in degrees: about its up axis from its front to the right, and above the
-/// horizon.
+/// The direction from which a camera sees a scene, in degrees: the angle about the scene's up axis from the front to
+/// the right, and the angle above the horizon.
 struct Viewpoint {
   double azimuth;
   double elevation;
 };
 
-/// `size` is the scene's as its front and its up axis see it.
+/// Returns the viewpoint "three quarters". `size` is the scene's size along the axes of its front and its up direction.
 Viewpoint find_three_quarters(const dvec3& size) {
   if (16.0 * size.y < std::max(size.x, size.z) && size.y <= size.z) return {30.0, 45.0};
   if (4.0 * size.z < std::max(size.x, size.y)) return {0.0, 0.0};
@@ -55,14 +55,14 @@ Viewpoint viewpoint_of(Framing framing, const dvec3& size) {
   return {0.0, 0.0};
 }
 
-/// Sine and cosine of degrees; exact for multiples of a right angle.
+/// Returns sine and cosine of an angle in degrees; they are exact for multiples of a right angle.
 dvec2 turn_by(double degrees) {
   const double quarters = degrees / 90.0;
   const double whole = std::round(quarters);
   const double rest = (quarters - whole) * 0.5 * std::numbers::pi;
   const double sine = std::sin(rest);
   const double cosine = std::cos(rest);
-  // Sums with 0 are never -0.
+  // The additions of 0 turn -0 into 0.
   switch (static_cast<int>(whole - 4.0 * std::floor(0.25 * whole))) {
     case 1:
       return dvec2(cosine, -sine) + 0.0;
@@ -75,13 +75,13 @@ dvec2 turn_by(double degrees) {
   }
 }
 
-/// Turns a vector around a unit axis, anticlockwise for an eye that the axis points at.
+/// Rotates a vector around a unit axis, anticlockwise for an eye at which the axis points.
 dvec3 turn_around(const dvec3& v, const dvec3& axis, double degrees) {
   const dvec2 turn = turn_by(degrees);
   return turn.y * v + turn.x * glm::cross(axis, v) + (1.0 - turn.y) * glm::dot(axis, v) * axis + 0.0;
 }
 
-/// The shortest turn from +Y to a unit vector, as the images of X, Y and Z.
+/// Returns the shortest rotation from +Y to a unit vector. The columns are the images of X, Y and Z.
 dmat3 turn_up_to(const dvec3& up) {
   if (up.y <= -1.0 + 1e-12) return dmat3({-1, 0, 0}, {0, -1, 0}, {0, 0, 1});
   const double s = 1.0 / (1.0 + up.y);
@@ -121,15 +121,15 @@ Axes axes_of(const Camera& camera) {
   return {right, glm::cross(right, look), look};
 }
 
-/// Two planes through a camera's eye to both sides of its look, which touch the scene.
+/// Two planes through a camera's eye, one to each side of its look, that touch the scene.
 struct Opening {
-  /// The eye's place along the look, from the center.
+  /// Coordinate of the eye along the look, measured from the center.
   double depth;
   /// The distance from the eye at which the planes are as far apart as the scene's width.
   double distance;
 };
 
-/// Two planes that open with a slope to both sides of the look, and touch the hull from both.
+/// Returns two planes that touch the hull from both sides. They diverge from the look direction with this slope.
 Opening touch(const SceneHull& hull, const dvec3& side, const dvec3& look, double slope) {
   const auto reach = [&](const dvec3& direction) { return glm::dot(hull.farthest(direction), direction); };
   const double right = reach(side - slope * look);
@@ -137,9 +137,9 @@ Opening touch(const SceneHull& hull, const dvec3& side, const dvec3& look, doubl
   return {-0.5 * (right + left) / slope, 0.5 * (reach(side) + reach(-side)) / slope};
 }
 
-/// The place across the look from which an eye at this depth sees the hull in the middle. The slope to which the hull
-/// then reaches is the root of a convex, falling function of it, found by Newton's method: it ends, as there are
-/// finitely many vertices, and comes near to it where shapes are round.
+/// Returns the coordinate across the look from which an eye at this depth sees the hull in the middle. The slope to the
+/// hull's edge is the root of a convex, decreasing function. Newton's method finds it: it ends, because there are
+/// finitely many vertices, and comes close to the root for round shapes.
 double find_middle(const SceneHull& hull, const dvec3& side, const dvec3& look, double slope, double depth) {
   constexpr int kMostSteps = 32;
   constexpr double kTolerance = 1e-7;
@@ -157,13 +157,13 @@ double find_middle(const SceneHull& hull, const dvec3& side, const dvec3& look, 
   return right + slope * depth;
 }
 
-/// The position from which a camera with `axes` sees the hull.
+/// The position from which a camera with `axes` sees the whole hull.
 struct Fitted {
   dvec3 eye;
   double half_height = 1.0;
 };
 
-/// The least and the largest depth of the hull along the look, from the center.
+/// Returns the smallest and the largest depth of the hull along the look, measured from the center.
 dvec2 depths_of(const SceneHull& hull, const dvec3& look) {
   return {glm::dot(hull.farthest(-look), look), glm::dot(hull.farthest(look), look)};
 }
@@ -186,15 +186,16 @@ Fitted fit_perspective(const SceneHull& hull, const Axes& axes, double aspect_ra
   const double slope_y = fit * tan_y;
   const Opening x = touch(hull, axes.right, axes.look, slope_x);
   const Opening y = touch(hull, axes.up, axes.look, slope_y);
-  // An object that points at the eye could lie between the planes even if the eye were inside it.
+  // The smallest distance of the eye. Without it, the eye could be inside an object that points at the eye, and the
+  // object would still lie between the planes.
   constexpr double kClearance = 0x1p-8;
   const double nearest = depths_of(hull, axes.look).x;
   double depth = std::min({x.depth, y.depth, nearest - kClearance * std::min(x.distance, y.distance)});
-  // What has neither width nor height lies along the look.
+  // If the scene has neither width nor height, it lies along the look.
   if (x.distance == 0.0 && y.distance == 0.0) depth = 2.0 * nearest;
   // A single point has no size.
   if (depth == 0.0) depth = -1.0;
-  // Far from the origin the eye must still differ in fp32 from the point that it looks at.
+  // Far from the origin, the eye must still differ in fp32 from the point at which it looks.
   const dvec3 magnitude = glm::abs(hull.center());
   depth = std::min(depth, -0x1p-20 * std::max({magnitude.x, magnitude.y, magnitude.z}));
   const double right = find_middle(hull, axes.right, axes.look, slope_x, depth);
@@ -214,7 +215,7 @@ Camera fit_to(const SceneHull& hull, Camera camera, double aspect_ratio, double 
   return camera;
 }
 
-/// Looks from a viewpoint at a scene whose up axis is that of `turn`.
+/// Returns a camera that looks from a viewpoint at a scene. `turn` rotates +Y to the scene's up axis.
 Camera look_from(const Viewpoint& from, const dmat3& turn) {
   const dvec2 azimuth = turn_by(from.azimuth);
   const dvec2 elevation = turn_by(from.elevation);
@@ -223,24 +224,26 @@ Camera look_from(const Viewpoint& from, const dmat3& turn) {
   Camera camera;
   camera.name = "framing";
   camera.yfov = kFramedYfov;
-  // Sums with 0 are never -0.
+  // The addition of 0 turns -0 into 0.
   camera.look = vec3(turn * look + 0.0);
   camera.up = vec3(turn * up + 0.0);
   return camera;
 }
 
-/// Stands within a scene of this size, as its up axis sees it.
+/// Returns a camera inside a scene. `size` is the scene's size along its up axis and its horizontal axes.
 Camera stand_within(const dvec3& center, const dvec3& size, const dmat3& turn, float aspect_ratio) {
   const bool is_wider = size.x > size.z;
   Camera camera = look_from({is_wider ? 90.0 : 0.0, 0.0}, turn);
   camera.yfov = kInsideYfov;
-  // From a third of the way on there are two thirds to the other end, a sixth of it behind the middle.
+  // The eye is a third of the length from one end. The distance to the other end is two thirds, and the middle is a
+  // sixth away.
   camera.eye = vec3(center - (is_wider ? size.x : size.z) / 6.0 * dvec3(camera.look));
   camera.aspect_ratio = aspect_ratio;
   return camera;
 }
 
-/// An open side of a room is known where +Y is up; a room of another up axis is seen from inside.
+/// Returns the default framing. An open side of a room is found only if +Y is up; a room with another up axis is seen
+/// from inside.
 Framing assumed_framing(const Scene& scene, const MainPart& part, const dmat3& turn) {
   const Framing from = framing_of(scene, part);
   return from == Framing::kThreeQuarter || turn == dmat3(1.0) ? from : Framing::kInside;
@@ -261,7 +264,7 @@ Camera frame_scene(const Scene& scene, float aspect_ratio, const FrameOptions& o
   const dmat3 turn = turn_up_to(normalize_up(options.up));
   const SceneHull hull(scene);
   const dvec3 extent = dvec3(hull.bounds().hi) - dvec3(hull.bounds().lo);
-  // The box is measured along the turned axes.
+  // The size of the box is measured along the rotated axes.
   const dvec3 size(glm::dot(glm::abs(turn[0]), extent), glm::dot(glm::abs(turn[1]), extent),
                    glm::dot(glm::abs(turn[2]), extent));
   const Framing from = options.from ? *options.from : assumed_framing(scene, hull.main_part(), turn);
@@ -288,7 +291,7 @@ Camera orbit_camera(const Camera& camera, const dvec3& target, const Orbit& orbi
   };
   turn(pole, orbit.azimuth_deg);
   turn(axes.right, -orbit.elevation_deg);
-  // Around the target the eye stays where it is.
+  // If the camera only rolls, the eye keeps its position.
   axes.up = turn_around(axes.up, axes.look, -orbit.roll_deg);
   Camera turned = camera;
   turned.eye = vec3(target + offset);
@@ -308,7 +311,7 @@ dvec3 orbit_target(const Scene& scene, const Camera& camera) {
 Camera widen_camera(const Camera& camera, const uvec2& size) {
   const auto own = static_cast<double>(camera.aspect_ratio);
   const dvec2 sides(size);
-  // A size of this ratio has a width or a height that is rounded.
+  // If the ratio of a size differs by less than this, the difference comes from rounding the width or the height.
   constexpr double kRounding = 1e-6;
   const double least = (1.0 + kRounding) * sides.x;
   const bool is_narrower = own > 0.0 && std::round(sides.y * own) > least && (sides.y - 0.5) * own > least;

@@ -8,11 +8,11 @@
 
 namespace promin {
 
-/// Implements add_default_lights for both forms of a scene.
+/// Implements add_default_lights() for promin::Scene and world::Scene.
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment);
 
-/// Returns the box to look at: the main part of everything finite (scene/stray_geometry.h), else a box of size 2 around
-/// the first plane's point or the origin. Throws InputError as bounds_of() does.
+/// Returns the box that a camera frames: the main part of all finite geometry (scene/stray_geometry.h). If nothing is
+/// finite, it is a box of size 2 around the first plane's point or the origin. Throws InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 
 /// Returns the middle of a box that is not empty, without the rounding of Bounds::center().
@@ -20,14 +20,15 @@ inline dvec3 middle_of(const Bounds& bounds) {
   return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));
 }
 
-/// Returns the bounds of an object that has a geometry; empty if it is not finite. Throws as bounds_of() does.
+/// Returns the bounds of an object that has a geometry; empty if the geometry is not finite. Throws the same errors as
+/// bounds_of().
 Bounds bounds_of(const Scene& scene, const Object& object);
 
-/// Returns how much of a picture's width or height, whichever is more, the box frame_of(scene) covers; infinite if the
-/// camera is in it or before it.
+/// Returns the fraction of a picture's width or height, whichever is larger, that the box frame_of(scene) covers;
+/// infinite if the camera is inside the box or does not have the box completely in front of it.
 double covered_share(const Scene& scene, const Camera& camera, float aspect_ratio);
 
-/// Returns a box of size 2, to look at if nothing is finite.
+/// Returns a box of size 2 to frame if no geometry is finite.
 Bounds bounds_around(const vec3& center);
 
 }  // namespace promin

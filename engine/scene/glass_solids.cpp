@@ -32,7 +32,8 @@ struct BoundsOf {
   }
 };
 
-/// Where a point lies beside an axis: along it, from the centre on, and off it.
+/// The position of a point relative to an axis: its coordinate along the axis from the centre, and its distance from
+/// the axis.
 struct BesideAxis {
   template <class Shape>
   BesideAxis(const Shape& shape, const dvec3& point) {
@@ -61,7 +62,8 @@ struct Contains {
     return share > 0.0 && share < 1.0 && at.off < std::lerp(double{c.radius_bottom}, double{c.radius_top}, share);
   }
   bool operator()(const world::Capsule& c) const {
-    // The balls between its ends: of these the one that is nearest, by a search over a convex function.
+    // A capsule is a family of balls between its ends. A search over a convex function finds the ball nearest to the
+    // point.
     const BesideAxis at(c, point);
     const auto distance = [&](double share) {
       const double center = (2.0 * share - 1.0) * double{c.half_height};
@@ -82,7 +84,8 @@ struct Contains {
     const dvec3 local = glm::abs(glm::conjugate(rotation) * (point - dvec3(b.center)));
     return glm::all(glm::lessThan(local, dvec3(b.half_size)));
   }
-  /// The solid angle of each triangle (van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", IEEE TBE 30).
+  /// Adds up the solid angles of all triangles (van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", IEEE
+  /// TBE 30).
   bool operator()(const Mesh& mesh) const {
     double sum = 0.0;
     for (const uvec3& corners : mesh.triangles) {
@@ -99,13 +102,14 @@ struct Contains {
   }
 };
 
-/// Returns the material of an object, for a mesh that of its first triangle: a mesh counts as one solid.
+/// Returns the material of an object. For a mesh it is the material of the first triangle, because a mesh counts as one
+/// solid.
 uint32_t material_of(const world::Object& object) {
   const auto* mesh = std::get_if<Mesh>(&object.shape);
   return mesh == nullptr || mesh->triangle_materials.empty() ? object.material : mesh->triangle_materials.front();
 }
 
-/// Nothing is in what is open.
+/// Returns whether a shape is open. No point is inside an open shape.
 struct IsOpen {
   template <class Shape>
   bool operator()(const Shape& shape) const {
@@ -114,7 +118,7 @@ struct IsOpen {
   }
 };
 
-/// Returns the volume of a box, infinite if it is unbounded, by which solids are sorted.
+/// Returns the volume of a box, infinite if the box is unbounded. Solids are sorted by this volume.
 double volume_of(const Bounds& bounds) {
   const dvec3 size = dvec3(bounds.hi) - dvec3(bounds.lo);
   return size.x * size.y * size.z;
@@ -132,7 +136,7 @@ GlassSolids::GlassSolids(const world::Scene& scene) {
     const uint32_t material = material_of(object);
     if (!bounds_volume(scene.materials[material])) continue;
     solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape)});
-    // Corners alone are needed.
+    // Only the positions and triangles are needed.
     if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) {
       Mesh corners;
       corners.positions = std::move(mesh->positions);

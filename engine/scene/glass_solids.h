@@ -9,7 +9,7 @@
 
 namespace promin {
 
-/// The solids of glass in a scene, to find those that contain a camera.
+/// The solids of glass in a scene. The class finds the solids that contain a camera.
 class GlassSolids {
  public:
   GlassSolids() = default;
@@ -18,7 +18,7 @@ class GlassSolids {
 
   bool is_empty() const { return solids_.empty(); }
   /// Returns the materials of the solids that contain a point, the largest first. A plane contains all points behind
-  /// it; a mesh, closed or not, those with a winding number above 1/2.
+  /// it. A mesh, closed or not, contains the points with a winding number above 1/2.
   std::vector<uint32_t> materials_around(const vec3& point) const;
 
  private:
@@ -27,7 +27,7 @@ class GlassSolids {
     uint32_t material = 0;
     Bounds bounds;
   };
-  /// The largest first.
+  /// The solids, sorted by descending volume.
   std::vector<Solid> solids_;
 };
 

@@ -11,19 +11,19 @@
 #include "scene/facets.h"
 #include "scene/stray_geometry.h"
 
-// Detects scenes that surround the viewer.
+// Recognises scenes that surround the viewer, such as rooms.
 namespace promin {
 namespace {
 
-/// The smallest part of backs in views from outside.
+/// The smallest fraction of backs in views from outside for which a scene is an interior.
 constexpr double kLeastBacks = 0.75;
-/// The largest part of backs in the view through an open side of a room: the thickness of its walls.
+/// The largest fraction of backs in the view through an open side of a room; these backs are the ends of its walls.
 constexpr double kMostBacksOfOpenSide = 0.1;
-/// The largest share of backs in what lies within the hull.
+/// The largest fraction of backs among the facets inside the hull.
 constexpr double kMostBacksWithin = 0.5;
-/// Objects inside lie deeper than this part of the size.
+/// Objects inside must lie deeper than this fraction of the scene's size.
 constexpr double kLeastDepth = 0.02;
-/// Pixels on a side of the pictures from outside.
+/// Number of pixels along a side of the pictures from outside.
 constexpr int kSide = 64;
 
 /// The views of a scene along an axis, from both ends.
@@ -41,8 +41,8 @@ struct Silhouette {
   }
 };
 
-/// Orthographic pictures of the facets within a box, seen from its six sides: the depth of the nearest facet, and
-/// whether its back is visible.
+/// Orthographic pictures of the facets within a box, from its six sides. A pixel has the depth of the nearest facet,
+/// and whether the facet's back is visible.
 class SixPictures {
  public:
   explicit SixPictures(const Bounds& bounds) : lo_(bounds.lo), size_(dvec3(bounds.hi) - dvec3(bounds.lo)) {
@@ -53,7 +53,7 @@ class SixPictures {
     for (int axis = 0; axis < 3; ++axis) draw(facet, axis);
   }
 
-  /// The share among the pixels that show something.
+  /// Returns the fraction of backs among the pixels that show a facet.
   double share_of_backs() const {
     std::vector<Silhouette::Pixel> all;
     for (const Silhouette& silhouette : silhouettes_) {
@@ -62,13 +62,13 @@ class SixPictures {
     return share_of_backs(all);
   }
 
-  /// An end of a horizontal axis, where +Y is up.
+  /// An end of a horizontal axis, if +Y is up.
   struct Side {
     int axis;
     size_t end;
   };
 
-  /// Returns the open horizontal side, if any: almost no backs are visible from there.
+  /// Returns the open horizontal side, if there is one. From there almost no backs are visible.
   std::optional<Side> find_open_side() const {
     for (const Side side : {Side{2, 1}, Side{2, 0}, Side{0, 1}, Side{0, 0}}) {
       if (share_of_backs(pictures_of(side.axis)[side.end]) <= kMostBacksOfOpenSide) return side;
@@ -76,7 +76,7 @@ class SixPictures {
     return std::nullopt;
   }
 
-  /// Whether a point lies deep behind what is seen from each of the six sides but an open one.
+  /// Returns whether a point lies deep behind the visible facets of all six sides except an open side.
   bool is_enclosed(const dvec3& point, const std::optional<Side>& open) const {
     for (int axis = 0; axis < 3; ++axis) {
       const auto& ends = pictures_of(axis);
@@ -105,7 +105,7 @@ class SixPictures {
     return all > 0.0 ? backs / all : 0.0;
   }
 
-  /// Places in pixels of the picture along an axis.
+  /// Returns the coordinates of a point in pixels of the picture along an axis.
   dvec2 place_of(const dvec3& point, int axis) const {
     const dvec3 share = (point - lo_) / size_;
     return double{kSide} * dvec2(share[(axis + 1) % 3], share[(axis + 2) % 3]);
@@ -116,7 +116,7 @@ class SixPictures {
     return static_cast<size_t>(place.y) * kSide + static_cast<size_t>(place.x);
   }
 
-  /// Takes the pixels whose middles a facet covers.
+  /// Draws a facet: processes the pixels whose middles it covers.
   void draw(const Facet& facet, int axis) {
     std::array<dvec2, 3> at;
     for (size_t i = 0; i < 3; ++i) at[i] = place_of(facet.corners[i], axis);
@@ -139,7 +139,8 @@ class SixPictures {
     }
   }
 
-  /// A facet that is counterclockwise in a picture shows its front to the axis's upper end.
+  /// Stores a facet's depth in a pixel if it is the nearest. A facet that is counterclockwise in a picture shows its
+  /// front to the upper end of the axis.
   void take(int axis, size_t pixel, double depth, bool faces_upper_end, bool shows_back) {
     auto& ends = silhouettes_[static_cast<size_t>(axis)].ends;
     Silhouette::Pixel& lower = ends[0][pixel];
@@ -167,7 +168,7 @@ void for_each_facet(const Scene& scene, const MainPart& part, const Use& use) {
   });
 }
 
-/// Six times the volume that facets bound, negative where they turn their backs outwards.
+/// Returns six times the volume that the facets bound; negative if they show their backs to the outside.
 double signed_volume(const Scene& scene, const MainPart& part) {
   const dvec3 center(part.bounds.center());
   double sum = 0.0;

@@ -5,7 +5,7 @@
 #include "core/rounding.h"
 #include "promin/materials.h"
 
-// Rare properties of metallic-roughness materials; scenes without them do not pay for them.
+// Functions for rare properties of metallic-roughness materials. Scenes without these properties do not pay for them.
 namespace promin {
 
 inline bool has_coat(const MetallicRoughness& material) {
@@ -29,7 +29,7 @@ inline bool is_anisotropic(const MetallicRoughness& material) {
 inline bool has_specular_textures(const MetallicRoughness& material) {
   return material.specular_texture.exists() || material.specular_color_texture.exists();
 }
-/// Returns whether the material has any of these rare properties.
+/// Returns whether the material has at least one of these rare properties.
 inline bool is_extended(const MetallicRoughness& material) {
   return has_coat(material) || has_sheen(material) || has_specular_textures(material) || scatters_through(material) ||
          is_iridescent(material) || is_anisotropic(material);

@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// Returns whether a light of the kind has a position. The others shine from infinity in one direction.
+/// Returns whether lights of this kind have a position. All other lights shine from infinity in one direction.
 constexpr bool has_place(LightKind kind) {
   switch (kind) {
     case LightKind::kPoint:

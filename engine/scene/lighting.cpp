@@ -16,15 +16,17 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Where the studio's directional light comes from, as the viewer sees it, radians; + is to the right and up.
+/// The direction from which the studio's directional light comes, as seen by the viewer, in radians; positive angles
+/// are to the right and upwards.
 constexpr double kStudioLightAzimuth = -35.0 * kPi / 180.0;
 constexpr double kStudioLightElevation = 40.0 * kPi / 180.0;
 
-/// A camera that looks up or down more steeply has its azimuth by `up`: its look has too few digits of one.
+/// If a camera looks up or down more steeply than this, its azimuth is computed from `up`, because the horizontal part
+/// of its look has too few digits.
 constexpr float kLeastHorizontalLook = 1e-3F;
 
-/// The illuminances between which nothing is exposed otherwise, and the one that others are brought to, lux. A white
-/// surface under pi lux sends radiance 1.
+/// The range of illuminances that need no exposure, and the illuminance to which the exposure changes all others, in
+/// lux. A white surface under pi lux has a radiance of 1.
 constexpr double kLeastIlluminance = kPi / 4.0;
 constexpr double kMostIlluminance = 4.0 * kPi;
 
@@ -42,7 +44,7 @@ bool is_of_phong(const Scene& scene) {
   return has_any<Phong>(scene.materials) && !has_any<MetallicRoughness>(scene.materials);
 }
 
-/// Whether the scene shows nothing but colours that no light changes.
+/// Returns whether the scene shows only colours that do not depend on light.
 bool is_all_unlit(const Scene& scene) {
   bool is_any_unlit = false;
   for (const Object& object : scene.objects) {
@@ -56,7 +58,7 @@ bool is_all_unlit(const Scene& scene) {
   return is_any_unlit;
 }
 
-/// The power that a light of one lux needs for materials of the scene's models (docs/model.md, "Light").
+/// Returns the power that a light of one lux must have for the scene's material models (docs/model.md, "Light").
 double power_per_lux(const Scene& scene) {
   return is_of_phong(scene) ? 1.0 / kPi : 1.0;
 }
@@ -69,11 +71,11 @@ bool falls_off(const Light& light) {
   return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
 }
 
-/// In the middle of the scene, as exposure_of counts it.
+/// Returns the illuminance in the middle of the scene, as exposure_of() defines it.
 double illuminance_of(const Scene& scene) {
   dvec3 center(0.0);
   double least_distance = 0.0;
-  // Bounds of a large scene take time.
+  // Computing the bounds of a large scene takes time, so it is done only if a light needs them.
   if (std::ranges::any_of(scene.lights, falls_off)) {
     const Bounds bounds = frame_of(scene);
     center = middle_of(bounds);
@@ -88,8 +90,8 @@ double illuminance_of(const Scene& scene) {
   return sum / power_per_lux(scene);
 }
 
-/// Exporters write ambient factors of 0 for scenes that had no ambient light: what the studio's light alone does not
-/// reach would be black.
+/// Gives materials an ambient factor. Exporters write ambient factors of 0 for scenes without ambient light; surfaces
+/// that the studio's light does not reach would then be black.
 void let_ambient_light_in(Scene& scene) {
   for (Material& material : scene.materials) {
     auto* phong = std::get_if<Phong>(&material.model);
@@ -141,7 +143,7 @@ float front_of(const Scene& scene) {
   const Camera& camera = scene.cameras.front();
   vec3 to_viewer = -camera.look;
   if (std::max(std::abs(to_viewer.x), std::abs(to_viewer.z)) < kLeastHorizontalLook) {
-    // The viewer of a picture from above stands at its lower edge.
+    // A viewer who looks from above stands at the lower edge of the picture.
     to_viewer = camera.look.y < 0.0F ? -camera.up : camera.up;
   }
   return std::atan2(to_viewer.x, to_viewer.z);
@@ -161,7 +163,8 @@ Light make_studio_light(float front, float power) {
 float exposure_of(const Scene& scene) {
   const double illuminance = illuminance_of(scene);
   if (!(illuminance > 0.0) || (illuminance >= kLeastIlluminance && illuminance <= kMostIlluminance)) return 0.0F;
-  // Powers are floats and distances at least 1e-15 or so: the logarithm of what is not finite is all that is left out.
+  // The powers are floats and the distances are at least about 1e-15, so the logarithm is finite unless the illuminance
+  // is infinite.
   const double stops = 0.5 * std::round(2.0 * std::log2(kPi / illuminance));
   return std::isfinite(stops) ? static_cast<float>(stops) : 0.0F;
 }

@@ -12,7 +12,7 @@ namespace promin {
 
 /// Returns whether all coordinates are numbers up to 1e15.
 inline bool is_in_range(const dvec3& p) {
-  // Written so that NaN fails.
+  // The comparisons are written so that NaN fails.
   return std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate && std::abs(p.z) <= kMaxCoordinate;
 }
 

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// What a picture shows: the half-spaces around it, and the rays in its corners.
+/// The visible space of a picture: the half-spaces that bound it, and the rays in its corners.
 class Frustum {
  public:
   Frustum(const Camera& camera, double aspect_ratio)
@@ -25,7 +25,7 @@ class Frustum {
         half_height_(is_parallel_ ? double{camera.ymag} : std::tan(0.5 * static_cast<double>(camera.yfov))),
         half_width_(half_height_ * aspect_ratio) {}
 
-  /// A bit for each side on which a point lies outside.
+  /// Returns a bit for each side of the picture beyond which a point lies.
   uint32_t sides_beyond(const dvec3& point) const {
     const Place place = place_of(point);
     const dvec2& half = place.half_size;
@@ -34,15 +34,16 @@ class Frustum {
            bit(place.aside.y < -half.y, 3) | bit(place.aside.y > half.y, 4);
   }
 
-  /// Returns where a picture from -1 to 1 on both sides shows a point; infinite for one at the eye or behind it.
+  /// Returns the position of a point in a picture whose sides are at -1 and 1; infinite for a point at the eye or
+  /// behind it.
   dvec2 project(const dvec3& point) const {
     const Place place = place_of(point);
     if (place.depth <= 0.0) return dvec2(std::numeric_limits<double>::infinity());
     return place.aside / place.half_size;
   }
 
-  /// Whether a ray of the picture meets a plane. Which side of it rays go to changes on a line of the picture, so that
-  /// one in a corner does where any does.
+  /// Returns whether a ray of the picture intersects a plane. The boundary between rays that intersect the plane and
+  /// rays that do not is a line in the picture. Therefore, if any ray intersects the plane, a ray in a corner does.
   bool meets(const world::Plane& plane) const {
     const dvec3 normal(plane.normal);
     for (const double x : {-half_width_, half_width_}) {
@@ -57,7 +58,8 @@ class Frustum {
   }
 
  private:
-  /// A point as the camera has it: its depth, its place beside the axis, and half of the picture's size at its depth.
+  /// A point in the camera's coordinates: its depth, its position beside the axis, and half of the picture's size at
+  /// its depth.
   struct Place {
     double depth;
     dvec2 aside;
@@ -81,7 +83,7 @@ class Frustum {
   double half_width_;
 };
 
-/// Whether a picture meets an object without bounds.
+/// Returns whether rays of a picture intersect an unbounded object.
 struct MeetsUnbounded {
   const Frustum& frustum;
   const dmat4& world_from_object;

@@ -20,7 +20,7 @@
 #include "promin/textures.h"
 #include "promin/view.h"
 
-// The members of the library's structs and their names outside C++: in Python and in the JSON of `promin info`.
+// Lists the members of the library's structs, with their names outside C++: in Python and in the JSON of `promin info`.
 namespace promin {
 
 using Names = std::span<const std::string_view>;
@@ -53,7 +53,7 @@ inline Names names_of(ExrCompression /*any*/) { return exr_compression_names(); 
 using MaterialModel = decltype(Material::model);
 using SkyModel = decltype(Environment::sky);
 
-// Names of alternatives, in their order: of MaterialModel, SkyModel and Geometry.
+// Names of the alternatives of MaterialModel, SkyModel and Geometry, each in the order of the variant.
 inline constexpr std::string_view kModelNames[] = {
 #define PROMIN_MATERIAL(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) #PREFIX,
 #include "promin/kinds/materials.def"
@@ -68,7 +68,7 @@ static_assert(std::size(kModelNames) == std::variant_size_v<MaterialModel>);
 static_assert(std::size(kSkyNames) == std::variant_size_v<SkyModel>);
 static_assert(std::size(kShapeNames) == std::variant_size_v<Geometry>);
 
-/// Calls the visitor with members and their names, which are given in one text separated by ", ".
+/// Calls the visitor with each member and its name. The names are given in one text, separated by ", ".
 template <typename Visitor, typename... Members>
 void visit_named_members(Visitor& visitor, std::string_view names, Members&... members) {
   const auto next = [&] {
@@ -79,8 +79,8 @@ void visit_named_members(Visitor& visitor, std::string_view names, Members&... m
   (visitor.field(next(), members), ...);
 }
 
-// PROMIN_MEMBERS(STRUCT, members...): the members of a struct, for a visitor that reads or writes. All members must be
-// listed in order; a missing one is a compile error.
+// PROMIN_MEMBERS(STRUCT, members...): defines the function that calls a visitor with the members of a struct. All
+// members must be listed in order; a missing member is a compile error.
 #define PROMIN_MEMBERS(STRUCT, ...)                          \
   template <typename Visitor>                                \
   void visit_members(Visitor& visitor, STRUCT& record) {     \

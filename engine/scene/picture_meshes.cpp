@@ -11,12 +11,12 @@
 namespace promin {
 namespace {
 
-/// Whether a slot has an image that could be read.
+/// Returns whether the image of a slot could be read.
 bool is_shown(const Scene& scene, const TextureSlot& slot) {
   return slot.exists() && !scene.images[scene.textures[slot.texture].image]->texels.empty();
 }
 
-/// Whether each material is on the mesh.
+/// Returns for each material whether the mesh uses it.
 std::vector<bool> find_materials(const Mesh& mesh, const Object& object, size_t count) {
   std::vector<bool> is_on_mesh(count, false);
   if (mesh.triangle_materials.empty()) is_on_mesh[object.material] = true;
@@ -43,7 +43,7 @@ std::optional<Mesh> PictureMeshes::find(const Object& object) {
   Mesh made = *mesh;
   if (needs.tangents) add_tangents(made, *needs.tangents);
   center_uvs(made, {needs.center[0], needs.center[1], needs.center[2], needs.center[3]});
-  // Tangents and centers split vertices, and leave triangles where they are.
+  // Tangents and centers of coordinates split vertices but do not move triangles.
   turn_normals(made, find_turned(object.geometry, *mesh), needs.tangents.has_value());
   if (object_counts_[object.geometry] > 1) made_.emplace(key, made);
   return made;
@@ -60,7 +60,7 @@ PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& obj
   needs.turns_normals = !find_turned(object.geometry, mesh).empty();
   if (mesh.uvs.empty()) return needs;
   std::vector<TextureSlot> slots;
-  // Of several sets the first has its way.
+  // If slots use several sets of coordinates, the tangents are computed for the first one.
   const auto need_tangents = [&](const TextureSlot& slot) {
     if (mesh.tangents.empty() && !needs.tangents) needs.tangents = slot.uv_set;
   };

@@ -21,11 +21,12 @@ class PictureMeshes {
   /// The scene must be valid and outlive this object.
   explicit PictureMeshes(const Scene& scene);
 
-  /// Returns the mesh to use for an object, or nullopt if the scene's own needs no change.
+  /// Returns the mesh for an object, or nullopt if the scene's own mesh needs no change.
   std::optional<Mesh> find(const Object& object);
 
  private:
-  /// The set of coordinates for which tangents are needed, and the offset that is subtracted from all coordinates.
+  /// The changes that an object's mesh needs: the set of coordinates for which tangents are computed, and the offset
+  /// that is subtracted from all coordinates.
   struct Needs {
     std::optional<uint32_t> tangents;
     std::array<double, 4> center{};
@@ -39,7 +40,7 @@ class PictureMeshes {
   const Scene& scene_;
   /// The number of objects that use each geometry.
   std::vector<uint32_t> object_counts_;
-  /// The result for each geometry that an object has requested.
+  /// The turned triangles of each geometry that was requested so far.
   std::vector<std::optional<std::vector<uint32_t>>> turned_triangles_;
   std::map<std::pair<uint32_t, Needs>, Mesh> made_;
 };

@@ -17,14 +17,14 @@
 namespace promin {
 namespace {
 
-/// The geometry of an object that has one. Throws InputError if it is not there.
+/// Returns the geometry of an object that has one. Throws InputError if the geometry does not exist.
 const Geometry& geometry_of(const Scene& scene, const Object& object) {
   if (object.geometry < scene.geometries.size()) return scene.geometries[object.geometry];
   throw InputError({"scene.reference.range", "an object refers to a geometry that does not exist",
                     "object " + object.name, "see the problems that validate() returns"});
 }
 
-/// Computes the bounds of an object in the world, without a copy of its mesh.
+/// Returns the bounds of an object in the world, without copying its mesh.
 struct BoundsInWorld {
   const dmat4& world_from_object;
 
@@ -63,7 +63,7 @@ struct BoundsInWorld {
 #include "promin/kinds/primitives.def"
 };
 
-/// The place of an unbounded shape; nullopt for other shapes.
+/// Returns a point of an unbounded shape; nullopt for other shapes.
 struct CenterOfUnbounded {
   const dmat4& world_from_object;
 

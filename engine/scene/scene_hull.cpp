@@ -15,7 +15,8 @@ namespace {
 
 constexpr size_t kBlockSize = 1024;
 
-/// The positions that triangles name: those of the mesh where all are.
+/// Returns the positions that triangles use. If all positions are used, the span refers to the mesh itself, otherwise
+/// to `copy`.
 std::span<const vec3> find_used(const Mesh& mesh, std::vector<vec3>& copy) {
   std::vector<uint8_t> is_used(mesh.positions.size(), 0);
   for (const uvec3& triangle : mesh.triangles) {
@@ -30,7 +31,7 @@ std::span<const vec3> find_used(const Mesh& mesh, std::vector<vec3>& copy) {
   return copy;
 }
 
-/// The corners in the world of the triangles whose bounds have their centre in the box.
+/// Returns the corners, in the world, of the triangles whose bounds have their centre in the box.
 std::vector<vec3> find_corners_within(const Bounds& box, const Mesh& mesh, const dmat4& world_from_object) {
   std::vector<vec3> found;
   for (const uvec3& triangle : mesh.triangles) {
@@ -48,7 +49,7 @@ std::vector<vec3> find_corners_within(const Bounds& box, const Mesh& mesh, const
 
 }  // namespace
 
-/// Adds a geometry of an object.
+/// Adds an object's geometry to the hull.
 struct SceneHull::Adder {
   SceneHull& hull;
   const Object& object;

@@ -15,22 +15,23 @@
 
 namespace promin {
 
-/// The extent of the main part of a scene in any direction, exact for meshes and shapes. The scene must outlive it.
+/// The extent of the main part of a scene in any direction, exact for meshes and shapes. The scene must outlive the
+/// hull.
 class SceneHull {
  public:
-  /// Throws InputError as bounds_of() does.
+  /// Computes the hull. Throws InputError as bounds_of() does.
   explicit SceneHull(const Scene& scene);
 
   const MainPart& main_part() const { return part_; }
-  /// Returns the box to look at (frame_of).
+  /// Returns the box that a camera frames (frame_of).
   const Bounds& bounds() const { return bounds_; }
-  /// The middle of the bounds.
+  /// Returns the middle of the bounds.
   const dvec3& center() const { return center_; }
   /// Returns the point that lies farthest in a direction of any length except 0, minus the center.
   dvec3 farthest(const dvec3& direction) const;
 
  private:
-  /// Consecutive vertices of a file, which usually lie close together.
+  /// Consecutive vertices of a file, which are usually close together.
   struct Block {
     std::span<const vec3> positions;
     Bounds bounds;
@@ -59,7 +60,7 @@ class SceneHull {
   dvec3 center_;
   std::vector<PlacedMesh> meshes_;
   std::vector<Solid> solids_;
-  /// The blocks of geometries that have been added, by their indices.
+  /// The blocks of the geometries that were added, by the index of the geometry.
   std::map<uint32_t, std::span<const Block>> blocks_of_;
   std::deque<std::vector<Block>> blocks_;
   std::deque<std::vector<vec3>> positions_;

@@ -16,11 +16,11 @@ namespace {
 constexpr double kLeastShare = 0.99;
 constexpr float kFar = 64.0F;
 constexpr size_t kBinCount = 128;
-/// Each halves the box at least, and fp32 has 24 bits.
+/// The largest number of passes. Each pass at least halves the box, and fp32 has 24 bits.
 constexpr int kMostPasses = 24;
 
-/// Adds the bounds and the surface of each finite primitive of an object, in the world, to a sum. It adds those of many
-/// triangles to parts of their own, and these to the sum.
+/// Adds the bounds and the surface area of each finite primitive of an object, in the world, to a sum. Many triangles
+/// are added in parts, whose sums are added afterwards.
 template <class Sum>
 struct FinitePrimitives {
   const dmat4& world_from_object;
@@ -71,10 +71,10 @@ Sum add_up(const Scene& scene, Sum sum) {
   return sum;
 }
 
-/// The surface in slices of a box along an axis.
+/// The surface area in each slice of a box along an axis.
 using Slices = std::array<double, kBinCount>;
 
-/// The shortest run of slices, as [first, last), that holds so much surface.
+/// Returns the shortest run of slices, as [first, last), with at least this surface area.
 std::pair<size_t, size_t> find_shortest_run(const Slices& slices, double least) {
   std::pair<size_t, size_t> best(0, kBinCount);
   double sum = 0.0;
@@ -87,7 +87,7 @@ std::pair<size_t, size_t> find_shortest_run(const Slices& slices, double least) 
   return best;
 }
 
-/// The surface of primitives by the places of their centers in a box.
+/// The surface area of primitives, sorted by the slice of the box that contains their centre.
 struct Histogram {
   Bounds box;
   dvec3 slice_size;
@@ -119,7 +119,7 @@ struct Histogram {
   }
 };
 
-/// What has its center in a box, and the number of primitives outside of it.
+/// The surface area of the primitives that have their centre in a box, and the number of primitives outside the box.
 struct Content {
   Bounds box;
   MainPart part = {};
@@ -141,7 +141,7 @@ struct Content {
   }
 };
 
-/// The box without what lies beside its shortest runs of slices.
+/// Returns the box reduced to its shortest runs of slices.
 Bounds shrink(const Bounds& box, const Histogram& histogram, double least) {
   Bounds shrunk = box;
   for (int axis = 0; axis < 3; ++axis) {
@@ -154,13 +154,15 @@ Bounds shrink(const Bounds& box, const Histogram& histogram, double least) {
   return shrunk;
 }
 
-/// A box that holds the centers of nearly all of the surface; the given one where these are spread over it.
+/// Returns a box that contains the centres of nearly all of the surface area. If the centres are spread over the given
+/// box, returns that box.
 Bounds find_dense_box(const Scene& scene, const Bounds& bounds, double& total) {
   Bounds box = bounds;
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const Histogram histogram = add_up(scene, Histogram(box));
     if (pass == 0) total = histogram.total;
-    // Each of three axes may lose a third of what may be left out; the caller checks what all passes lose.
+    // Each of the three axes may exclude a third of the area that may be excluded. The caller checks the total of all
+    // passes.
     const Bounds shrunk = shrink(box, histogram, total * (1.0 - (1.0 - kLeastShare) / 3.0));
     if (max_component(shrunk.extent()) > 0.5F * max_component(box.extent())) break;
     box = shrunk;

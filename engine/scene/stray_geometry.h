@@ -12,20 +12,21 @@ namespace promin {
 
 /// The main part of a scene, without stray geometry.
 struct MainPart {
-  /// Bounds of everything finite in it; empty if nothing is finite.
+  /// Bounds of all finite geometry of the main part; empty if nothing is finite.
   Bounds bounds;
-  /// The number of finite primitives outside of it.
+  /// The number of finite primitives outside the main part.
   uint64_t stray_count = 0;
-  /// Set if there are some: a primitive belongs to the part if the centre of its bounds lies in this box.
+  /// Set if there are primitives outside. A primitive belongs to the main part if the centre of its bounds lies in this
+  /// box.
   std::optional<Bounds> centers = std::nullopt;
 };
 
-/// Returns everything finite, unless 99 percent of its surface lie in a box of less than 1/64 of its size, which would
-/// be only a few pixels in a picture of everything. Then it returns the primitives whose centres lie in that box.
-/// Throws InputError as bounds_of() does.
+/// Returns all finite geometry, unless 99 percent of the surface area lie in a box smaller than 1/64 of the scene's
+/// size, which would be only a few pixels in a picture of the whole scene. In that case it returns the primitives whose
+/// centres lie in that box. Throws InputError as bounds_of() does.
 MainPart find_main_part(const Scene& scene);
 
-/// Returns framing_of (promin/framing.h) for a scene with this main part.
+/// Returns framing_of() of promin/framing.h for a scene with this main part.
 Framing framing_of(const Scene& scene, const MainPart& part);
 
 /// Returns whether a point lies in a box or on its surface.

@@ -8,7 +8,7 @@
 
 namespace promin {
 
-/// Returns the texture of the colour and of alpha.
+/// Returns the slot of the texture for colour and alpha.
 inline const TextureSlot& base_slot(const MetallicRoughness& model) {
   return model.base_color_texture;
 }
@@ -22,8 +22,8 @@ inline const TextureSlot& base_slot(const Material& material) {
   return std::visit([](const auto& model) -> const TextureSlot& { return base_slot(model); }, material.model);
 }
 
-// Visits the texture slots of materials, each once: `visit(slot, name, use)` receives the slot, with or without a
-// texture, the name of its member, and the use of the image.
+// Calls a visitor with the texture slots of materials, each once: `visit(slot, name, use)` receives the slot, with or
+// without a texture, the name of its member, and the use of the image.
 
 template <typename Visit>
 void for_each_slot(const Phong& model, const Visit& visit) {
@@ -58,7 +58,7 @@ void for_each_slot(const Unlit& model, const Visit& visit) {
   visit(model.color_texture, "color_texture", ImageUse::kColor);
 }
 
-/// Visits the slots of the material's model and of its emission.
+/// Calls the visitor with the slots of the material's model and of its emission.
 template <typename Visit>
 void for_each_slot(const Material& material, const Visit& visit) {
   std::visit([&](const auto& model) { for_each_slot(model, visit); }, material.model);

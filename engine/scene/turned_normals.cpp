@@ -10,8 +10,8 @@
 namespace promin {
 namespace {
 
-/// Differences of fp32 numbers, their products and sums are exact enough in double that only normals within 1e-15 of
-/// the triangle's plane can have the wrong sign.
+/// Returns whether the three normals of a triangle point against its winding. Differences, products and sums of fp32
+/// numbers are so exact in double that only normals within 1e-15 of the triangle's plane can have the wrong sign.
 bool is_turned(const Mesh& mesh, const uvec3& triangle) {
   const dvec3 a(mesh.positions[triangle.x]);
   const dvec3 front = glm::cross(dvec3(mesh.positions[triangle.y]) - a, dvec3(mesh.positions[triangle.z]) - a);
@@ -21,7 +21,7 @@ bool is_turned(const Mesh& mesh, const uvec3& triangle) {
   return true;
 }
 
-/// Whether each vertex is one of these triangles.
+/// Returns for each vertex whether it belongs to one of these triangles.
 std::vector<bool> find_vertices(const Mesh& mesh, std::span<const uint32_t> triangles) {
   std::vector<bool> is_vertex(mesh.positions.size(), false);
   for (const uint32_t i : triangles) {
@@ -30,7 +30,7 @@ std::vector<bool> find_vertices(const Mesh& mesh, std::span<const uint32_t> tria
   return is_vertex;
 }
 
-/// The other triangles that share a vertex with these, which are in order.
+/// Returns the other triangles that share a vertex with these triangles, which are sorted.
 std::vector<uint32_t> find_neighbors(const Mesh& mesh, std::span<const uint32_t> triangles) {
   const std::vector<bool> is_vertex = find_vertices(mesh, triangles);
   return find_indices(mesh.triangles.size(), [&](uint32_t i) {

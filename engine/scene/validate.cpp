@@ -19,23 +19,25 @@
 namespace promin {
 namespace {
 
-/// A transform whose determinant is less, relative to its columns' lengths, flattens what it moves.
+/// The smallest determinant of a transform, relative to the lengths of its columns. A transform with a smaller one
+/// flattens objects.
 constexpr double kLeastVolume = 1e-12;
-/// The largest error of the length of a light's direction. A spot's cosines are computed with the direction as given.
+/// The largest error of the length of a light's direction. The cosines of spot lights are computed with the unchanged
+/// direction.
 constexpr float kDirectionTolerance = 1e-5F;
 /// The largest error of the lengths of a camera's look and up, and of their dot product.
 constexpr float kBasisTolerance = 1e-3F;
-/// Powers and colours beyond this are refused, because their products overflow in fp32.
+/// The largest power and colour. Products of larger ones overflow in fp32.
 constexpr float kMaxPower = 1e15F;
 
-/// Their numbers are 0, 1, ...
+/// The number of kinds of lights, which are numbered 0, 1, ...
 constexpr uint32_t kLightKindCount = 0
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) +1
 #include "promin/kinds/lights.def"
     ;
 
-/// Names a part of a scene: "materials[3].ior". It becomes a text only where that part is wrong, as scenes have
-/// millions of parts that are right.
+/// The place of a part of a scene: "materials[3].ior". It is converted to text only if the part is wrong, because
+/// scenes have millions of valid parts.
 class Place {
  public:
   Place(const char* name) : name_(name) {}  // NOLINT(google-explicit-constructor): a name is a place.
@@ -68,7 +70,7 @@ bool is_color(const vec3& color) {
   return is_power(color.r) && is_power(color.g) && is_power(color.b);
 }
 
-/// The first of a pixel's numbers that makes it no colour.
+/// Describes the first component because of which a pixel is not a colour.
 std::string describe_wrong_pixel(const vec3& pixel, const uvec2& place) {
   int channel = 0;
   while (channel < 2 && pixel[channel] >= 0.0F && pixel[channel] <= kMaxPower) ++channel;
@@ -85,7 +87,7 @@ class Validation {
  public:
   explicit Validation(std::vector<Problem>& problems) : problems_(problems) {}
 
-  /// Adds a problem unless `is_so`. `what` is a sentence, or a function that makes it.
+  /// Adds a problem unless `is_so`. `what` is a sentence, or a function that returns one.
   template <class What>
   bool check(ProblemCode code, bool is_so, const What& what, const Place& where, const char* cure) {
     if (is_so) return true;
@@ -221,7 +223,7 @@ class Validation {
     }
   }
 
-  /// The number of textures is known only for a whole scene.
+  /// The number of textures is known only if a whole scene is checked.
   void check_slot(const TextureSlot& slot, size_t texture_count, const Place& place) {
     if (!slot.exists()) return;
     check("scene.reference.range", slot.texture < texture_count, "the texture is out of range", place + ".texture",
@@ -352,7 +354,7 @@ class Validation {
   }
 
   void check_view(const View& view) {
-    // Beyond 1e15 too: a camera that frames a scene of that size stands there.
+    // The eye may have coordinates beyond 1e15, because a camera that frames a scene of that size may be there.
     check("scene.camera.eye", is_finite(view.camera.eye), "the eye is not finite", "view.camera.eye",
           "use finite coordinates");
     check_camera(view.camera, "view.camera");
@@ -487,7 +489,7 @@ class Validation {
     }
   }
 
-  /// Returns the first wrong element, if any.
+  /// Returns the first wrong element, if there is one.
   template <class Elements, class IsRight>
   void check_each(ProblemCode code, const Elements& elements, const IsRight& is_right, const char* what,
                   const Place& place, const char* cure) {

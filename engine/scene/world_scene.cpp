@@ -38,7 +38,7 @@ vec3 place_normal(const vec3& n, const Placement& placement) {
   return vec3(normal / glm::length(normal));
 }
 
-/// Tangents go along with positions; a mirroring transform exchanges the sides of bitangents.
+/// Transforms a tangent like a difference of positions. A mirroring transform exchanges the sides of bitangents.
 vec4 place_tangent(const vec4& t, const Placement& placement) {
   const dvec3 tangent = placement.direction(dvec3(vec3(t)));
   const double length = glm::length(tangent);
@@ -58,7 +58,7 @@ struct ShapeInWorld {
   template <class Described>
   Shape operator()(const Described& described) const {
     auto placed = promin::place(described, Placement(world_from_object));
-    // A valid scene keeps the form of its shapes.
+    // In a valid scene every transform keeps the form of its shapes.
     return placed ? Shape(*placed) : Shape(NotDrawn{});
   }
 };
@@ -138,13 +138,13 @@ Camera look_from_front(const Scene& scene, float aspect_ratio) {
   const dvec3 half = 0.5 * (dvec3(frame.hi) - dvec3(frame.lo));
   const double sine = std::sin(kFrontElevation);
   const double cosine = std::cos(kFrontElevation);
-  // Differences from 0 are never -0.
+  // The subtractions from 0 prevent -0.
   const dvec3 look(0.0, 0.0 - sine, 0.0 - cosine);
   const dvec3 up(0.0, cosine, 0.0 - sine);
   const double tan_y = std::tan(0.5 * static_cast<double>(kFrontYfov));
   const double tan_x = tan_y * static_cast<double>(aspect_ratio);
 
-  // The least distance at which each corner of the box lies within both fields of view.
+  // The smallest distance at which each corner of the box lies within both fields of view.
   double distance = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const dvec3 sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
@@ -155,7 +155,7 @@ Camera look_from_front(const Scene& scene, float aspect_ratio) {
   distance *= kFrontMargin;
   // A single point has no size.
   if (distance == 0.0) distance = 1.0;
-  // Far from the origin the eye must still differ in fp32 from the point that it looks at.
+  // Far from the origin, the eye must still differ in fp32 from the point at which it looks.
   const dvec3 magnitude = glm::abs(center);
   distance = std::max(distance, 0x1p-20 * std::max({magnitude.x, magnitude.y, magnitude.z}));
 
@@ -183,7 +183,8 @@ Bounds bounds_of_triangle(const Mesh& mesh, uint32_t triangle) {
 bool is_degenerate(const Mesh& mesh, uint32_t triangle) {
   const uvec3 corners = mesh.triangles[triangle];
   const dvec3 a(mesh.positions[corners.x]);
-  // Differences of nearby fp32 numbers and their products are exact in double, so collinear means exactly zero.
+  // Differences of nearby fp32 numbers and their products are exact in double, so the result is exactly 0 for collinear
+  // corners.
   return glm::cross(dvec3(mesh.positions[corners.y]) - a, dvec3(mesh.positions[corners.z]) - a) == dvec3(0.0);
 }
 

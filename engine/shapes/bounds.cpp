@@ -27,8 +27,8 @@ Bounds round_outward(const dvec3& lo, const dvec3& hi, const dvec3& magnitude) {
   return bounds;
 }
 
-// A disk with unit normal a reaches radius * sqrt(1 - a_i^2) along axis i; as the length of the other two components it
-// does not cancel near 1.
+// Returns the bounds of disks. A disk with the unit normal a extends radius * sqrt(1 - a_i^2) along axis i. The code
+// computes this root as the length of the other two components, because the difference would lose digits near 1.
 Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
                        double radius_top) {
   const dvec3 unit = glm::normalize(dvec3(axis));

@@ -10,24 +10,24 @@
 namespace promin {
 namespace {
 
-/// Columns are the box's axes in the world.
+/// The box's axes in the world as columns, and its half sizes.
 struct Orientation {
   dmat3 axes{1.0};
   dvec3 half_size{0.0};
 };
 
-/// The cosine of the angle grows with the trace.
+/// Returns the trace. The cosine of the rotation's angle increases with it.
 double trace(const dmat3& m) {
   return m[0][0] + m[1][1] + m[2][2];
 }
 
-/// The same box with its axes named and turned about so that they are nearest to those of space.
+/// Returns the same box with its axes renamed and reversed so that they are as near as possible to the coordinate axes.
 Orientation nearest_to_space(const Orientation& given) {
   Orientation nearest;
   double most = -4.0;
   int order[3] = {0, 1, 2};
   do {
-    // A right-handed basis, which is free in two of its signs.
+    // A right-handed basis allows two of its signs to be chosen.
     for (int signs = 0; signs < 4; ++signs) {
       dmat3 axes;
       dvec3 half_size;
@@ -44,7 +44,8 @@ Orientation nearest_to_space(const Orientation& given) {
   return nearest;
 }
 
-/// Shepperd, "Quaternion from Rotation Matrix", 1978: its first case, as the trace is positive.
+/// Returns the vector part of the quaternion, with the first case of Shepperd, "Quaternion from Rotation Matrix", 1978,
+/// because the trace is positive.
 dvec3 turn_of(const dmat3& m) {
   const double four_w = 2.0 * std::sqrt(1.0 + trace(m));
   return dvec3(m[1][2] - m[2][1], m[2][0] - m[0][2], m[0][1] - m[1][0]) / four_w;
@@ -106,7 +107,8 @@ dvec3 farthest_of(const world::Box& box, const dvec3& direction) {
   return point;
 }
 
-// a = center, half size along x; b = half sizes along y and z, turn's x and y; c.x = bits of its z.
+// Packs a box: a = center, half size along x; b = half sizes along y and z, x and y of `turn`; c.x = bits of z of
+// `turn`.
 layout::Primitive pack(const world::Box& b) {
   return {vec4(b.center, b.half_size.x), vec4(b.half_size.y, b.half_size.z, b.turn.x, b.turn.y),
           uvec4(std::bit_cast<uint32_t>(b.turn.z), 0, 0, 0)};

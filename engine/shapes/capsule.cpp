@@ -18,7 +18,7 @@ std::optional<world::Capsule> place(const Capsule& capsule, const Placement& pla
 
 NamedSizes sizes_of(const Capsule& capsule, const Placement& placement) {
   const double scale = placement.scale_along(capsule.axis);
-  // If both radii are 0 neither may be.
+  // A size may be 0 unless both radii are 0.
   return {{"half height", capsule.half_height * scale, true},
           {"radius", capsule.radius_bottom * scale, capsule.radius_top != 0.0},
           {"radius", capsule.radius_top * scale, capsule.radius_bottom != 0.0}};
@@ -46,7 +46,7 @@ dvec3 farthest_of(const world::Capsule& c, const dvec3& direction) {
   return dvec3(c.center) + (glm::dot(top - bottom, direction) > 0.0 ? top : bottom);
 }
 
-// a = center, bottom radius; b = axis, half height; c.x = bits of the top radius.
+// Packs a capsule: a = center, bottom radius; b = axis, half height; c.x = bits of the top radius.
 layout::Primitive pack(const world::Capsule& c) {
   return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height),
           uvec4(std::bit_cast<uint32_t>(c.radius_top), 0, 0, 0)};

@@ -18,7 +18,7 @@ std::optional<world::Cone> place(const Cone& cone, const Placement& placement) {
 
 NamedSizes sizes_of(const Cone& cone, const Placement& placement) {
   const double scale = placement.scale_across(cone.axis);
-  // Of two that are 0 neither may be.
+  // A radius may be 0 unless both radii are 0.
   return {{"half height", cone.half_height * placement.scale_along(cone.axis)},
           {"radius", cone.radius_bottom * scale, cone.radius_top != 0.0},
           {"radius", cone.radius_top * scale, cone.radius_bottom != 0.0}};
@@ -36,8 +36,8 @@ dvec3 farthest_of(const world::Cone& c, const dvec3& direction) {
   return farthest_of_disks(c.center, c.axis, c.half_height, c.radius_bottom, c.radius_top, direction);
 }
 
-// a = center, bottom radius; b = axis, half height; c.x = bits of the top radius, and SHAPE_IS_OPEN in place of its
-// sign.
+// Packs a cone: a = center, bottom radius; b = axis, half height; c.x = bits of the top radius, with SHAPE_IS_OPEN in
+// place of the sign.
 layout::Primitive pack(const world::Cone& c) {
   return {vec4(c.center, c.radius_bottom), vec4(c.axis, c.half_height),
           uvec4(std::bit_cast<uint32_t>(c.radius_top) | (c.is_open ? layout::SHAPE_IS_OPEN : 0), 0, 0, 0)};

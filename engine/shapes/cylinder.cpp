@@ -30,7 +30,7 @@ dvec3 farthest_of(const world::Cylinder& c, const dvec3& direction) {
   return farthest_of_disks(c.center, c.axis, c.half_height, c.radius, c.radius, direction);
 }
 
-// a = center, radius; b = axis, half height; c.x = SHAPE_IS_OPEN or 0.
+// Packs a cylinder: a = center, radius; b = axis, half height; c.x = SHAPE_IS_OPEN or 0.
 layout::Primitive pack(const world::Cylinder& c) {
   return {vec4(c.center, c.radius), vec4(c.axis, c.half_height), uvec4(c.is_open ? layout::SHAPE_IS_OPEN : 0, 0, 0, 0)};
 }

@@ -17,7 +17,7 @@ bool is_right_angle(const dvec3& a, const dvec3& b) {
   return std::abs(glm::dot(a, b)) <= kTolerance * glm::length(a) * glm::length(b);
 }
 
-/// The sum of columns times components, without those that are 0.
+/// Returns the sum of columns times components. Components that are 0 are left out.
 dvec3 combine(const dvec3 (&columns)[3], const dvec3& v) {
   dvec3 sum(0.0);
   bool is_first = true;
@@ -30,7 +30,7 @@ dvec3 combine(const dvec3 (&columns)[3], const dvec3& v) {
   return sum;
 }
 
-/// Two unit vectors at right angles to an axis and to each other; those of +Y are +X and +Z.
+/// Two unit vectors that are perpendicular to an axis and to each other. For +Y they are +X and +Z.
 struct Across {
   dvec3 first;
   dvec3 second;

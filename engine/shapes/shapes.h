@@ -20,11 +20,12 @@ struct Primitive;
 struct NamedSize {
   const char* name = "";
   double size = 0.0;
-  /// Whether 0 is allowed: an apex.
+  /// True if the size may be 0, as for an apex.
   bool may_be_zero = false;
 };
 
-/// The sizes of a shape, at most three, without heap allocation, because they are computed for every shape of a scene.
+/// The sizes of a shape, at most three. It allocates no heap memory, because sizes are computed for every shape of a
+/// scene.
 class NamedSizes {
  public:
   NamedSizes(std::initializer_list<NamedSize> sizes) : count_(sizes.size()) {
@@ -41,16 +42,16 @@ class NamedSizes {
   size_t count_;
 };
 
-/// Converts device records back to shapes; each shape has a specialisation in its own file.
+/// Converts a device record back to a shape. Each shape has a specialisation in its own file.
 template <class Shape>
 Shape unpack(const layout::Primitive& primitive);
 
-// What each shape of promin/kinds/primitives.def defines in engine/shapes/<shape>.cpp:
-//   place      the shape in the world; none where it does not keep its form under the transform
-//   sizes_of   the sizes that it has there
-//   center_of  where it lies there, in double
-//   pack       its numbers in a device record; order, kind and hashes are the caller's
-//   unpack     the same numbers back
+// Each shape of promin/kinds/primitives.def defines these functions in engine/shapes/<shape>.cpp:
+//   place      returns the shape in the world; nullopt if the transform does not keep its form
+//   sizes_of   returns the sizes of the placed shape
+//   center_of  returns the center of the placed shape, in double
+//   pack       writes the shape's numbers to a device record; the caller sets order, kind and hashes
+//   unpack     reads the same numbers back
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)               \
   std::optional<world::TYPE> place(const TYPE& shape, const Placement& placement); \
   NamedSizes sizes_of(const TYPE& shape, const Placement& placement);              \
@@ -69,7 +70,7 @@ Shape unpack(const layout::Primitive& primitive);
   dvec3 farthest_of(const world::TYPE& shape, const dvec3& direction);
 #include "promin/kinds/primitives.def"
 
-/// KIND_* of a shape.
+/// The number KIND_* of a shape.
 template <class Shape>
 struct KindOf;
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
@@ -79,15 +80,15 @@ struct KindOf;
   };
 #include "promin/kinds/primitives.def"
 
-/// Rounds a box outward. fp32 axes are unit vectors only up to rounding, so a shape's true extent may exceed the
-/// computed one by a few roundings; 2 ulp of the largest magnitude involved are added.
+/// Returns a box rounded outward. Axes in fp32 are unit vectors only up to rounding, so a shape's true extent may
+/// exceed the computed one by a few roundings. The function adds 2 ulp of the largest magnitude involved.
 Bounds round_outward(const dvec3& lo, const dvec3& hi, const dvec3& magnitude);
 
-/// Returns the bounds of the convex hull of two disks around an axis (of any length except 0), half_height before and
-/// behind the center.
+/// Returns the bounds of the convex hull of two disks around an axis, at the distance half_height on both sides of the
+/// center. The axis may have any length except 0.
 Bounds bounds_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
                        double radius_top);
-/// Returns the point of the same hull that lies farthest in a direction.
+/// Returns the point of the convex hull of the two disks that lies farthest in a direction.
 dvec3 farthest_of_disks(const vec3& center, const vec3& axis, double half_height, double radius_bottom,
                         double radius_top, const dvec3& direction);
 

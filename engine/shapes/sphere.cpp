@@ -29,7 +29,7 @@ dvec3 farthest_of(const world::Sphere& sphere, const dvec3& direction) {
   return dvec3(sphere.center) + double{sphere.radius} * glm::normalize(direction);
 }
 
-// a = center, radius.
+// Packs a sphere: a = center, radius.
 layout::Primitive pack(const world::Sphere& s) {
   return {vec4(s.center, s.radius), vec4(0.0F), uvec4(0)};
 }

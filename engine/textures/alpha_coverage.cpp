@@ -14,14 +14,14 @@ constexpr uint32_t kMostAlpha = 255;
 constexpr uint32_t kAlphaShift = 24;
 constexpr uint32_t kColorMask = 0x00FFFFFF;
 
-/// The least byte that is at least the cutoff as the device compares them, or one more than there are.
+/// Returns the smallest byte that is at least the cutoff when the device compares them; 256 if there is none.
 uint32_t least_byte(float cutoff) {
   uint32_t byte = 0;
   while (byte <= kMostAlpha && static_cast<float>(byte) * (1.0F / 255.0F) < cutoff) ++byte;
   return byte;
 }
 
-/// For each byte, how many texels have that alpha or more.
+/// Returns for each byte the number of texels whose alpha is at least this byte.
 std::array<uint64_t, kMostAlpha + 1> count_from(std::span<const uint32_t> texels) {
   std::array<uint64_t, kMostAlpha + 1> counts{};
   for (const uint32_t texel : texels) ++counts[texel >> kAlphaShift];
@@ -29,7 +29,8 @@ std::array<uint64_t, kMostAlpha + 1> count_from(std::span<const uint32_t> texels
   return counts;
 }
 
-/// The alpha from which on texels are to be above the cutoff; of several that cover as much the nearest to it.
+/// Returns the smallest alpha whose texels must be above the cutoff after scaling. If several alphas give the same
+/// coverage, it is the one nearest to the cutoff.
 uint32_t find_threshold(std::span<const uint32_t> texels, uint32_t cutoff, double coverage) {
   const auto counts = count_from(texels);
   const double wanted = coverage * static_cast<double>(texels.size());
@@ -57,7 +58,7 @@ void scale_alpha_to_coverage(std::span<uint32_t> texels, float cutoff, double co
   for (uint32_t& texel : texels) {
     const uint32_t alpha = texel >> kAlphaShift;
     const uint32_t scaled = (alpha * least + threshold / 2) / threshold;
-    // Rounding must not carry an alpha over the cutoff.
+    // The result is clamped, so that rounding does not move an alpha across the cutoff.
     const uint32_t result = alpha >= threshold ? std::min(scaled, kMostAlpha) : std::min(scaled, least - 1);
     texel = (texel & kColorMask) | result << kAlphaShift;
   }

@@ -8,12 +8,13 @@
 namespace promin {
 namespace {
 
-/// Transforms by fractions such as 1/2 or 3/4 repeat after some widths. Larger numbers are not tried.
+/// The largest number of widths that is tried. A transform with a fraction such as 1/2 or 3/4 repeats after some
+/// widths.
 constexpr int kMostWidths = 16;
-/// A movement of less than 1/256 of the smallest possible texel counts as none, because angles and scales are rounded.
+/// Movements smaller than 1/256 of the smallest possible texel do not count, because angles and scales are rounded.
 constexpr double kLeastMove = 0x1p-22;
 
-/// Whether coordinates beyond `moved` show what they show here.
+/// Returns whether a picture looks the same after its coordinates have moved by `moved`.
 bool shows_the_same(double moved, TextureWrap wrap) {
   if (wrap == TextureWrap::kClampToEdge) return std::abs(moved) <= kLeastMove;
   const double period = wrap == TextureWrap::kRepeat ? 1.0 : 2.0;
@@ -25,7 +26,7 @@ bool shows_the_same(const TextureSlot& slot, const Texture& texture, const dvec2
          shows_the_same(glm::dot(dvec2(slot.to_v), center), texture.wrap_v);
 }
 
-/// The place for the center of one component of the coordinates.
+/// Returns the center for one component of the coordinates.
 double find_center(const Mesh& mesh, int component, std::span<const TextureSlot> slots,
                    std::span<const Texture> textures) {
   double sum = 0.0;

@@ -10,10 +10,10 @@
 namespace promin {
 
 /// Returns an offset that can be subtracted from the texture coordinates of a mesh without changing the appearance of
-/// these slots, which are all that read them. Near 0, fp32 resolves coordinates better. Each component of both sets is
-/// a whole number near the mean, or 0 in these cases: no slot reads it; the largest coordinate would not shrink to
-/// half; or a picture would move. A repeated picture may move by its width, a mirrored one by two widths, a clamped one
-/// not at all, each after its slot's transform.
+/// these slots. No other slots read the coordinates. Near 0, fp32 resolves coordinates better. Each component of both
+/// sets is a whole number near the mean. A component is 0 if no slot reads it, if the largest coordinate would not be
+/// halved, or if a picture would move. After its slot's transform, a repeated picture may move by its width and a
+/// mirrored one by two widths; a clamped one may not move.
 dvec4 find_uv_center(const Mesh& mesh, std::span<const TextureSlot> slots, std::span<const Texture> textures);
 
 /// Subtracts `center` from all coordinates, in double.

@@ -30,7 +30,7 @@ void check_size(uint64_t width, uint64_t height) {
   throw PictureError("its size of " + std::to_string(width) + "x" + std::to_string(height) + " is too large", false);
 }
 
-/// A PNG file on its way through libpng, which returns from errors by longjmp: nothing with a destructor may be made
+/// Reads a PNG file with libpng. libpng returns from errors by longjmp, so no object with a destructor may be created
 /// between setjmp and a call of libpng.
 class PngReader {
  public:
@@ -42,7 +42,7 @@ class PngReader {
       throw std::bad_alloc();
     }
     png_set_read_fn(png_, this, take_bytes);
-    // Text and profiles are skipped, so that they take no memory.
+    // Text and colour profiles are skipped, so that they use no memory.
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
     png_set_user_limits(png_, kMaxTextureSide, kMaxTextureSide);
     png_set_chunk_malloc_max(png_, 1U << 20);
@@ -121,7 +121,7 @@ class JpegReader {
   const std::string& warning() const { return warning_; }
 
  private:
-  /// A result of a library's call: after a warning all is decoded, as far as there is something.
+  /// Checks the result of a call of the library. After a warning the picture is decoded as far as possible.
   void check(int result) {
     if (result == 0) return;
     if (tjGetErrorCode(handle_.get()) != TJERR_WARNING) throw PictureError(tjGetErrorStr2(handle_.get()));
@@ -134,14 +134,14 @@ class JpegReader {
   std::string warning_;
 };
 
-/// A file of any other format that the plugin for pictures reads.
+/// Reads a file in any other format that the plugin for pictures supports.
 class PluginReader {
  public:
   PluginReader(std::span<const std::byte> file, const PictureFormat& format)
       : plugin_(open_plugin()), reader_(nullptr, plugin_.close), file_(file), format_(format) {}
 
   uvec2 read_header() {
-    // The header is checked first, because libraries allocate memory for the picture when they open it.
+    // The size in the header is checked first, because libraries allocate memory for the picture when they open it.
     if (const std::optional<uvec2> size = read_told_size(file_, format_)) check_size(size->x, size->y);
     ProminPicturesInfo info{};
     ProminPicturesReader* opened = nullptr;

@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// The reason why a picture cannot be used as a texture, in a few words.
+/// Thrown if a picture cannot be used as a texture. The message is the reason in a few words.
 class PictureError : public std::runtime_error {
  public:
   explicit PictureError(const std::string& why, bool is_file_at_fault = true)
@@ -29,7 +29,7 @@ class PictureError : public std::runtime_error {
 /// A picture with 8 bits per channel.
 struct DecodedPicture {
   uvec2 size{0};
-  /// As TextureImage::texels.
+  /// The texels in the form of TextureImage::texels.
   std::vector<uint32_t> texels;
   /// The library's warning about a damaged file; empty if there is none.
   std::string warning = {};
@@ -40,10 +40,10 @@ struct DecodedPicture {
 /// the picture is larger than kMaxTextureSide or kMaxTextureTexels, or the plugin is missing.
 uvec2 read_picture_size(std::span<const std::byte> file);
 
-/// Returns the texels of such a file. Grey is expanded to three channels, missing alpha is 1, values of more bits are
-/// rounded to 8, and values outside 0...1 are clamped. The missing part of a truncated JPEG is grey. Colour profiles
-/// and gamma of the file are ignored, as glTF 2.0, section 3.8.3, requires. Throws PictureError, for a picture that is
-/// too large before it allocates memory.
+/// Returns the texels of a picture in one of these formats. Grey is expanded to three channels, and missing alpha is 1.
+/// Values with more than 8 bits are rounded to 8 bits, and values outside 0...1 are clamped. The missing part of a
+/// truncated JPEG is grey. Colour profiles and gamma of the file are ignored, as glTF 2.0, section 3.8.3, requires.
+/// Throws PictureError. If the picture is too large, it throws before it allocates memory.
 DecodedPicture decode_picture(std::span<const std::byte> file);
 
 /// The largest number of texels of an image: 512 MiB.

@@ -10,17 +10,17 @@
 namespace promin {
 namespace {
 
-/// The number of vertices that a thread takes at a time.
+/// The number of vertices that a thread processes at a time.
 constexpr size_t kChunkSize = 16384;
 
-/// Edges by the lower of their vertices.
+/// The edges, grouped by the lower of their two vertices.
 class EdgeBuckets {
  public:
   EdgeBuckets(std::span<const uint32_t> vertices, uint32_t vertex_count)
       : vertices_(vertices), ends_(size_t{vertex_count} + 1, 0), edges_(vertices.size()) {
     for_each_edge([&](uint32_t edge) { ++ends_[lower(edge) + 1]; });
     for (size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
-    // Each bucket's begin moves to its end, which is where the next one began.
+    // While a bucket is filled, its begin moves to its end. The next bucket originally began there.
     for_each_edge([&](uint32_t edge) { edges_[ends_[lower(edge)]++] = edge; });
   }
 
@@ -45,7 +45,7 @@ class EdgeBuckets {
   std::vector<uint32_t> edges_;
 };
 
-/// Joins the edges of a bucket.
+/// Pairs the edges of a bucket.
 void join(EdgeBuckets& buckets, std::span<uint32_t> bucket, std::vector<uint32_t>& neighbors) {
   const auto order_of = [&](uint32_t edge) { return std::tuple(buckets.upper(edge), buckets.runs_down(edge), edge); };
   std::ranges::sort(bucket, {}, order_of);

@@ -9,9 +9,9 @@
 
 namespace promin {
 
-// Corners of triangles are numbered 3 * triangle + (0, 1, 2), and edges like the corners at which they start.
+// Corners of triangles are numbered 3 * triangle + (0, 1, 2). An edge has the number of the corner at which it starts.
 
-/// The value for no corner and no edge.
+/// The value that stands for no corner and no edge.
 inline constexpr uint32_t kNoCorner = std::numeric_limits<uint32_t>::max();
 
 inline uint32_t next_corner(uint32_t corner) {
@@ -22,9 +22,9 @@ inline uint32_t last_corner(uint32_t corner) {
 }
 
 /// Returns for each edge the edge of another triangle that runs in the opposite direction between the same vertices;
-/// kNoCorner if there is none. If there are several, the first is paired with the first, the second with the second.
-/// `vertices` has the vertex of each corner, below `vertex_count`; kNoCorner at all three corners excludes a triangle.
-/// No other triangle has a vertex twice. The result does not depend on the number of threads.
+/// kNoCorner if there is none. If there are several, the first edge is paired with the first opposite edge, the second
+/// with the second. `vertices` has the vertex of each corner, below `vertex_count`; kNoCorner at all three corners
+/// excludes a triangle. No other triangle may have a vertex twice. The result does not depend on the number of threads.
 std::vector<uint32_t> find_edge_neighbors(std::span<const uint32_t> vertices, uint32_t vertex_count);
 
 }  // namespace promin

@@ -16,13 +16,13 @@
 namespace promin {
 namespace {
 
-/// A level in linear numbers from 0 to 1.
+/// A level whose values are linear numbers from 0 to 1.
 struct Level {
   uvec2 size{0};
   std::vector<vec4> texels;
 };
 
-/// The numbers that bytes stand for, in red, green and blue.
+/// Returns the number that each byte stands for, in red, green and blue.
 std::array<float, 256> make_numbers(ImageUse use) {
   std::array<float, 256> numbers{};
   for (size_t i = 0; i < numbers.size(); ++i) {
@@ -45,7 +45,7 @@ uint32_t encode(const vec4& texel, ImageUse use) {
   return word;
 }
 
-/// A stretch of the texels of a finer level along one axis, with the share of each: the area under a coarser texel.
+/// Texels of a finer level along one axis that a coarser texel covers, with the weight of each.
 struct Taps {
   uint32_t first = 0;
   uint32_t count = 0;
@@ -63,7 +63,7 @@ Taps taps_of(uint32_t place, uint32_t coarse, uint32_t fine) {
   return taps;
 }
 
-/// Half of a level's size, made of `texel(x, y)` of the finer level.
+/// Returns the next level, with half of the size. `texel(x, y)` returns a texel of the finer level.
 template <typename Texel>
 Level make_coarser(const uvec2& fine, const Texel& texel) {
   Level level{glm::max(fine / 2U, uvec2(1)), {}};
@@ -98,15 +98,15 @@ uint64_t count_words(const uvec2& size, uint32_t levels) {
   return words;
 }
 
-/// The size after some halvings.
+/// Returns the size after this number of halvings.
 uvec2 halve(const uvec2& size, uint32_t halvings) {
   return {std::max(size.x >> halvings, 1U), std::max(size.y >> halvings, 1U)};
 }
 
-/// What images take as their textures ask for them.
+/// The memory that images need for the levels that their textures use.
 class ImageSizes {
  public:
-  /// With `needs_texels` images without any count as absent, else those without a size.
+  /// If `needs_texels`, images without texels count as absent; otherwise images without a size.
   ImageSizes(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
              bool needs_texels)
       : images_(images), has_levels_(images.size(), false), needs_texels_(needs_texels) {
@@ -115,7 +115,7 @@ class ImageSizes {
     }
   }
 
-  /// 0 where the image is absent.
+  /// Returns the number of levels of an image; 0 if the image is absent.
   uint32_t levels(size_t image, uint32_t halvings) const {
     const TextureImage& source = *images_[image];
     if (needs_texels_ ? source.texels.empty() : source.size.x == 0 || source.size.y == 0) return 0;
@@ -132,7 +132,8 @@ class ImageSizes {
   bool needs_texels_;
 };
 
-/// Writes an image's levels from that of the placed size on. Each is made of the one before it, not of rounded texels.
+/// Writes an image's levels, beginning with the level of the placed size. Each level is computed from the one before
+/// it, and not from rounded texels.
 void write_image(const TextureImage& image, const PlacedImage& placed, float cutoff, std::span<uint32_t> words) {
   const auto halvings = static_cast<uint32_t>(count_levels(image.size) - count_levels(placed.size));
   uint32_t place = placed.levels;
@@ -169,7 +170,7 @@ std::string to_mib(uint64_t bytes) {
   return std::to_string((bytes + kMib - 1) / kMib) + " MiB";
 }
 
-/// Words of the buffer that images lie in are numbered in 32 bits.
+/// The largest size of all images in bytes. The words of the buffer that contains images are numbered in 32 bits.
 constexpr uint64_t kMostBytes = uint64_t{8} << 30;
 constexpr const char* kCure = "raise the memory for textures, or make images smaller";
 
@@ -180,7 +181,7 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
   most_bytes = std::min(most_bytes, kMostBytes);
   const ImageSizes sizes(images, textures, true);
   TextureFit fit{std::vector<uint32_t>(images.size(), 0)};
-  // The largest image is on top; among equally large ones, the first.
+  // The largest image comes first; of several equally large images, the one with the lowest index.
   const auto is_after = [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second > b.second;
   };

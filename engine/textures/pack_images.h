@@ -14,17 +14,17 @@
 
 namespace promin {
 
-/// The sizes at which a scene's images fit into a number of bytes.
+/// The sizes at which a scene's images fit into the allowed number of bytes.
 struct TextureFit {
   /// The number of times that each image is halved.
   std::vector<uint32_t> halvings;
-  /// The bytes of all images with their levels, at full size and as packed.
+  /// Number of bytes of all images with their levels, at full size and as packed.
   uint64_t whole_bytes = 0;
   uint64_t bytes = 0;
 };
 
-/// Halves the largest image, of equal ones the first, until all fit in `most_bytes` and in the 8 GiB that word indices
-/// can address. Throws RunError if they do not fit even as single texels.
+/// Halves the largest image until all images fit in `most_bytes` and in the 8 GiB that word indices can address. If
+/// images are equally large, the first is halved. Throws RunError if they do not fit even as single texels.
 TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                       uint64_t most_bytes);
 
@@ -33,7 +33,8 @@ std::optional<Problem> warn_of(const TextureFit& fit);
 
 /// The position of an image among the words of PackedImages.
 struct PlacedImage {
-  /// The first word. The positions of its levels, relative to this word, come first, then their texels.
+  /// Index of the image's first word. The positions of its levels, relative to this word, come first; the texels
+  /// follow.
   uint32_t first = 0;
   uvec2 size{0};
   /// Number of levels; 0 if the image is absent.
@@ -45,15 +46,15 @@ struct PlacedImage {
 struct PackedImages {
   UnsetVector<uint32_t> words;
   std::vector<PlacedImage> images;
-  /// See warn_of.
+  /// The warning of warn_of(), if images were halved.
   std::optional<Problem> warning;
 };
 
 /// Packs images on all cores, with levels down to one texel if a texture uses levels. Each texel of a level is the mean
-/// over its area, for colours in linear light. `cutoffs` has the alpha cutoff for each image of a mask and 0 for all
-/// others; empty if there are no masks. Levels of masks keep the part of present texels (textures/alpha_coverage.h). An
-/// image that is halved to fit (fit_images) begins with the level of that size, whether it has further levels or not.
-/// Throws RunError as fit_images does.
+/// over its area; colours are averaged in linear light. `cutoffs` has the alpha cutoff for each image of a mask and 0
+/// for all others; empty if there are no masks. Levels of masks keep the fraction of texels that are present
+/// (textures/alpha_coverage.h). An image that is halved to fit (fit_images) begins with the level of that size, even if
+/// it has no further levels. Throws RunError as fit_images() does.
 PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
                          uint64_t most_bytes = kDefaultTextureBytes, std::span<const float> cutoffs = {});
 

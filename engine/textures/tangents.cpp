@@ -13,13 +13,13 @@
 namespace promin {
 namespace {
 
-/// The number of triangles or groups that a thread takes at a time.
+/// The number of triangles or groups that a thread processes at a time.
 constexpr size_t kChunkSize = 16384;
 constexpr uint32_t kNoGroup = kNoCorner;
-/// Corners are numbered in 32 bits.
+/// The largest number of triangles, because corners are numbered in 32 bits.
 constexpr size_t kMostTriangles = (size_t{kNoCorner} - 1) / 3;
 
-/// On which side of its tangent a triangle has its bitangent: Left is +1.
+/// The handedness of a triangle's texture coordinates: on which side of the tangent the bitangent is. kLeft is +1.
 enum class Hand : int8_t { kRight = -1, kNone = 0, kLeft = 1 };
 
 dvec3 direction_of(const dvec3& v) {
@@ -27,18 +27,18 @@ dvec3 direction_of(const dvec3& v) {
   return length > 0.0 ? v / length : dvec3(0.0);
 }
 
-/// The direction of a difference of vectors of about this length; none where that is no more than what rounding leaves.
+/// Returns the direction of a difference of vectors of about this length; 0 if the difference is only rounding.
 dvec3 direction_of_difference(const dvec3& v, double length) {
   constexpr double kRounding = 1e-12;
   return glm::length(v) > kRounding * length ? direction_of(v) : dvec3(0.0);
 }
 
-/// The direction of what of `v` is across a unit normal.
+/// Returns the direction of the component of `v` that is perpendicular to a unit normal.
 dvec3 direction_across(const dvec3& v, const dvec3& normal) {
   return direction_of_difference(v - glm::dot(v, normal) * normal, glm::length(v));
 }
 
-/// What tangents are made of, by corners.
+/// The data of corners from which tangents are computed.
 class TangentSource {
  public:
   TangentSource(const Mesh& mesh, uint32_t uv_set) : mesh_(mesh), first_(uv_set == 0 ? 0 : 2) {
@@ -65,14 +65,15 @@ class TangentSource {
     return dvec3(mesh_.positions[vertex(to)]) - dvec3(mesh_.positions[vertex(from)]);
   }
 
-  /// Whether a triangle has a point twice, or no normal.
+  /// Returns whether a triangle has two equal corners or no normal.
   bool is_degenerate(uint32_t triangle) const {
     const uvec3& c = mesh_.triangles[triangle];
     const auto& p = mesh_.positions;
     return p[c.x] == p[c.y] || p[c.y] == p[c.z] || p[c.z] == p[c.x] ||
            (mesh_.normals.empty() && flat_normals_[triangle] == vec3(0.0F));
   }
-  /// None where the coordinates have no area, and where u or v grows in no direction, as it may on a line.
+  /// Returns the handedness of a triangle. There is none if its coordinates have no area, or if u or v grows in no
+  /// direction, which is possible on a line.
   Hand hand(uint32_t triangle) const {
     const auto [d1, d2] = uv_edges(triangle);
     const double area = d1.x * d2.y - d1.y * d2.x;
@@ -80,14 +81,14 @@ class TangentSource {
     if (growth(triangle, d1.y, d2.y) == dvec3(0.0) || growth(triangle, d1.x, d2.x) == dvec3(0.0)) return Hand::kNone;
     return area > 0.0 ? Hand::kLeft : Hand::kRight;
   }
-  /// The direction in which u grows, up to its length.
+  /// Returns the direction in which u increases, up to its length.
   dvec3 tangent(uint32_t triangle, Hand hand) const {
     const auto [d1, d2] = uv_edges(triangle);
     const dvec3 along = growth(triangle, d1.y, d2.y);
     return hand == Hand::kLeft ? along : -along;
   }
 
-  /// The lowest corner that is one with each corner.
+  /// Returns for each corner the lowest corner that is welded to it.
   std::vector<uint32_t> weld_corners() const {
     if (mesh_.normals.empty()) {
       return weld(corner_count(), [&](uint32_t i) { return key_of(vertex(i), flat_normals_[i / 3]); });
@@ -107,15 +108,15 @@ class TangentSource {
  private:
   dvec2 uv(uint32_t corner) const {
     const vec4& uvs = mesh_.uvs[vertex(corner)];
-    // v grows upwards here.
+    // v increases upwards here.
     return {static_cast<double>(uvs[first_]), -static_cast<double>(uvs[first_ + 1])};
   }
   std::pair<dvec2, dvec2> uv_edges(uint32_t triangle) const {
     const dvec2 a = uv(3 * triangle);
     return {uv(3 * triangle + 1) - a, uv(3 * triangle + 2) - a};
   }
-  /// The direction in which one coordinate grows, up to length and sign, by how the other changes along the edges to
-  /// the next and to the last corner.
+  /// Returns the direction in which one coordinate increases, up to length and sign. The arguments are the changes of
+  /// the other coordinate along the edges to the next and to the last corner.
   dvec3 growth(uint32_t triangle, double to_next, double to_last) const {
     return to_last * edge(3 * triangle, 3 * triangle + 1) - to_next * edge(3 * triangle, 3 * triangle + 2);
   }
@@ -126,13 +127,13 @@ class TangentSource {
   }
 
   const Mesh& mesh_;
-  /// The first component of the set among those of both.
+  /// Index of the set's first component among the components of both sets.
   int first_;
-  /// Of triangles; empty where the mesh has normals.
+  /// Normals of triangles; empty if the mesh has normals.
   std::vector<vec3> flat_normals_;
 };
 
-/// Corners that share a tangent.
+/// Groups of corners that share a tangent.
 class Groups {
  public:
   explicit Groups(const TangentSource& source) : of_corner(source.corner_count(), kNoGroup) {
@@ -140,7 +141,7 @@ class Groups {
     find_hands(source);
     if (std::ranges::all_of(hands_, [](Hand hand) { return hand == Hand::kNone; })) return;
     find_neighbors(welded, source);
-    // What a group gives a hand begins none.
+    // Only triangles with a handedness of their own begin groups, not triangles that a group gives one.
     const std::vector<Hand> own_hands = hands_;
     for (uint32_t corner = 0; corner < of_corner.size(); ++corner) {
       if (own_hands[corner / 3] != Hand::kNone && of_corner[corner] == kNoGroup) grow(corner);
@@ -151,7 +152,7 @@ class Groups {
 
   /// The group of each corner.
   std::vector<uint32_t> of_corner;
-  /// Of each group.
+  /// The handedness of each group.
   std::vector<Hand> hands;
 
  private:
@@ -168,7 +169,8 @@ class Groups {
     neighbors_ = find_edge_neighbors(vertices, static_cast<uint32_t>(vertices.size()));
   }
 
-  /// Makes a group of the corner and of those around its vertex, on both sides until one is of another hand or group.
+  /// Makes a group of the corner and of the corners around its vertex. It continues on both sides until a triangle has
+  /// another handedness or group.
   void grow(uint32_t corner) {
     hands.push_back(hands_[corner / 3]);
     of_corner[corner] = static_cast<uint32_t>(hands.size() - 1);
@@ -184,7 +186,7 @@ class Groups {
     }
   }
 
-  /// Puts a corner into the last group. A triangle without a hand takes that of the first group that comes to it.
+  /// Adds a corner to the last group. A triangle without a handedness takes that of the first group that reaches it.
   bool join(uint32_t corner) {
     Hand& hand = hands_[corner / 3];
     if (of_corner[corner] != kNoGroup || (hand != Hand::kNone && hand != hands.back())) return false;
@@ -193,8 +195,8 @@ class Groups {
     return true;
   }
 
-  /// Corners that no group came to take the first at their vertex, where it has the hand of the triangle or the
-  /// triangle is degenerate; else they are a group without a tangent.
+  /// Adds the corners that no group has reached to the first group at their vertex, if it has the handedness of their
+  /// triangle or the triangle is degenerate. Otherwise they form a group without a tangent.
   void inherit(const std::vector<uint32_t>& welded, const TangentSource& source) {
     std::vector<uint32_t> first(welded.size(), kNoGroup);
     for (uint32_t corner = 0; corner < welded.size(); ++corner) {
@@ -217,12 +219,12 @@ class Groups {
     }
   }
 
-  /// Of each triangle.
+  /// The handedness of each triangle.
   std::vector<Hand> hands_;
   std::vector<uint32_t> neighbors_;
 };
 
-/// The corners of each group, in ascending order.
+/// The corners of each group in ascending order.
 struct SortedCorners {
   explicit SortedCorners(const Groups& groups) : begins(groups.hands.size() + 1, 0), corners(groups.of_corner.size()) {
     for (const uint32_t group : groups.of_corner) ++begins[group + 1];
@@ -238,7 +240,7 @@ struct SortedCorners {
   std::vector<uint32_t> corners;
 };
 
-/// What a corner adds to the tangent of its group.
+/// Returns the contribution of a corner to the tangent of its group.
 dvec3 weighted_tangent(const TangentSource& source, uint32_t corner) {
   const uint32_t triangle = corner / 3;
   const Hand hand = source.is_degenerate(triangle) ? Hand::kNone : source.hand(triangle);
@@ -278,7 +280,8 @@ uint32_t copy_vertex(Mesh& mesh, uint32_t vertex) {
   return static_cast<uint32_t>(mesh.positions.size() - 1);
 }
 
-/// Gives vertices the tangents of their corners' groups. The first group at a vertex keeps it.
+/// Gives vertices the tangents of their corners' groups. The first group at a vertex keeps the vertex, and other groups
+/// get copies.
 void spread(const std::vector<vec4>& tangents, const SortedCorners& sorted, Mesh& mesh) {
   const size_t old_count = mesh.positions.size();
   std::vector<uint32_t> last_group(old_count, kNoGroup);

@@ -15,8 +15,8 @@ namespace promin {
 /// The attributes that distinguish vertices for tangents: position, normal and a pair of texture coordinates.
 using VertexKey = std::array<float, 8>;
 
-/// Returns for each i below `count` the lowest j whose key_of(j) equals key_of(i); 0 and -0 are equal. Takes linear
-/// time.
+/// Returns for each i below `count` the lowest j whose key_of(j) equals key_of(i). The numbers 0 and -0 are equal. It
+/// takes linear time.
 template <typename KeyOf>
 std::vector<uint32_t> weld(uint32_t count, const KeyOf& key_of) {
   constexpr uint32_t kEmpty = std::numeric_limits<uint32_t>::max();

@@ -8,7 +8,7 @@
 
 namespace promin {
 
-/// How a camera maps the scene to its picture.
+/// The projection of the scene to a picture.
 enum class Projection {
   /// Rays start at the eye.
   kPerspective,
@@ -22,7 +22,7 @@ enum class Projection {
 struct Camera {
   /// A name for people; empty if there is none.
   std::string name;
-  /// Perspective by default.
+  /// The projection; perspective by default.
   Projection projection = Projection::kPerspective;
   /// Position in the world.
   vec3 eye{0.0F};
@@ -30,15 +30,17 @@ struct Camera {
   vec3 look{0.0F, 0.0F, -1.0F};
   /// Unit vector towards the top of the picture.
   vec3 up{0.0F, 1.0F, 0.0F};
-  /// Vertical field of view of a perspective camera, radians in (0, pi).
+  /// Vertical field of view of a perspective camera, in radians, in (0, pi).
   float yfov = 0.7F;
   /// Half the height of an orthographic camera's view, in world units, > 0.
   float ymag = 1.0F;
-  /// Width over height that the scene file requests; 0 if it requests none. Pictures have the ratio of View::size.
+  /// Ratio of width to height that the scene file requests; 0 if the file requests no ratio. Pictures have the ratio of
+  /// View::size.
   float aspect_ratio = 0.0F;
-  /// The picture size in pixels that the scene file requests; 0 if it requests none. Pictures have View::size.
+  /// The picture size in pixels that the scene file requests; 0 if the file requests no size. Pictures have the size
+  /// View::size.
   uvec2 resolution{0};
-  /// Distance of the near plane in world units, >= 0. Nothing nearer is drawn.
+  /// Distance of the near plane in world units, >= 0. Nothing nearer than this plane is drawn.
   float near = 0.0F;
 };
 

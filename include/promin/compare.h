@@ -19,53 +19,54 @@ enum class PictureEncoding {
   kSrgb,
 };
 
-/// Returns the encoding that a file's ending implies: linear for .exr, .hdr and .pfm, sRGB for all others.
+/// Returns the encoding that a file name's extension implies: linear for .exr, .hdr and .pfm, sRGB for all others.
 PROMIN_EXPORT PictureEncoding encoding_of(const std::filesystem::path& file);
 
-/// Pixels per degree of the observer's field of view. This is the value of FLIP's paper: a screen of 3840 pixels, 0.7 m
-/// wide and 0.7 m away.
+/// Default number of pixels per degree of the observer's field of view. The FLIP paper uses this value: a screen that
+/// is 3840 pixels and 0.7 m wide, seen from 0.7 m away.
 inline constexpr double kPixelsPerDegree = 67.02064327658226;
 
-/// Options of compare_pictures.
+/// Options of compare_pictures().
 struct CompareChoice {
   /// Encoding of both pictures. Only FLIP depends on it.
   PictureEncoding encoding = PictureEncoding::kLinear;
-  /// A pixel counts in `different_count` if one of its channels differs by more than this. Not negative.
+  /// Threshold for `different_count`: a pixel counts if one of its channels differs by more than this. Not negative.
   double fail = 0.0;
-  /// See kPixelsPerDegree; positive.
+  /// Pixels per degree of the observer's field of view, for FLIP; positive.
   double pixels_per_degree = kPixelsPerDegree;
 };
 
-/// How much two pictures differ, in the units of their values.
+/// The difference of two pictures, in the units of their values.
 struct PictureDifference {
   /// Number of pixels of each picture.
   uint64_t pixel_count = 0;
   /// Mean absolute difference over all channels of all pixels that are finite in both pictures.
   double mean = 0.0;
-  /// Root mean square of the same differences.
+  /// Root mean square difference over the same channels.
   double rmse = 0.0;
   /// Peak signal-to-noise ratio in decibels for a peak of 1: -20 log10(rmse). Infinite if the pictures are equal.
   double psnr_db = 0.0;
   /// The largest absolute difference of a channel. Infinite if a value is finite in only one of the pictures, or if two
   /// values that are not finite differ.
   double largest = 0.0;
-  /// The pixel with the largest difference; of several the first in row order.
+  /// The pixel with the largest difference. If several pixels have this difference, it is the first in row order.
   uvec2 largest_at{0};
   /// Number of pixels with a channel that differs by more than CompareChoice::fail.
   uint64_t different_count = 0;
-  /// Number of pixels with a NaN or an infinity in either picture. Two equal values of this kind do not differ.
+  /// Number of pixels with a NaN or an infinity in either picture. Two equal values of this kind count as no
+  /// difference.
   uint64_t non_finite_count = 0;
-  /// The mean of FLIP, 0...1, which estimates the difference that a viewer sees when flipping between the pictures:
-  /// LDR-FLIP of Andersson et al., "FLIP: A Difference Evaluator for Alternating Images" (HPG 2020). Linear light is
-  /// clamped to [0, 1] and encoded first.
+  /// The mean of `flip_map`, 0...1. FLIP estimates the difference that a viewer sees who alternates between the
+  /// pictures: LDR-FLIP of Andersson et al., "FLIP: A Difference Evaluator for Alternating Images" (HPG 2020). Linear
+  /// light is first clamped to [0, 1] and encoded as sRGB.
   double flip = 0.0;
   /// FLIP of each pixel, 0...1, in row order.
   std::vector<float> flip_map;
 };
 
 /// Compares two pictures. FLIP uses the first as the reference, but is symmetric up to rounding. Any thread may call
-/// this function. It uses all cores, and its result has the same bits for any number of cores. Throws InputError if the
-/// sizes differ or there are no pixels.
+/// this function. It uses all cores, and the result has the same bits for every number of cores. Throws InputError if
+/// the sizes differ or there are no pixels.
 PROMIN_EXPORT PictureDifference compare_pictures(const Image& reference, const Image& test,
                                                  const CompareChoice& choice = {});
 

@@ -10,8 +10,8 @@
 
 namespace promin {
 
-/// A property of camera rays that a picture shows in place of light. debug_view_names() has the names, docs/shadings.md
-/// describes each view.
+/// A property of camera rays that a picture shows in place of light. debug_view_names() returns the names;
+/// docs/shadings.md describes each view.
 enum class DebugView : uint32_t {
   /// No debug view: the picture shows light.
   kNone = 0,
@@ -21,7 +21,7 @@ enum class DebugView : uint32_t {
   /// @endcond
 };
 
-/// Returns display names, indexed by DebugView; the first is "full".
+/// Returns the names to display, indexed by DebugView. The first name is "full".
 PROMIN_EXPORT std::span<const std::string_view> debug_view_names();
 
 }  // namespace promin

@@ -12,32 +12,33 @@
 
 namespace promin {
 
-/// The caller's setting that a problem concerns. Programs use it to name their own option for that setting.
+/// The setting of the caller that a problem concerns. A program can name its own option for this setting in its
+/// message.
 enum class Setting {
   /// No setting.
   kNone,
-  /// View::max_depth.
+  /// The setting View::max_depth.
   kDepth,
-  /// The selection of gpu::open_device.
+  /// The setting `selection` of gpu::open_device.
   kDevice,
-  /// The builder of RendererOptions and CasterOptions.
+  /// The setting `builder` of RendererOptions and CasterOptions.
   kBuilder,
-  /// RendererOptions::texture_bytes.
+  /// The setting RendererOptions::texture_bytes.
   kTextureMemory,
 };
 
 /// The name of a kind of problem, for programs and tests: two to four words of lower-case letters, joined by dots, such
-/// as "job.piece.cut". Codes are stable; sentences are not. A code that has another form does not compile.
+/// as "job.piece.cut". Codes do not change between versions; sentences may. A code of another form does not compile.
 class ProblemCode {
  public:
   template <size_t kSize>
   consteval ProblemCode(const char (&code)[kSize])  // NOLINT(google-explicit-constructor)
       : text_(code, kSize - 1) {
     if (!is_code(text_)) throw "a code is two to four words of lower-case letters, joined by dots";
-  }  ///< Takes a literal.
+  }  ///< Creates a code from a string literal.
 
-  constexpr std::string_view text() const { return text_; }  ///< Returns the words with their dots.
-  /// Compares the words.
+  constexpr std::string_view text() const { return text_; }  ///< Returns the code's words, joined by dots.
+  /// Returns whether both codes have the same words.
   friend constexpr bool operator==(const ProblemCode& a, const ProblemCode& b) { return a.text_ == b.text_; }
 
  private:
@@ -55,16 +56,16 @@ class ProblemCode {
   std::string_view text_;
 };
 
-/// Describes one problem in words for people.
+/// Describes one problem for people.
 struct PROMIN_EXPORT Problem {
   /// The kind of the problem.
   ProblemCode code;
-  /// What is wrong: a sentence without its end.
+  /// The problem, as a sentence without its final full stop.
   std::string what;
-  /// Where: a file, and after ": " the place in it, such as a JSON path or a line; or a member of a Scene. May be
-  /// empty.
+  /// Where the problem is: a file, then ": " and a place in the file, such as a JSON path or a line; or a member of a
+  /// Scene. May be empty.
   std::string where;
-  /// What to do about it. May be empty.
+  /// The way for the user to solve the problem. It may be empty.
   std::string cure;
   /// The setting that `where` or `cure` refers to.
   Setting setting = Setting::kNone;
@@ -74,17 +75,17 @@ struct PROMIN_EXPORT Problem {
   std::string sentence() const;
 };
 
-/// Base class of promin's exceptions; promin also throws std::bad_alloc. what() is the sentence of the first problem
-/// and, if there are several, their number; the other sentences follow, each on an indented line. Any thread may throw
-/// and catch it, also across the boundary of a shared library.
+/// Base class of promin's exceptions; promin also throws std::bad_alloc. what() returns the sentence of the first
+/// problem. If there are several problems, it adds their number and the other sentences, each on an indented line. Any
+/// thread may throw and catch it, also across the boundary of a shared library.
 class PROMIN_EXPORT Error : public std::runtime_error {
  public:
-  /// A failure for one reason.
+  /// Creates an error with one problem.
   explicit Error(const Problem& problem) : Error(std::vector<Problem>{problem}) {}
-  /// A failure for several reasons.
+  /// Creates an error with several problems.
   explicit Error(const std::vector<Problem>& problems);
 
-  /// The reasons, at least one.
+  /// Returns the problems; there is at least one.
   const std::vector<Problem>& problems() const { return problems_; }
 
  private:
@@ -96,7 +97,8 @@ struct PROMIN_EXPORT UsageError : Error {
   using Error::Error;
 };
 
-/// A scene, ray or BVH file or a picture to read is bad, or a scene in memory; the programs exit with code 3.
+/// A scene file, ray file, BVH file or input picture is invalid, or a scene in memory is; the programs exit with code
+/// 3.
 struct PROMIN_EXPORT InputError : Error {
   using Error::Error;
 };
@@ -113,7 +115,7 @@ struct PROMIN_EXPORT DifferenceError : Error {
 
 /// A ProgressCallback returned false (promin/progress.h). The object that did the work stays usable.
 struct PROMIN_EXPORT Cancelled : Error {
-  /// Its only problem is the word "cancelled".
+  /// Creates an error whose only problem is the word "cancelled".
   Cancelled() : Error(Problem{"work.cancelled", "cancelled", "", ""}) {}
 };
 

@@ -2,6 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Marks the symbols that promin's shared libraries export; all others are hidden. Exceptions are marked because a
-/// program can catch them only if it shares the type's symbol with the library.
+/// Marks a symbol that promin's shared libraries export; all other symbols are hidden. Exception classes are marked
+/// because a program can catch an exception only if it shares the symbol of its type with the library.
 #define PROMIN_EXPORT __attribute__((visibility("default")))

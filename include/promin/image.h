@@ -26,19 +26,19 @@ struct Image {
 
   /// Returns a pixel; x counts from the left, y from the top. The coordinates are not checked.
   const vec3& at(uint32_t x, uint32_t y) const { return pixels[static_cast<size_t>(y) * size.x + x]; }
-  /// The same for writing.
+  /// Returns a pixel for writing. The coordinates are not checked.
   vec3& at(uint32_t x, uint32_t y) { return pixels[static_cast<size_t>(y) * size.x + x]; }
 };
 
-/// A channel of a picture in addition to R, G and B, with a value for each pixel.
+/// A channel of a picture in addition to R, G and B. It has one value for each pixel.
 struct Channel {
-  /// Its name in an EXR, e.g. "Z" or "N.X".
+  /// The channel's name in an EXR, e.g. "Z" or "N.X".
   std::string name;
-  /// Whether the values are 32-bit integers and not floats.
+  /// True if the values are 32-bit integers and not floats.
   bool is_integer = false;
   /// The integers, or the bits of the floats; one for each pixel.
   std::vector<uint32_t> values;
-  /// Whether the channel is only used to display the picture, so that an EXR leaves it out.
+  /// True if only the display of the picture uses the channel. An EXR does not store such a channel.
   bool is_hidden = false;
 };
 
@@ -47,60 +47,63 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// The position of a crop in the whole picture.
 struct CropPlacement {
-  /// The crop's upper left pixel in the whole picture.
+  /// The crop's upper left pixel in the coordinates of the whole picture.
   uvec2 lo{0};
   /// Width and height of the whole picture.
   uvec2 full_size{0};
 };
 
-/// Returns whether write_image supports the file's ending: .exr, .png, .jpg, .jpeg, .webp, .tif, .tiff or .hdr.
+/// Returns whether write_image() supports the file name's extension: .exr, .png, .jpg, .jpeg, .webp, .tif, .tiff or
+/// .hdr.
 PROMIN_EXPORT bool is_writable_format(const std::filesystem::path& file);
 
-/// Returns whether a file with this ending can store channels in addition to R, G and B: .exr.
+/// Returns whether files with this extension can store channels in addition to R, G and B. Only .exr can.
 PROMIN_EXPORT bool has_named_channels(const std::filesystem::path& file);
 
 /// The compression of an EXR, always lossless. kZip compresses blocks of 16 rows, kPiz blocks of 32, kRle and kZips
-/// single rows. kZip acts as kZips if 16 rows have more than 8 MiB.
+/// single rows. If 16 rows have more than 8 MiB, kZip acts like kZips.
 enum class ExrCompression : uint32_t { kNone, kRle, kZips, kZip, kPiz };
 
-/// Returns display names, indexed by ExrCompression.
+/// Returns the names to display, indexed by ExrCompression.
 PROMIN_EXPORT std::span<const std::string_view> exr_compression_names();
 
 /// Options for writing an EXR.
 struct ExrOptions {
-  /// Whether colours, normals and coverage are stored as 16-bit floats, with a relative error of at most 2^-11 and a
-  /// largest value of 65504. Distances, positions, errors and ids are not affected.
+  /// True if an EXR stores colours, normals and coverage as 16-bit floats, with a relative error of at most 2^-11 and a
+  /// largest value of 65504. Distances, positions, errors and ids keep 32 bits.
   bool is_half = false;
-  /// See ExrCompression.
+  /// The compression of the pixels.
   ExrCompression compression = ExrCompression::kZip;
 };
 
-/// Writes a picture; the ending determines the format. An .exr stores R, G and B as linear fp32, then `channels`, with
-/// `metadata`; a crop is the data window inside the display window of the whole picture. A .png stores 8-bit sRGB,
-/// clamped, after the transform `display`. Of `channels` it uses only "A", by which the pixels are premultiplied, and
-/// those of Aovs::unlit, which are displayed unchanged. A crop becomes a picture of its own; `metadata` only provides
-/// the name of the scene. A .jpg or .jpeg is the same without "A" (libjpeg-turbo, quality 92, 4:4:4). A .webp (libwebp,
-/// quality 92), .tif or .tiff is the same with "A". A .hdr stores linear R, G and B. The plugin for pictures writes the
-/// last three formats. Equal arguments give equal bytes. The write is atomic: the picture is written to a temporary
-/// file beside the target, which is then renamed. After a failure the target is unchanged. Any thread may call this
-/// function. Throws UsageError for another ending, for a picture without pixels, and if the pixels, a channel's values
-/// or the crop do not match the size; throws RunError if the file cannot be written.
+/// Writes a picture; the file name's extension determines the format. An .exr stores R, G and B as linear fp32, then
+/// `channels`, and `metadata` in its header. In an .exr, a crop is the data window inside the display window of the
+/// whole picture. A .png stores 8-bit sRGB, clamped, after the transform `display`. A .png uses two kinds of
+/// `channels`: "A", the alpha by which the pixels are premultiplied, and the channels of Aovs::unlit, whose colours it
+/// does not change. It stores a crop as a picture of the crop's size, and takes only the name of the scene from
+/// `metadata`. A .jpg or .jpeg stores the same values without "A" (libjpeg-turbo, quality 92, 4:4:4). A .webp (libwebp,
+/// quality 92), .tif or .tiff stores the same values with "A". A .hdr stores linear R, G and B. The plugin for pictures
+/// writes the last three formats. Equal arguments give equal bytes. The write is atomic: the picture is written to a
+/// temporary file beside the target, which is then renamed. After a failure the target is unchanged. Any thread may
+/// call this function. Throws UsageError for another extension, for a picture without pixels, and if the pixels, a
+/// channel's values or the crop do not match the size; throws RunError if the file cannot be written.
 PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                                const std::optional<CropPlacement>& crop = std::nullopt,
                                std::span<const Channel> channels = {}, const DisplayTransform& display = {},
                                const ExrOptions& exr = {});
 
-/// The largest number of pixels that read_image accepts. It refuses larger pictures before it reads their pixels.
+/// The largest number of pixels that read_image() accepts. The function refuses a larger picture before it reads the
+/// pixels.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
-/// Reads a picture of any format that OpenImageIO supports: R, G and B, or a luminance for all three, as fp32 without
-/// conversion. It reads the data window of an EXR. Colours of WebP and EXR files are multiplied by alpha, others are
-/// not. Any thread may call this function. Throws InputError if the file is not such a picture, and RunError if the
-/// plugin that reads pictures, libpromin_pictures.so, is missing.
+/// Reads a picture of any format that OpenImageIO supports: The result holds R, G and B, or a luminance three times, as
+/// fp32 without conversion. The function reads the data window of an EXR. It multiplies the colours of WebP and EXR
+/// files by alpha, but not those of other formats. Any thread may call this function. Throws InputError if the file is
+/// not such a picture, and RunError if the plugin that reads pictures, libpromin_pictures.so, is missing.
 PROMIN_EXPORT Image read_image(const std::filesystem::path& file);
 
-/// Returns linear light encoded by the sRGB transfer curve (IEC 61966-2-1), computed in double on the host. Clamps to
-/// [0, 1]; NaN becomes 0.
+/// Returns linear light encoded with the sRGB transfer curve (IEC 61966-2-1), computed in double on the host. The
+/// result is clamped to [0, 1]; NaN becomes 0.
 PROMIN_EXPORT float encode_srgb(float linear);
 
 }  // namespace promin

@@ -20,45 +20,46 @@ enum class LightKind : uint32_t {
   /// @endcond
 };
 
-/// How a light's power decreases with the distance d to the lit point.
+/// The decrease of a light's power with the distance d to the lit point.
 enum class Attenuation {
-  /// It does not decrease: classic lights.
+  /// The power does not decrease, as in classic lights.
   kNone,
-  /// By the factor clamp(1 - (d / range)^4, 0, 1) / d^2: physical lights.
+  /// The power decreases by the factor clamp(1 - (d / range)^4, 0, 1) / d^2, as in physical lights.
   kInverseSquare,
 };
 
-/// A light with separate diffuse and specular power. The default is a classic point light of power 1 at the origin.
+/// A light with a diffuse and a specular power. The default is a classic point light of power 1 at the origin.
 /// validate() (promin/validate.h) checks the ranges below.
 struct Light {
   /// A name for people; empty if there is none.
   std::string name;
-  /// Determines which of the members below are used.
+  /// The kind, which determines which of the members below are used.
   LightKind kind = LightKind::kPoint;
   /// Position of point and spot lights in the world.
   vec3 position{0.0F};
-  /// Unit vector in which the light of directional and spot lights travels.
+  /// Unit vector: the direction in which the light of directional and spot lights travels.
   vec3 direction{0.0F, 0.0F, -1.0F};
-  /// Power in the diffuse term, linear RGB, finite and not negative; in candela for lights with attenuation.
+  /// Power for the diffuse term, linear RGB, finite and not negative; in candela for lights with attenuation.
   vec3 diffuse{1.0F};
-  /// The same for the specular term.
+  /// Power for the specular term, in the same units.
   vec3 specular{1.0F};
   /// Attenuation of point and spot lights; none by default.
   Attenuation attenuation = Attenuation::kNone;
   /// Distance beyond which a light with attenuation contributes nothing, in world units, > 0; infinite for no limit.
   float range = std::numeric_limits<float>::infinity();
-  /// Half the angle of the cone in which a spot has its full power, in radians, >= 0. Between this and the outer cone
-  /// the power decreases as in KHR_lights_punctual. If the cosines of the angles differ by less than 1e-5 (an outer
-  /// angle below 0.0045 with inner 0), the spot is darker, because fp32 cannot resolve positions in so narrow a cone.
+  /// Half the angle of the cone in which a spot light has its full power, in radians, >= 0. Between this cone and the
+  /// outer cone the power decreases as in KHR_lights_punctual. If the cosines of the angles differ by less than 1e-5
+  /// (an outer angle below 0.0045 with inner 0), the spot is darker, because fp32 cannot resolve positions in so narrow
+  /// a cone.
   float inner_cone_angle = 0.0F;
-  /// Half the angle of the cone outside of which a spot contributes nothing, in radians, inner_cone_angle <
+  /// Half the angle of the cone outside which a spot light contributes nothing, in radians, inner_cone_angle <
   /// outer_cone_angle <= pi / 2.
   float outer_cone_angle = 0.785398163F;
-  /// A light that is off keeps its index, costs nothing and contributes nothing.
+  /// True if the light is on. A light that is off keeps its index, costs nothing and contributes nothing.
   bool is_on = true;
 };
 
-/// Returns the light for scenes without lights: a headlight of power 1 in both terms.
+/// Returns the light for scenes without lights: a headlight with a diffuse and a specular power of 1.
 PROMIN_EXPORT Light make_headlight();
 
 }  // namespace promin

@@ -6,9 +6,9 @@
 
 namespace promin {
 
-/// Receives from time to time the fraction of the work that is done, 0...1. It is called by one thread at a time, which
-/// need not be the caller's. If it returns false, the work ends before its next dispatch and the call throws Cancelled
-/// (promin/error.h); the object that did the work stays usable. An empty callback is not called.
+/// Receives from time to time the fraction of the work that is done, 0...1. One thread at a time calls it, not
+/// necessarily the caller's thread. If it returns false, the work ends before its next dispatch and the call throws
+/// Cancelled (promin/error.h); the object that did the work stays usable. promin does not call an empty callback.
 using ProgressCallback = std::function<bool(double)>;
 
 }  // namespace promin

@@ -6,20 +6,20 @@
 
 namespace promin {
 
-/// Numbers of rays that a picture took.
+/// Numbers of rays that promin traced for a picture.
 struct RayCounts {
-  /// Camera rays.
+  /// Number of camera rays.
   uint64_t primary = 0;
-  /// Rays to lights.
+  /// Number of shadow rays, which go to lights.
   uint64_t shadow = 0;
-  /// Mirror rays.
+  /// Number of mirror rays.
   uint64_t reflection = 0;
-  /// Rays refracted at the faces of glass.
+  /// Number of rays refracted at the faces of glass.
   uint64_t refraction = 0;
-  /// How often any of these rays continued behind a surface that blends (AlphaMode::kBlend), or as shadow rays through
-  /// glass.
+  /// Number of times that any of these rays continued behind a surface that blends (AlphaMode::kBlend), or that a
+  /// shadow ray continued through glass.
   uint64_t passed = 0;
-  /// Camera rays that hit something.
+  /// Number of camera rays that hit something.
   uint64_t primary_hits = 0;
   /// Returns the number of all rays. A ray counts once even if it continues behind surfaces.
   uint64_t total() const { return primary + shadow + reflection + refraction; }

@@ -28,23 +28,23 @@ struct Object {
 
   /// A name for people; empty if there is none.
   std::string name;
-  /// Index into Scene::geometries; several objects may share a geometry. kNoGeometry draws nothing and only reserves
-  /// the object's index (for points, lines or hidden objects).
+  /// Index into Scene::geometries; several objects may share a geometry. An object with kNoGeometry is not drawn and
+  /// only keeps its index (for points, lines or hidden objects).
   uint32_t geometry = kNoGeometry;
   /// Index into Scene::materials.
   uint32_t material = 0;
-  /// Affine and not singular; the identity by default. It must not distort an analytic shape (see promin/shapes.h); a
-  /// mesh allows any such matrix.
+  /// The transform from object space to the world, affine and not singular; the identity by default. It must not
+  /// distort an analytic shape (see promin/shapes.h). A mesh may have any such transform.
   dmat4 world_from_object{1.0};
 };
 
 /// A format extension that a scene's file uses.
 struct FileExtension {
-  /// Its name, e.g. "KHR_materials_ior".
+  /// The extension's name, e.g. "KHR_materials_ior".
   std::string name;
-  /// Whether promin applies the extension or ignores it.
+  /// True if promin applies the extension, false if it ignores the extension.
   bool is_used = true;
-  /// Whether the file declares it as required.
+  /// True if the file declares the extension as required.
   bool is_required = false;
 };
 
@@ -53,66 +53,67 @@ struct FileExtension {
 /// it: later changes take effect through Renderer::set_lights and similar functions, or in a new Renderer. load_scene
 /// returns a valid scene; validate() checks any other. Several threads may read a Scene while none changes it.
 struct Scene {
-  /// The file that it was read from; empty for a scene made in memory.
+  /// The file that the scene was read from; empty for a scene made in memory.
   std::filesystem::path file;
-  /// The world coordinates of the scene's origin. Positions in the scene are world positions minus this, subtracted in
-  /// double. load_scene sets it for scenes so far from the world's origin that fp32 is too coarse; else it is 0. Only
-  /// the programs and the Python module add it back.
+  /// The world coordinates of the scene's origin. A position in the scene is the position in the world minus `center`,
+  /// subtracted in double. load_scene() sets `center` for scenes so far from the world's origin that fp32 is too
+  /// coarse; otherwise it is 0. Only the programs and the Python module add it again to their results.
   dvec3 center{0.0};
   /// The geometries of the objects, each stored once.
   std::vector<Geometry> geometries;
-  /// The objects in the order by which hits and AOVs number them.
+  /// The objects. Hits and AOVs number objects in this order.
   std::vector<Object> objects;
-  /// The materials; not empty if there are objects with a geometry.
+  /// The materials. There is at least one if an object has a geometry.
   std::vector<Material> materials;
-  /// The images of textures. Not null; shared, because images are large.
+  /// The images of textures, never null. Scenes share them, because images are large.
   std::vector<std::shared_ptr<const TextureImage>> images;
   /// The textures that materials refer to.
   std::vector<Texture> textures;
-  /// Any number of lights, including 0: see light_scene (promin/lighting.h) and add_default_lights.
+  /// The lights. May be empty: light_scene (promin/lighting.h) and add_default_lights add lights.
   std::vector<Light> lights;
   /// The cameras in depth-first order of their nodes. Empty if the file has none: see frame_scene (promin/framing.h).
   std::vector<Camera> cameras;
-  /// Ambient light and background.
+  /// The surroundings of the scene: ambient light, background, sky and backdrop.
   Environment environment;
-  /// Whether the scene was made for classic light: an NFF file, or a glTF file whose materials are all declared as
-  /// Phong materials (PROMIN_materials_phong). If it has no lights, such a scene gets a headlight and any other a
-  /// studio.
+  /// True if the scene was made for classic light: an NFF file, or a glTF file whose materials are all declared as
+  /// Phong materials (PROMIN_materials_phong). If a scene has no lights, light_scene() adds a headlight to a classic
+  /// scene and a studio to any other scene.
   bool is_classic = false;
   /// Names of the file's material variants (LoadOptions::material_variant).
   std::vector<std::string> variants;
-  /// The extensions of the file in its order; empty for formats without extensions.
+  /// The extensions that the file uses, in the file's order; empty for formats without extensions.
   std::vector<FileExtension> extensions;
-  /// Features of the file that the renderer does not model, and the assumptions made instead; one sentence each.
+  /// Features of the file that promin does not model, and the assumptions that it made instead. Each warning is one
+  /// sentence.
   std::vector<std::string> warnings;
 
-  /// Adds a geometry and an object that uses it, with the material of this index. Returns the object; the reference is
-  /// valid until objects are added or removed.
+  /// Adds a geometry and an object that has this geometry and the material with this index. Returns the object; the
+  /// reference is valid until objects are added or removed.
   PROMIN_EXPORT Object& add(std::string name, Geometry geometry, uint32_t material = 0,
                             const dmat4& world_from_object = dmat4(1.0));
 };
 
-/// Returns the bounds in the world of everything finite; empty if there is nothing finite. Throws InputError if an
-/// object refers to a geometry, or a triangle to a position, that does not exist.
+/// Returns the bounds of all finite geometry in the world; empty if there is no finite geometry. Throws InputError if
+/// an object refers to a geometry that does not exist, or a triangle to a position that does not exist.
 PROMIN_EXPORT Bounds bounds_of(const Scene& scene);
 
-/// Returns the number of an object's primitives: that of its geometry, or 0 without one. Throws InputError if the
-/// object refers to a geometry that does not exist.
+/// Returns the number of primitives of an object's geometry; 0 for an object without a geometry. Throws InputError if
+/// the object refers to a geometry that does not exist.
 PROMIN_EXPORT uint32_t primitive_count(const Scene& scene, const Object& object);
 
-/// Returns the number of bounces that suits a scene (View::max_depth); it is larger for scenes with glass.
+/// Returns the default of View::max_depth for a scene: the number of bounces, which is larger for scenes with glass.
 PROMIN_EXPORT uint32_t default_max_depth(const Scene& scene);
 
-/// The lights that add_default_lights has added.
+/// The lights that add_default_lights() has added.
 struct AddedLights {
-  /// Whether a headlight was added.
+  /// True if a headlight was added.
   bool has_headlight = false;
-  /// Whether ambient light was added.
+  /// True if ambient light was added.
   bool has_ambient = false;
 };
 
-/// Adds to a scene without lights a headlight (make_headlight), which follows the camera of each view, and ambient
-/// light of kDefaultAmbient if it has none. A scene with lights or a sky does not change.
+/// Adds a headlight (make_headlight) to a scene without lights, and ambient light of kDefaultAmbient if it has none.
+/// The headlight follows the camera of each view. The function does not change a scene with lights or a sky.
 PROMIN_EXPORT AddedLights add_default_lights(Scene& scene);
 /// Each component of the ambient light that add_default_lights adds.
 inline constexpr float kDefaultAmbient = 0.1F;

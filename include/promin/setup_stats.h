@@ -13,12 +13,12 @@
 
 namespace promin {
 
-/// Returns the names of the builders of bounding volume hierarchies, the default first.
+/// Returns the names of the builders of bounding volume hierarchies. The first name is the default.
 PROMIN_EXPORT std::span<const std::string_view> builder_names();
 
 /// Statistics of a bounding volume hierarchy.
 struct BvhStats {
-  /// The builder, one of builder_names().
+  /// The name of the builder, one of builder_names().
   std::string builder;
   /// Number of nodes of the binary tree, including leaves.
   uint64_t nodes = 0;
@@ -31,39 +31,40 @@ struct BvhStats {
   /// Expected cost of a random ray that hits the root, by the surface area heuristic (Goldsmith & Salmon 1987): a
   /// weighted sum of the inner nodes that it visits and the primitives that it tests.
   double sah_cost = 0.0;
-  /// Its size in bytes on the device; 0 before it is uploaded.
+  /// Size of the tree on the device in bytes; 0 before the tree is uploaded.
   uint64_t bytes = 0;
 };
 
 /// Cost and results of setting up a scene on a device.
 struct SetupStats {
-  /// Milliseconds of building the tree, or of reading and checking its file.
+  /// Time for building the tree, or for reading and checking its file, in milliseconds.
   double bvh_ms = 0.0;
-  /// Milliseconds of copying the scene to the device.
+  /// Time for copying the scene to the device, in milliseconds.
   double upload_ms = 0.0;
-  /// Milliseconds of creating pipelines and of their first dispatches, with which drivers compile.
+  /// Time for creating pipelines and for their first dispatches, in milliseconds. Drivers compile during the first
+  /// dispatch.
   double pipeline_ms = 0.0;
-  /// The tree.
+  /// Statistics of the tree.
   BvhStats bvh;
-  /// Size of the scene in device memory.
+  /// Size of the scene in device memory, in bytes.
   uint64_t device_bytes = 0;
-  /// Names for people of the features that the pipeline is specialised for.
+  /// Names of the features that the pipeline is specialised for, for people.
   std::vector<std::string> features;
-  /// Number of triangles without area, which are never hit.
+  /// Number of triangles without area. No ray hits them.
   uint64_t degenerate_triangles = 0;
-  /// Parts of the scene that are shown differently than described, with cures.
+  /// Parts of the scene that promin shows differently than the scene describes, each with a cure.
   std::vector<Problem> warnings;
 };
 
 /// Counts of expensive work. Differences of two counts show the cost of a change of the scene.
 struct WorkDone {
-  /// Number of trees built; trees read from a file do not count.
+  /// Number of trees that were built. Trees read from a file do not count.
   uint64_t trees_built = 0;
-  /// Uploaded bytes of nodes, primitives and surfaces.
+  /// Number of bytes of nodes, primitives and surfaces that were uploaded.
   uint64_t geometry_bytes_uploaded = 0;
-  /// Uploaded bytes of materials and lights.
+  /// Number of bytes of materials and lights that were uploaded.
   uint64_t shading_bytes_uploaded = 0;
-  /// Number of pipelines that the device compiled, including those for other users of the device.
+  /// Number of pipelines that the device compiled, including pipelines for other users of the device.
   uint64_t pipelines_compiled = 0;
 };
 

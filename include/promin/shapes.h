@@ -18,34 +18,36 @@
 
 namespace promin {
 
-/// A triangle mesh in its own space. Corners run counter-clockwise seen from outside.
+/// A triangle mesh in its own space. The corners of a triangle run counter-clockwise as seen from outside.
 struct Mesh {
   /// Any number of positions; no coordinate exceeds 1e15 in magnitude.
   std::vector<vec3> positions;
-  /// Vertex normals of any length except 0; one per position, or empty for flat shading.
+  /// Vertex normals of any length except 0. There is one per position, or the list is empty for flat shading.
   std::vector<vec3> normals;
-  /// Linear RGBA vertex colours that multiply ambient and diffuse; empty or one per position.
+  /// Vertex colours, linear RGBA. They multiply ambient and diffuse light. There is one per position, or the list is
+  /// empty.
   std::vector<vec4> colors;
-  /// Texture coordinates of sets 0 (x, y) and 1 (z, w), finite; empty or one per position.
+  /// Texture coordinates of set 0 (x, y) and set 1 (z, w), finite. There is one entry per position, or the list is
+  /// empty.
   std::vector<vec4> uvs;
-  /// Tangents for normal textures: xyz of any length except 0, w = 1 or -1 for the side of the bitangent; empty or one
-  /// per position. If a normal texture is used without tangents, they are computed from the texture coordinates
-  /// (docs/model.md, "Textures").
+  /// Tangents for normal textures: xyz of any length except 0, w is 1 or -1 and gives the side of the bitangent. There
+  /// is one per position, or the list is empty. For a normal texture without tangents, promin computes tangents from
+  /// the texture coordinates (docs/model.md, "Textures").
   std::vector<vec4> tangents;
-  /// Indices into `positions`. Degenerate triangles stay in the list so that triangle numbers do not change; they are
-  /// never hit.
+  /// The corners of each triangle as indices into `positions`. Degenerate triangles stay in the list so that triangle
+  /// numbers do not change; no ray hits them.
   std::vector<uvec3> triangles;
   /// Index into Scene::materials for each triangle; empty if Object::material applies to all.
   std::vector<uint32_t> triangle_materials;
 };
 
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , TYPE
-/// What an object is made of: a Mesh or an analytic shape, in its own space.
+/// The shape of an object: a Mesh or an analytic shape, in its own space.
 using Geometry = std::variant<Mesh
 #include "promin/kinds/primitives.def"
                               >;
 
-/// Names for people of the alternatives of Geometry, in its order and in the plural: "meshes", "spheres", …
+/// Names of the alternatives of Geometry for people, in the variant's order and in the plural: "meshes", "spheres", …
 inline constexpr std::string_view kGeometryNames[] = {
     "meshes",
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) NAME,

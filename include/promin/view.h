@@ -15,22 +15,22 @@
 
 namespace promin {
 
-/// A half-open window of pixels of the whole picture: lo.x <= x < hi.x. Row 0 is at the top.
+/// A window of pixels of the whole picture. `lo` is inside and `hi` outside: lo.x <= x < hi.x. Row 0 is at the top.
 struct PixelWindow {
-  /// The first column and row inside.
+  /// The first column and row inside the window.
   uvec2 lo{0};
-  /// The first column and row beyond it.
+  /// The first column and row beyond the window.
   uvec2 hi{0};
 };
 
-/// The settings of a picture that are compiled in. Each mode has its own pipeline.
+/// The settings of a picture that are compiled into a pipeline. Each mode has its own pipeline.
 struct RenderMode {
-  /// The property to show; light by default.
+  /// The property that the picture shows; light by default.
   DebugView debug_view = DebugView::kNone;
-  /// Whether lights cast shadows. Without shadows every light reaches every point that faces it.
+  /// True if lights cast shadows. Without shadows every light reaches every point that faces it.
   bool has_shadows = true;
 
-  /// Returns whether both need the same pipeline.
+  /// Returns whether both modes need the same pipeline.
   bool operator==(const RenderMode&) const = default;
 };
 
@@ -45,39 +45,40 @@ enum class PixelFilter : uint32_t {
   /// @endcond
 };
 
-/// Returns display names, indexed by PixelFilter; the first is "box".
+/// Returns the names to display, indexed by PixelFilter. The first name is "box".
 PROMIN_EXPORT std::span<const std::string_view> pixel_filter_names();
 /// Returns the default width of a filter in pixels.
 PROMIN_EXPORT float default_width(PixelFilter filter);
 
-/// How the AOV `depth` is measured. kRay is the distance from the eye to the hit, or for an orthographic camera from
-/// the plane through the eye. kPlane is the distance from the plane through the eye at right angles to the view, as
-/// compositors use it for blur.
+/// The definition of the AOV `depth`. kRay is the distance from the eye to the hit; for an orthographic camera it is
+/// the distance from the plane through the eye. kPlane is the distance of the hit from the plane through the eye that
+/// is perpendicular to the direction of view. Compositing programs use it for blur.
 enum class DepthKind : uint32_t { kRay, kPlane };
 
-/// Returns display names, indexed by DepthKind; the first is "ray".
+/// Returns the names to display, indexed by DepthKind. The first name is "ray".
 PROMIN_EXPORT std::span<const std::string_view> depth_kind_names();
 
-/// The smallest and the largest width of a filter in pixels.
+/// The smallest width of a filter in pixels.
 inline constexpr float kMinFilterWidth = 0.01F;
-/// See kMinFilterWidth.
+/// The largest width of a filter in pixels.
 inline constexpr float kMaxFilterWidth = 32.0F;
 
-/// The accuracy that a picture should have. Each pixel takes samples until the claim of its error, in each channel of
-/// linear light, is at most `error` times `white`, or times the pixel's largest channel if that is more. In every scene
-/// of the tests the claim holds for at least 95 in 100 of the pixels that take more than `min_samples` (docs/model.md,
-/// "Error of a pixel"); it is not a proof.
+/// The accuracy that a picture should have. Each pixel takes samples until its claim is small enough. The claim is the
+/// error that promin states for each channel of linear light. It must be at most `error` times `white`, or `error`
+/// times the pixel's largest channel if that is larger. In every scene of the tests, at least 95 percent of the pixels
+/// with more than `min_samples` samples have an error within their claim (docs/model.md, "Error of a pixel"); this is
+/// no proof for other scenes.
 struct ErrorTarget {
   /// The target error, kMinTargetError...1.
   float error = 1.0F / 64.0F;
-  /// The number of samples that each pixel takes at least, a power of two, kMinRefinedSamples...max_samples. All
-  /// samples may miss a detail that is thinner than a pixel divided by this number.
+  /// The smallest number of samples of a pixel, a power of two, kMinRefinedSamples...max_samples. All samples of a
+  /// pixel may miss a detail that is thinner than the pixel's width divided by this number.
   uint32_t min_samples = 8;
   /// The radiance that is displayed as white, positive and finite: 2^-EV for an exposure of EV stops.
   float white = 1.0F;
-  /// The display transform, if the error is to be measured as displayed: each channel exposed, tone mapped and encoded
-  /// as sRGB, 0...1. The claim is then the distance to the farthest displayed corner of the linear claim, and `white`
-  /// is not used.
+  /// The display transform. If it is set, the error is measured as displayed: each channel is exposed, tone mapped and
+  /// encoded as sRGB, 0...1. The claim is then the distance to the farthest displayed corner of the linear claim, and
+  /// `white` is not used.
   std::optional<DisplayTransform> display = std::nullopt;
   /// The largest number of samples of a pixel, even if the target is not reached; a power of two, at most
   /// kMaxRefinedSamples.
@@ -101,7 +102,7 @@ inline constexpr uint32_t kMaxSamplesPerPixel = 65535;
 /// The largest number of mirror bounces.
 inline constexpr uint32_t kMaxDepth = 1000;
 
-/// The description of one picture of a scene. Values outside the ranges given here or in promin/camera.h cause
+/// The description of one picture of a scene. Values outside the ranges given here and in promin/camera.h cause
 /// UsageError.
 struct View {
   /// The camera; see frame_scene (promin/framing.h).
@@ -109,15 +110,15 @@ struct View {
   /// Width and height of the whole picture in pixels, 1...kMaxSide. The camera's vertical field of view applies to the
   /// height.
   uvec2 size{1280, 720};
-  /// Pixels to trace, at least one and inside the picture; empty for all. A crop has the same bits as those pixels of
-  /// the whole picture.
+  /// Pixels to trace, at least one and inside the picture; empty for all pixels. The pixels of a crop have the same
+  /// bits as in the whole picture.
   std::optional<PixelWindow> crop;
   /// Samples per pixel, 1...kMaxSamplesPerPixel, at fixed points of a lattice; a single sample is at the centre.
   uint32_t samples_per_pixel = 1;
   /// If set, each pixel takes as many samples as it needs, at points that depend on the pixel. Requires full shading
   /// and no debug view.
   std::optional<ErrorTarget> error_target;
-  /// How the AOV `depth` is measured.
+  /// The definition of the AOV `depth`.
   DepthKind depth_kind = DepthKind::kRay;
   /// The filter that weights samples by their distance from the pixel's centre.
   PixelFilter filter = PixelFilter::kBox;
@@ -125,16 +126,16 @@ struct View {
   float filter_width = 1.0F;
   /// Largest number of bounces, 0...kMaxDepth; 0 traces neither mirror nor refracted rays. See default_max_depth.
   uint32_t max_depth = 5;
-  /// The mode. If it differs from the last picture's, its pipeline is compiled first.
+  /// The mode. If it differs from the mode of the previous picture, promin first compiles the pipeline of this mode.
   RenderMode mode;
 };
 
-/// The default number of bounces for scenes with glass.
+/// The default of `max_depth` for scenes with glass.
 inline constexpr uint32_t kMaxDepthOfGlass = 8;
 
-/// Returns whether two cameras see the same; names and aspect ratios are ignored.
+/// Returns whether two cameras see the same picture. Names and aspect ratios do not matter.
 PROMIN_EXPORT bool shows_same(const Camera& a, const Camera& b);
-/// Returns whether two views are equal except for their samples.
+/// Returns whether two views are equal except for their numbers of samples and error targets.
 PROMIN_EXPORT bool shows_same(const View& a, const View& b);
 
 }  // namespace promin

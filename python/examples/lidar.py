@@ -4,8 +4,9 @@
 
     python lidar.py SCENE -o cloud.ply [--picture cloud.png]
 
-A scanner beside what there is, at half its height, sends a ray for each of 64 beams and 2048 azimuths. Each
-hit is a point with its distance and the cosine at which it was met, which is what comes back of the light."""
+The scanner stands beside the scene, at half its height. It sends a ray for each of 64 beams and 2048 azimuths. Each hit
+becomes a point with its distance and the cosine of the angle of incidence, which is the fraction of the light that
+returns."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ import promin
 
 
 def make_beams(beams: int, azimuths: int) -> np.ndarray:
-    """Unit directions (beams, azimuths, 3) from 25 degrees above level to 35 below, about +Y."""
+    """Returns unit directions (beams, azimuths, 3) around +Y, from 25 degrees above the horizon to 35 degrees below
+    it."""
     elevation = np.deg2rad(np.linspace(25, -35, beams))[:, None]
     azimuth = np.linspace(0, 2 * np.pi, azimuths, endpoint=False)[None, :]
     level = np.cos(elevation)
@@ -34,7 +36,8 @@ def write_ply(path: str, points: np.ndarray, intensity: np.ndarray) -> None:
 
 
 def draw(points: np.ndarray, intensity: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-    """The cloud from above and in front as linear light (rows, columns, 3), nearer points over farther ones."""
+    """Returns a picture of the cloud, seen from above and in front, as linear light (rows, columns, 3). Nearer points
+    cover farther ones."""
     middle, extent = points.mean(axis=0), np.ptp(points, axis=0).max()
     camera = promin.Camera.look_at(middle + np.array([0.15, 0.45, 0.5]) * extent, middle)
     look, up = np.array(camera.look), np.array(camera.up)

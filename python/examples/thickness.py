@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""How thick a closed part is, seen along an axis.
+"""The thickness of a closed workpiece along an axis.
 
     python thickness.py MESH -o thickness.npy [--picture thickness.png] [--axis z]
 
-Parallel rays through a grid list all crossings of the part; where they enter and leave it tells how much material is on
-the way. Edges and corners count once (`Caster.list`), so that no pixel is off."""
+Parallel rays, one for each point of a grid, list all their crossings with the workpiece. The lengths between entering
+and leaving it add up to its thickness. Edges and corners count once (`Caster.list`), so every pixel is right."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from promin.testing import heat
 
 
 def measure(scene: promin.Scene, axis: int, columns: int) -> np.ndarray:
-    """Lengths of material (rows, columns), 0 where there is none."""
+    """Returns the lengths of material (rows, columns) in world units; 0 where there is no material."""
     low, high = scene.bounds
     across, up = [i for i in range(3) if i != axis]
     size = 1.05 * (high - low)
@@ -32,7 +32,7 @@ def measure(scene: promin.Scene, axis: int, columns: int) -> np.ndarray:
     direction[axis] = -1
 
     splits, hits = promin.Caster(scene).list((origins, direction))
-    # A crossing against the normal enters the material, one along it leaves it.
+    # A ray enters the material if it runs against the normal, and leaves the material if it runs along the normal.
     signed = hits["t"].astype(np.float64) * np.sign(hits["normal"] @ direction)
     totals = np.concatenate([[0.0], np.cumsum(signed)])
     return (totals[splits[1:]] - totals[splits[:-1]]).reshape(rows, columns)

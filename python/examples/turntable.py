@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A scene from all around.
+"""Pictures of a scene from all around.
 
     python turntable.py SCENE -o turntable.png [--views 8]
 
-One Renderer takes all pictures; only the camera moves. They are put side by side in two rows."""
+One Renderer renders all pictures; only the camera moves. The pictures are put side by side in two rows."""
 
 from __future__ import annotations
 

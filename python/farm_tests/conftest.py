@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The farm's tests run on the fake promin in `fake`, which stands before any other on Python's path."""
+"""Fixtures of the farm's tests, which run on the fake promin in the folder `fake`. This folder is the first one on
+Python's path."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ sys.path[:0] = PATHS
 
 
 class Farm:
-    """A folder with a scene, and the farm's commands on it."""
+    """A folder with a scene, and the farm's commands for it."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
@@ -31,24 +32,24 @@ class Farm:
         self.out = root / "out.exr"
 
     def write_scene(self, pieces: int, **values: Any) -> None:
-        """What the fake's pieces are (fake/promin/jobs.py)."""
+        """Writes the scene, which describes the fake's pieces (fake/promin/jobs.py)."""
         self.values: dict[str, Any] = {"pieces": pieces, "ms": 0, "bytes": 100, "seed": 1, **values}
         self.scene.write_text(json.dumps(self.values))
 
     def expected(self) -> bytes:
-        """What one process would write."""
+        """Returns the bytes that one process would write."""
         size = self.values["bytes"]
         blocks = [hashlib.sha256(f"{self.values['seed']} {n} ".encode()).digest() for n in range(self.values["pieces"])]
         return b"".join((block * (size // 32 + 1))[:size] for block in blocks)
 
     def written(self) -> bytes:
-        """What the output has, or the numbered files of frames one after the other."""
+        """Returns the content of the output, or of the numbered files of all frames, one after the other."""
         if "####" not in self.out.name:
             return self.out.read_bytes()
         return b"".join(file.read_bytes() for file in sorted(self.root.glob(self.out.name.replace("####", "*"))))
 
     def create(self) -> Any:
-        """The job, without running it."""
+        """Creates the job without running it and returns it."""
         from promin import jobs
 
         return jobs.create("render", [str(self.scene)], self.job)
@@ -57,7 +58,7 @@ class Farm:
         return {**os.environ, "PYTHONPATH": os.pathsep.join(PATHS), **values}
 
     def start(self, *words: object, **environment: str) -> subprocess.Popen[str]:
-        """A command that runs beside the test, in a session of its own."""
+        """Starts a command that runs beside the test, in a session of its own."""
         return subprocess.Popen(
             [sys.executable, "-m", "promin_farm", *map(str, words)],
             cwd=self.root,
@@ -69,7 +70,7 @@ class Farm:
         )
 
     def run(self, *words: object, code: int = 0, timeout: float = 120.0, **environment: str) -> str:
-        """What a command says, which ends with that code."""
+        """Runs a command, expects this exit code, and returns the command's output."""
         process = self.start(*words, **environment)
         try:
             out, err = process.communicate(timeout=timeout)
@@ -87,16 +88,16 @@ class Farm:
         return value
 
     def ledger(self) -> list[dict[str, Any]]:
-        """Its lines, of all processes."""
+        """Returns the lines of the ledgers of all processes."""
         lines = [line for file in self.job.glob("ledger/*.jsonl") for line in file.read_text().splitlines()]
         return [json.loads(line) for line in lines]
 
     def events(self, event: str) -> list[int]:
-        """The pieces of which the ledgers tell it."""
+        """Returns the numbers of the pieces for which the ledgers have this event."""
         return [line["number"] for line in self.ledger() if line["event"] == event]
 
     def worker_pids(self) -> list[int]:
-        """Of workers that have told that they are there, the living."""
+        """Returns the process ids of the workers that have reported their presence and are alive."""
         pids = [json.loads(file.read_text())["pid"] for file in self.job.glob("farm/workers/*.json")]
         return [pid for pid in pids if Path(f"/proc/{pid}/cmdline").exists()]
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A film's frames are written while the rest is made."""
+"""The assembly writes the frames of a film while workers make the remaining pieces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from promin_farm.settings import Settings
 
 
 def write_film(farm: Farm) -> Any:
-    """A job of 4 frames of 2 pieces, none made."""
+    """Creates a job with 4 frames of 2 pieces each. No piece is done."""
     farm.write_scene(8, names="frames", per_frame=2)
     farm.out = farm.root / "out.####.exr"
     return farm.create()
@@ -39,7 +39,7 @@ def test_a_frame_is_there_when_its_pieces_are(farm: Farm) -> None:
     job.runner().run(3)
     assembly = Assembly(job, Settings(outputs=[str(farm.out)]))
     with assembly.writing([0, 1, 4, 5, 6, 7], lambda: False):
-        # What an earlier run has made is written first.
+        # The assembly first writes the frame that an earlier run has made.
         wait_for(lambda: frames_of(farm) == ["out.0001.exr"])
         make(job, assembly, 6, 0)
         make(job, assembly, 7)
@@ -64,7 +64,7 @@ def test_no_frame_is_written_twice_and_one_that_failed_at_the_end(farm: Farm) ->
     with assembly.writing(range(8), lambda: False):
         make(job, assembly, *range(8))
     assert asked == [[0], [1], [2], [3]] and len(frames_of(farm)) == 3
-    # A second round, as of pieces that were altered.
+    # The second round makes pieces again, as after pieces were altered.
     with assembly.writing([0, 2], lambda: False):
         make(job, assembly, 0, 2)
     assembly.write_rest()
@@ -80,7 +80,7 @@ def test_a_run_that_ends_early_leaves_the_frames_that_wait(farm: Farm) -> None:
     def merge_slowly(outputs: list[str], **words: Any) -> None:
         if not is_begun.is_set():
             is_begun.set()
-            # Three frames wait, and behind them the word that no more will come.
+            # The queue holds three frames and behind them None, which ends the thread.
             wait_for(lambda: assembly._ready.qsize() == 4)
         merge(outputs, **words)
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Workers of this machine, and real clusters of Dask on it, whose processes are killed."""
+"""Tests with workers of this machine and with real Dask clusters on it, whose processes are killed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from conftest import Farm, wait_for
 
 
 def kill_workers(farm: Farm, process: subprocess.Popen[str], mean_s: float, most: int) -> int:
-    """Kills a worker now and then until the command ends; returns how many."""
+    """Kills a worker at random times until the command ends. Returns the number of killed workers."""
     dice = random.Random(1)
     killed = 0
     while process.poll() is None:
@@ -50,7 +50,7 @@ def test_killed_workers_lose_nothing_and_all_have_their_seats(farm: Farm) -> Non
     killed = render_under_fire(farm, mean_s=0.6, most=2, FAKE_GPUS="A B")
     made = farm.events("done")
     assert killed > 0 and set(made) == set(range(30))
-    # What is made twice is little: what was at hand, or answered to a dead worker.
+    # A killed worker causes at most two repeated pieces: the one that it was making, and one whose answer was lost.
     assert len(made) <= 30 + 2 * killed
     assert "30 of 30 pieces" in (farm.job / "index.html").read_text()
     assert {line["made_on"] for line in farm.ledger() if line["event"] == "done"} == {"fake A", "fake B"}
@@ -81,13 +81,13 @@ def test_a_killed_command_is_resumed_beside_a_second_resume_and_work(farm: Farm)
         out, err = process.communicate(timeout=60)
         assert process.returncode == 0, (out, err)
     assert farm.out.read_bytes() == farm.expected()
-    # Workers do not outlive the command that started them.
+    # Workers end when the command that started them ends.
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in workers), 60)
 
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_ctrl_c_lets_pieces_be_made_and_a_second_one_leaves_them(farm: Farm, count: int) -> None:
-    """As a terminal sends it, to the command and its workers alike."""
+    """Sends Ctrl-C as a terminal does: to the command and its workers."""
     farm.write_scene(40, ms=1500 if count == 1 else 60_000)
     process = farm.start("render", farm.scene, "-o", farm.out, "--job", farm.job, "--workers", 2)
     wait_for(lambda: len(farm.events("begun")) >= 2, 60)
@@ -125,7 +125,7 @@ def test_without_a_device_it_ends_with_4(farm: Farm) -> None:
 
 
 class Cluster:
-    """A scheduler and workers, started by hand as on machines that share a folder."""
+    """Starts a scheduler and workers by hand, as users do on machines that share a folder."""
 
     def __init__(self, farm: Farm) -> None:
         self.farm = farm
@@ -186,7 +186,7 @@ def test_workers_of_a_cluster_with_one_that_gives_other_bits_and_one_without_a_d
     cluster.add_worker(FAKE_FINGERPRINT="two")
     cluster.add_worker(FAKE_NO_DEVICE="1")
     process = farm.start("resume", farm.job, "-o", farm.out, "--scheduler", cluster.address)
-    # The good one is kept at its first piece until the others have said why they make none.
+    # The gate keeps the good worker at its first piece until the other workers have reported why they make no pieces.
     assert process.stderr is not None
     awaited = {"would give other bits", "there is no Vulkan device"}
     for line in process.stderr:
@@ -201,7 +201,7 @@ def test_workers_of_a_cluster_with_one_that_gives_other_bits_and_one_without_a_d
 
 
 class Gone:
-    """A client whose scheduler has disappeared."""
+    """Returns a client whose scheduler has disappeared."""
 
     def nthreads(self) -> dict[str, int]:
         raise OSError("Timed out trying to connect")

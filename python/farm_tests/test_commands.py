@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The command line, status, audit, the page, and the job scripts of queues."""
+"""Tests of the command line, the status, the audit, the page and the job scripts of queues."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def test_audit_finds_a_machine_that_gives_other_bits(farm: Farm) -> None:
         broken = f"{piece.name}: other bits of the same fingerprint, 100 % see another surface: a machine is broken\n"
         assert broken in said
     assert "an audit has found wrong pieces" in said and "17 of 20 pieces of this fingerprint have equal bits" in said
-    # It is so however little they differ.
+    # The audit fails for every difference, however small.
     farm.run("audit", farm.job, "--share", "100%", code=1, FAKE_DIFFERENCE="0.001")
 
 
@@ -166,7 +166,8 @@ def test_audit_holds_other_fingerprints_to_the_bounds(farm: Farm) -> None:
 
 @pytest.mark.parametrize("is_told", [True, False])
 def test_an_audit_counts_pieces_without_a_fingerprint_among_the_others(farm: Farm, is_told: bool) -> None:
-    """Those of promin's programs, and those whose maker was ended before it could tell."""
+    """Pieces without a fingerprint are those of promin's programs and those whose maker was killed before it wrote a
+    receipt."""
     from promin_farm.audit import audit
 
     farm.write_scene(3)
@@ -192,7 +193,7 @@ def test_samples_are_spread_and_the_same_for_a_seed(farm: Farm) -> None:
     first = pick_sample(job, list(range(1000)), 0.01, 0)
     assert len(first) == 10 == len(set(first)) and first == pick_sample(job, list(range(1000)), 0.01, 0)
     assert first != pick_sample(job, list(range(1000)), 0.01, 1) and first != list(range(10))
-    # One at least, and no fewer than the share.
+    # The sample has at least one piece, and at least the requested share.
     assert [len(pick_sample(job, list(range(1000)), share, 0)) for share in (0.0001, 0.0015)] == [1, 2]
 
 
@@ -205,7 +206,7 @@ def make_page(farm: Farm, **values: object) -> str:
 
 
 class Tags(HTMLParser):
-    """Counts elements and keeps the text; raises where they do not close as they open."""
+    """Counts the elements of HTML and keeps the text. Raises an error if elements are not closed in reverse order."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -294,7 +295,7 @@ def test_rays_of_zarr_are_those_of_numpy(tmp_path: Path, monkeypatch: pytest.Mon
 
     from promin_farm import rays as module
 
-    monkeypatch.setattr(module, "_ROWS", 600)  # Several parts, each of whole chunks.
+    monkeypatch.setattr(module, "_ROWS", 600)  # Several parts of whole chunks each.
     rays = np.random.default_rng(1).normal(size=(1000, 8)).astype(np.float32)
     source = tmp_path / "rays.zarr"
     array = zarr.open_array(str(source), mode="w", shape=rays.shape, chunks=(300, 8), dtype="float32")

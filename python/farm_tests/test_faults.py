@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What may be wrong about a job's folder, its inputs and its disk: mended by `resume`, or refused in a sentence."""
+"""Faults of a job's folder, inputs and disk. `resume` repairs them or refuses the job with a sentence."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_harmed_pieces_are_found_and_made_anew(farm: Farm) -> None:
 
 
 def test_a_piece_that_is_altered_before_the_assembly_is_made_anew(farm: Farm) -> None:
-    """As if it were harmed after the run has looked at it: the assembly finds it."""
+    """Damages a piece after the run has checked it, so only the assembly detects the damage."""
     from promin import jobs
 
     from promin_farm import run
@@ -122,7 +122,7 @@ def test_folders_of_other_versions_are_refused(farm: Farm) -> None:
 
 
 def test_a_full_disk_ends_the_run_and_resume_goes_on_when_there_is_room(farm: Farm) -> None:
-    """A limit on the size of files stands for the disk."""
+    """A limit on the size of files simulates a full disk."""
     farm.write_scene(30, bytes=100_000)
 
     def limit() -> None:
@@ -157,12 +157,12 @@ def test_pieces_that_fail_or_kill_are_told_and_the_rest_is_made(farm: Farm) -> N
     assert status["done"] == 10 and len(status["failed"]) == 2
     tries = {name: (value["failures"], value["deaths"]) for name, value in status["tries"].items()}
     pieces = farm.create().pieces
-    # A failure that a worker had no time to answer, as the next piece ended it, is told by the ledger alone and tried
-    # once more.
+    # If a worker is killed by the next piece before it can report a failure, only the ledger has the failure, and the
+    # piece is tried once more.
     failures = tries[pieces[2].name][0]
     assert 3 <= failures <= 3 + 5
     assert tries == {pieces[2].name: (failures, 0), pieces[7].name: (0, 5)}
-    # What alone works does not try them again, and resume does.
+    # `promin-farm work` does not try these pieces again; `resume` does.
     farm.run("work", farm.job, code=1)
     assert farm.events("begun").count(7) == 5
     assert "2 of 12 pieces cannot be made" in farm.run("resume", farm.job, "--workers", 1, code=1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The loop, with workers that do as a test tells them; no process, no Dask."""
+"""Tests of the foreman's loop with simulated workers, without processes and without Dask."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from promin_farm.settings import Settings
 
 
 class Silent:
-    """Remembers what a watch is told."""
+    """A watch that remembers its messages."""
 
     def __init__(self) -> None:
         self.said: list[str] = []
@@ -34,7 +34,7 @@ class Silent:
 
 
 class Scripted:
-    """Workers a, b, …, each of which makes the oldest piece that it has, in turn."""
+    """Workers a, b, … Each worker makes the oldest of its pieces when its turn comes."""
 
     patience_s = 0.0
     most_at_once = 4
@@ -78,7 +78,7 @@ class Scripted:
         self.sent[member].clear()
 
     def die(self, name: str, number: int, successor: str) -> None:
-        """The worker begins the piece and ends; another comes for it."""
+        """Lets the worker begin the piece and then end. The successor appears in its place."""
         ledger = self.farm.job / "ledger" / f"{name}.jsonl"
         with ledger.open("a") as file:
             file.write(json.dumps({"event": "begun", "number": number, "time_s": 1.0}) + "\n")
@@ -232,7 +232,8 @@ def test_pieces_of_another_fingerprint_go_to_its_workers(farm: Farm) -> None:
     tally, watch = run(farm, crew, Settings(allow_mixed=True))
     assert tally.done == 160 and not tally.foreign and set(made.values()) == {"one", "two"}
     assert all(made[number] == made[number // 8 * 8] for number in made)
-    # Who has been told whose a frame is sends no more of it than was on its way.
+    # A worker that has learnt which fingerprint a frame needs gets no further pieces of this frame, except those
+    # already sent.
     assert len(asked) <= 20 * 3
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The farm on promin itself, as it is installed: its files are those of one process, whatever is killed."""
+"""Tests of the farm with the installed promin. Its files equal those of one process, whichever processes are killed."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ def done_of(job: Path) -> list[int]:
 
 
 def made_of(job: Path) -> list[int]:
-    """Pieces of which a process tells that it has made them, or that it was at them when it was killed: that may be
-    between the piece, which is not made again then, and its line in the ledger."""
+    """Returns the pieces that the ledgers report as made, or as begun by a process that was killed. Such a process may
+    have written the piece but not its line in the ledger; the piece is then not made again."""
     ends = [json.loads(file.read_text().splitlines()[-1]) for file in job.glob("ledger/*.jsonl")]
     return done_of(job) + [line["number"] for line in ends if line["event"] == "begun"]
 
@@ -89,9 +89,9 @@ def test_a_picture_in_tiles_whose_worker_is_killed(tmp_path: Path) -> None:
 
 
 def run_under_fire(folder: Path, job: Path, mean_pieces: float, *words: object) -> int:
-    """Kills workers, and the command itself, until the job is done; returns how many. Between two kills so many pieces
-    are made in the mean, so that there are as many kills on a fast machine as on a slow one, and none is killed before
-    it has done anything."""
+    """Kills workers, and the command itself, until the job is done. Returns the number of kills. About `mean_pieces`
+    pieces are made between two kills on average, so the number of kills does not depend on the machine's speed, and
+    every process makes something before it is killed."""
     dice = random.Random(2)
     killed = 0
     process = start(folder, *words, "--job", job, "--workers", 2)
@@ -117,7 +117,7 @@ def run_under_fire(folder: Path, job: Path, mean_pieces: float, *words: object) 
 
 @pytest.mark.long
 def test_an_animation_under_fire(tmp_path: Path) -> None:
-    """240 small frames."""
+    """A film of 240 small frames."""
     poses = [{"time_s": 9.56 * n, "eye": [4 - 8 * n, 2, 8], "look": [n - 0.5, -0.2, -1]} for n in (0, 1)]
     frames = [{**pose, "up": [0, 1, 0], "fov_deg": 45} for pose in poses]
     path = tmp_path / "path.json"
@@ -135,7 +135,7 @@ def test_an_animation_under_fire(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_large_picture_under_fire(tmp_path: Path) -> None:
-    """64 tiles."""
+    """A picture of 64 tiles."""
     common = (SCENES / "showcase.gltf", "--size", 1920, 1080, "--spp", 16, "-o", "out.exr")
     killed = run_under_fire(tmp_path, tmp_path / "job", 5.0, "render", *common, "--tiles", 8, 8)
     (tmp_path / "one").mkdir()
@@ -154,5 +154,5 @@ def test_ten_million_rays_under_fire(tmp_path: Path) -> None:
     common = (SCENES / "showcase.gltf", "rays.npy", "-o")
     killed = run_under_fire(tmp_path, tmp_path / "job", 4.0, "cast", *common, "hits.npy", "--pieces", 40)
     of_one_process(tmp_path, "cast", *common, "one.npy")
-    is_equal = (tmp_path / "hits.npy").read_bytes() == (tmp_path / "one.npy").read_bytes()  # Too large to be told.
+    is_equal = (tmp_path / "hits.npy").read_bytes() == (tmp_path / "one.npy").read_bytes()  # Too large for a message.
     assert is_equal and killed >= 5

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The farm on a Slurm of two nodes, which this machine plays both: as `--scheduler slurm` and as a plain array.
+"""Tests of the farm on Slurm, as `--scheduler slurm` and as a plain array. This machine plays both nodes of the Slurm
+cluster.
 
-Needs slurm-wlm and munge (tools/setup --queue) and root, as daemons that switch users do."""
+Needs slurm-wlm and munge (tools/setup --queue) and root, because the daemons switch users."""
 
 from __future__ import annotations
 
@@ -43,7 +44,7 @@ def free_port() -> int:
 
 
 class Slurm:
-    """A controller and two nodes of one processor each, in a folder."""
+    """A Slurm controller and two nodes of one processor each, whose files are in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -104,16 +105,16 @@ class Slurm:
         self._start(name, "slurmd", "-D", "-N", name)
 
     def kill_node(self, name: str) -> None:
-        """The node with all that runs on it, as if its power were cut."""
+        """Kills the node's daemon and all its processes, as a power cut would."""
         self._daemons.pop(name).kill()
-        # What starts while others are killed is killed in the next turn.
+        # The next turn kills processes that started during this one.
         while pids := self.pids_of(name):
             for pid in pids:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
 
     def pids_of(self, name: str) -> list[int]:
-        """Processes of the node's jobs."""
+        """Returns the processes of the node's jobs."""
         found = []
         for process in Path("/proc").glob("[0-9]*"):
             try:
@@ -131,7 +132,7 @@ class Slurm:
         return done.stdout
 
     def submit(self, farm: Farm, command: list[str], *options: str) -> str:
-        """A command of promin-farm; returns the number of its job."""
+        """Submits a command of promin-farm. Returns the number of its job."""
         words = ["sbatch", "--parsable", "--mem=100", *options, "--wrap"]
         line = shlex.join([sys.executable, "-m", "promin_farm", *command])
         environment = {**farm.environment(), **self.environment}
@@ -163,7 +164,7 @@ def slurm(tmp_path: Path) -> Iterator[Slurm]:
 
 
 def is_at_a_piece(farm: Farm, pids: list[int]) -> bool:
-    """Whether a worker of one of these processes has begun a piece that is not done."""
+    """Returns whether a worker of one of these processes has begun a piece and not finished it."""
     for ledger in farm.job.glob("ledger/*.jsonl"):
         lines = ledger.read_text().splitlines()
         if int(ledger.stem.rpartition("-")[2]) in pids and lines and json.loads(lines[-1])["event"] == "begun":

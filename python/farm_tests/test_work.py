@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""`promin-farm work`: the same without Dask, for any queue."""
+"""Tests of `promin-farm work`, which does the same work without Dask, for any queue."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ def test_tasks_of_an_array_share_the_pieces_and_take_what_others_leave(farm: Far
     farm.write_scene(30)
     assert "30 pieces in" in farm.render("--prepare") and not farm.ledger()
     said = farm.run("work", farm.job, "--array-task", "1/3")
-    # Its own third first, then the rest from its place of the list on, as nobody else was there.
+    # The task makes its own third first. Then it makes all other pieces, because no other task runs, starting from its
+    # position in the list.
     made = farm.events("done")
     assert made[:10] == list(range(1, 30, 3)) and made[10] == 11 and sorted(made) == list(range(30))
     assert "30 pieces made; all pieces are made" in said
@@ -58,7 +59,7 @@ def test_what_another_is_at_is_left_to_it(farm: Farm) -> None:
     farm.create()
     first = farm.start("work", farm.job, "--array-task", "0/2")
     wait_for(lambda: farm.events("begun"))
-    first.send_signal(signal.SIGSTOP)  # It lives and does not get on.
+    first.send_signal(signal.SIGSTOP)  # The process is alive but does not continue.
     try:
         said = farm.run("work", farm.job, "--array-task", "1/2")
     finally:
@@ -131,8 +132,8 @@ def test_other_bits_are_refused_and_left_alone(farm: Farm) -> None:
 
 
 def test_a_survey_of_what_makers_tell(farm: Farm) -> None:
-    """What failed or died before the last `resume` does not count, what was stopped never, and of a maker that begins
-    another piece the last one has died."""
+    """Failures and deaths before the last `resume` do not count. Pieces that were stopped never count. If a maker
+    begins another piece without an end of the last one, the last one counts as a death."""
     from promin_farm.settings import Settings
     from promin_farm.survey import take_survey
 
@@ -144,7 +145,7 @@ def test_a_survey_of_what_makers_tell(farm: Farm) -> None:
     Settings(retries_from=100.0).write(farm.job)
 
     def tell(pid: int, *events: tuple[str, int, float]) -> None:
-        """By a process of this machine that has ended."""
+        """Writes events of a process of this machine that has ended."""
         lines = [{"event": e, "number": n, "time_s": t, "fingerprint": "f", "why": "lost"} for e, n, t in events]
         file = farm.job / "ledger" / f"{socket.gethostname()}-{pid}.jsonl"
         file.write_text("".join(json.dumps(line) + "\n" for line in lines))
@@ -153,7 +154,7 @@ def test_a_survey_of_what_makers_tell(farm: Farm) -> None:
     tell(99999992, ("begun", 1, 112.0), ("stopped", 1, 113.0))
     tell(99999993, ("begun", 2, 20.0), ("begun", 3, 114.0), ("begun", 4, 115.0))
     tell(99999994, ("begun", 5, 30.0))
-    # It was written, and its maker ended before it could tell.
+    # The piece was written, but its maker ended before it could record that.
     tell(99999995, ("begun", 6, 116.0))
     survey = take_survey(job)
     tries = {number: (one.failures, one.deaths) for number, one in sorted(survey.tries.items())}
@@ -193,7 +194,7 @@ def test_frames_of_two_kinds_of_devices_stay_apart(farm: Farm) -> None:
         7,
     ]
     assert "2 pieces made; all pieces are made" in farm.run("work", farm.job, FAKE_FINGERPRINT="two")
-    # One of whose bits no frame is does nothing.
+    # A process whose fingerprint belongs to no frame makes nothing.
     Path(farm.create().pieces[0].file).unlink()
     assert "0 pieces made" in farm.run("work", farm.job, FAKE_FINGERPRINT="three")
     assert len(farm.status()["fingerprints"]) == 2

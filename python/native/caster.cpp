@@ -24,20 +24,20 @@ namespace nb = nanobind;
 namespace promin::python {
 namespace {
 
-/// N rays as they lie in RAYS.npy.
+/// N rays in the layout of RAYS.npy.
 using RayArray = nb::ndarray<const float, nb::shape<-1, 8>, nb::c_contig, nb::device::cpu>;
-/// A count for each ray.
+/// An array with a count for each ray.
 using CountArray = nb::ndarray<int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-/// Whether each ray hits.
+/// An array with the answer for each ray: whether it hits anything.
 using AnswerArray = nb::ndarray<bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-/// N hits as they lie in HITS.npy, as bytes: nanobind takes no structured arrays.
+/// N hits as bytes in the layout of HITS.npy, because nanobind accepts no structured arrays.
 using HitArray = nb::ndarray<uint8_t, nb::shape<-1, sizeof(Hit)>, nb::c_contig, nb::device::cpu>;
 
 std::span<const Ray> view(const RayArray& rays) {
   return {reinterpret_cast<const Ray*>(rays.data()), rays.shape(0)};
 }
 
-/// The values as an array of bytes or numbers of NumPy's that owns them, N x `width` or N.
+/// Returns the values as a NumPy array of bytes or numbers that owns them. Its shape is N x `width` or N.
 template <typename Component, typename Value>
 nb::object give(std::vector<Value> values, size_t width) {
   auto* owned = new std::vector<Value>(std::move(values));
@@ -81,8 +81,9 @@ class SharedCaster {
     });
   }
 
-  /// Where each ray's hits begin and the last one's end, and the hits as bytes; with a budget of as many of the first
-  /// rays as have hits of so many bytes, or of one.
+  /// Returns the splits and the hits. The splits are the offset of each ray's first hit, then the end of the last ray's
+  /// hits. The hits are bytes. With a budget, the result holds only the first rays, as many as have hits of this many
+  /// bytes, but at least one.
   nb::tuple list(const RayArray& rays, const std::optional<uint64_t>& budget_bytes, const nb::object& progress) {
     std::vector<int64_t> splits{0};
     std::vector<Hit> hits;
@@ -106,7 +107,7 @@ class SharedCaster {
   nb::dict setup() const { return describe(caster_->get().setup_stats()); }
 
  private:
-  /// What a call of the caster returns, which is made when no other is.
+  /// Calls the caster and returns the result. Only one call runs at a time.
   template <typename Call>
   double run(const nb::object& progress, const Call& call) {
     Caster& caster = caster_->get();
@@ -118,7 +119,7 @@ class SharedCaster {
     return time_ms;
   }
 
-  // Before the caster, which must end first.
+  // Declared before the caster, because the caster must be destroyed first.
   std::shared_ptr<OpenDevice> device_;
   std::optional<InProcess<std::unique_ptr<Caster>>> caster_;
   std::timed_mutex mutex_;

@@ -37,7 +37,7 @@ nb::list write_names(Names names) {
   return all;
 }
 
-/// The words that arguments take, by the names that Python gives these.
+/// Returns the words that arguments accept, with the arguments' names in Python as keys.
 nb::dict list_choices() {
   nb::dict choices;
   choices["alpha_mode"] = write_names(names_of(AlphaMode()));
@@ -70,7 +70,7 @@ nb::object write_default_sky() {
   return write(environment)["sky"];
 }
 
-/// The library's structs as they are without a word of the user's, and what the command line takes in its place.
+/// Returns the default values of the library's structs, and the defaults of the command line.
 nb::dict list_defaults() {
   nb::dict defaults;
   Environment before_backdrop;
@@ -98,7 +98,7 @@ nb::dict list_defaults() {
   return defaults;
 }
 
-/// The options and arguments of `promin render`, by the names that messages have.
+/// Returns the names of the options and arguments of `promin render`, as they appear in messages.
 std::vector<std::string> list_options() {
   CLI::App command("", "render");
   work::RenderSpec options;
@@ -117,14 +117,15 @@ std::vector<std::string> list_options() {
 
 using Size = std::pair<uint32_t, uint32_t>;
 
-/// Returns width and height of a camera's pictures where these sides are requested, 0 being open. None: no size fits.
+/// Returns width and height of a camera's pictures if these sides are requested; a side of 0 is open. Returns None if
+/// no size fits.
 std::optional<Size> choose_size(const nb::dict& camera, const Size& sides) {
   const std::optional<uvec2> size = work::size_for({sides.first, sides.second}, read_camera(camera));
   if (!size) return {};
   return Size(size->x, size->y);
 }
 
-/// The sides that a word of --size asks for, 0 being open.
+/// Returns the sides that a value of --size requests; a side of 0 is open.
 Size read_size(const std::string& word) {
   const uvec2 size = *read_options({"--size=" + word}).view.size;
   return {size.x, size.y};
@@ -134,7 +135,7 @@ double read_time_limit(const std::string& word) {
   return *read_options({"--time-limit=" + word}).error.time_limit_s;
 }
 
-/// The fields of a view with this debug view that a word of --quality stands for.
+/// Returns the fields of a view that a value of --quality stands for, for a view with this debug view.
 nb::dict read_quality(const std::string& word, const std::string& debug_view) {
   work::RenderSpec options = read_options({"--quality=" + word, "--shading=" + debug_view});
   work::apply_quality(options);
@@ -146,7 +147,8 @@ nb::dict read_quality(const std::string& word, const std::string& debug_view) {
   return fields;
 }
 
-/// The option that another program's name of one stands for, without dashes; empty where none is known.
+/// Returns the option, without dashes, that corresponds to another program's option of this name; empty if none is
+/// known.
 std::string find_option(const std::string& name) {
   CLI::App command("", "promin");
   work::RenderSpec options;
@@ -157,8 +159,9 @@ std::string find_option(const std::string& name) {
   return option.empty() ? option : option.substr(2);
 }
 
-/// The ErrorTarget of a view of which `asked` has the fields target_error, time_limit, min_spp, max_spp and error_in,
-/// shown like this, as the command line makes it of its options; None where pixels have samples of a fixed number.
+/// Returns the ErrorTarget of a view, as the command line derives it from its options; None if pixels have a fixed
+/// number of samples. `asked` has the fields target_error, time_limit, min_spp, max_spp and error_in; `display` is the
+/// display transform.
 nb::object error_target(const nb::dict& asked, const nb::dict& display) {
   work::ErrorOptions options;
   options.target = read_real(asked, "target_error");
@@ -183,7 +186,7 @@ std::string name_keywords(const std::string& sentence) {
     std::string name = (*found)[1];
     std::ranges::replace(name, '-', '_');
     named += sentence.substr(end, static_cast<size_t>(found->position()) - end) + name;
-    if (name == "from") named += '_';  // a word of Python's
+    if (name == "from") named += '_';  // a keyword of Python
     end = static_cast<size_t>(found->position() + found->length());
   }
   return named + sentence.substr(end);

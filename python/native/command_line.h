@@ -21,16 +21,17 @@
 
 namespace promin::python {
 
-/// Returns the options of `promin render` that these words give, read as on the command line. Throws UsageError.
+/// Returns the options of `promin render` that these words contain, read as on the command line. Throws UsageError.
 work::RenderSpec read_options(const std::vector<std::string>& words);
 
-/// Returns the sentence with Python's keywords in place of the options of `promin render`: look_at for --look-at.
+/// Returns the sentence with Python's keywords in place of the options of `promin render`: look_at in place of
+/// --look-at.
 std::string name_keywords(const std::string& sentence);
 
-/// Returns the error with Python's keywords and without a place, because Python has no command line.
+/// Returns the error with Python's keywords. The result names no place, because Python has no command line.
 UsageError name_keywords(const UsageError& error);
 
-/// Calls a function of the programs. A UsageError that it throws gets Python's keywords.
+/// Calls a function of the programs. If the function throws a UsageError, its sentences get Python's keywords.
 template <typename Function>
 requires std::invocable<Function>
 auto with_keywords(const Function& function) {
@@ -41,8 +42,8 @@ auto with_keywords(const Function& function) {
   }
 }
 
-/// What the header of an EXR tells of a picture that `promin render` has written. `named` has the objects and materials
-/// whose names Cryptomatte tells.
+/// Returns the metadata that `promin render` writes to the header of an EXR. `named` is a scene with the objects and
+/// materials whose names Cryptomatte stores.
 Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
                           const gpu::DeviceInfo& device, const std::string& scene_file, const Scene& named,
                           const AovSet& aovs);

@@ -12,7 +12,7 @@ namespace promin::python {
 /// An open device.
 using OpenDevice = InProcess<gpu::DeviceHandle>;
 
-/// Adds Device and list_devices.
+/// Adds the class Device and the function list_devices.
 void bind_device(nanobind::module_& module);
 
 }  // namespace promin::python

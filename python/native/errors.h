@@ -9,15 +9,16 @@
 
 namespace promin::python {
 
-/// Text that may quote a file's bytes or name, which need not be UTF-8: what is not is shown as \xNN.
+/// Returns a text that may quote a file's name or bytes, which need not be UTF-8. Bytes that are not UTF-8 become \xNN.
 nanobind::object to_text(std::string_view text);
 
-/// What belongs to a process was used in a fork of it; a RuntimeError in Python.
+/// Thrown if an object of one process is used in a fork of the process. In Python it is a RuntimeError.
 struct ForkError : std::runtime_error {
   ForkError();
 };
 
-/// Has what the library throws raised as the class of the same name in promin._errors, with the same problems.
+/// Registers a translation of exceptions: an exception of the library becomes the class of the same name in
+/// promin._errors, with the same problems.
 void register_errors();
 
 }  // namespace promin::python

@@ -10,8 +10,9 @@
 
 namespace promin::python {
 
-/// Something of a device, which a fork has no part in: `get` throws ForkError there, and there it is never ended, as
-/// the driver's threads and locks are those of another process. Owner is a pointer that owns.
+/// Owns an object of a device, which a fork of the process must not use. In a fork, `get` throws ForkError, and the
+/// object is never destroyed, because the driver's threads and locks belong to the other process. Owner is an owning
+/// pointer.
 template <typename Owner>
 class InProcess {
  public:

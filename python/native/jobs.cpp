@@ -38,7 +38,7 @@ namespace {
 using jobs::Job;
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-/// Python shows warnings of its own and no notes.
+/// Returns messages that show nothing: Python shows its own warnings, and no notes.
 const work::Messages& no_messages() {
   static const work::Messages messages;
   return messages;
@@ -66,7 +66,7 @@ size_t check(const Job& job, size_t piece) {
                     job.folder().string(), "name one from 0 on"});
 }
 
-/// Without Python's lock.
+/// Does the work without holding Python's lock.
 template <typename Work>
 auto unlocked(const Work& work) {
   const nb::gil_scoped_release release;
@@ -101,7 +101,7 @@ nb::dict describe(const Job& job) {
   return record;
 }
 
-/// "done", "missing" or "bad", and what is bad.
+/// Returns "done", "missing" or "bad", and the fault of a bad piece.
 std::pair<std::string, std::string> state_of(const Job& job, size_t piece) {
   return unlocked([&]() -> std::pair<std::string, std::string> {
     std::string why;
@@ -126,7 +126,7 @@ nb::dict write(const Job& job, size_t piece, const std::string& description, con
                const std::string& made_on, const std::string& fingerprint) {
   jobs::Content content{description, {}};
   content.bytes.resize(data.size());
-  // Bytes of none have no place.
+  // An empty array may have no address.
   if (data.size() > 0) std::memcpy(content.bytes.data(), data.c_str(), data.size());
   return describe(unlocked([&] { return job.write(check(job, piece), content, ms, {made_on, fingerprint}); }));
 }
@@ -140,15 +140,15 @@ void check_outputs(const Job& job, const std::vector<fs::path>& outputs) {
   unlocked([&] { work::check_job_files(job, outputs); });
 }
 
-/// A job that is read and checked; what opens its pieces has part in it.
+/// A job that was read and checked. The objects that open its pieces share it.
 using Plan = std::shared_ptr<work::PlannedJob>;
 
 struct SharedPlan {
   Plan plan;
 };
 
-/// Rays that Python has: an object with the attributes count, name, size_bytes and sha256, and a method read(first,
-/// count) that returns N x 8 float32. Its lock is taken for each call.
+/// Rays from Python: an object with the attributes count, name, size_bytes and sha256, and a method read(first, count)
+/// that returns N x 8 float32. Each call takes Python's lock.
 class PythonRays : public work::RaySource {
  public:
   explicit PythonRays(nb::object source)
@@ -197,7 +197,7 @@ SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arg
   return {plan};
 }
 
-/// Plans the job of a specification's text. Files that it names are relative to the current folder.
+/// Plans the job of a specification, given as text. Relative names of files refer to the current folder.
 SharedPlan plan_spec(const std::string& kind, const std::string& text, const fs::path& folder,
                      const nb::object& source) {
   Plan plan;
@@ -215,7 +215,7 @@ SharedPlan plan_again(const Job& job, const nb::object& source) {
   return {plan};
 }
 
-/// SHA-256 and size of a piece that is done; None of another.
+/// Returns the SHA-256 and the size of a piece that is done; otherwise None.
 std::optional<std::pair<std::string, uint64_t>> stored(const Job& job, size_t piece) {
   return unlocked([&]() -> std::optional<std::pair<std::string, uint64_t>> {
     try {
@@ -231,7 +231,7 @@ Job create(const SharedPlan& shared, const fs::path& folder) {
   return unlocked([&] { return work::create_job(*shared.plan, folder); });
 }
 
-/// What makes the pieces of one job, for one thread at a time.
+/// Makes the pieces of one job. One thread at a time may use it.
 class Runner {
  public:
   Runner(std::shared_ptr<OpenDevice> device, const SharedPlan& shared, Job job)
@@ -293,14 +293,14 @@ class Runner {
   const std::string& made_on() const { return made_on_; }
 
  private:
-  // Before the maker, which must end first.
+  // Declared before the maker, because the maker must be destroyed first.
   std::shared_ptr<OpenDevice> device_;
   Plan plan_;
   Job job_;
   std::string made_on_;
   std::optional<InProcess<std::unique_ptr<work::PieceMaker>>> maker_;
   std::timed_mutex mutex_;
-  /// Set after the check that its build may make pieces of the job.
+  /// True after the check that this build may make pieces of the job.
   bool is_checked_ = false;
 };
 
@@ -321,7 +321,7 @@ void bind_jobs(nb::module_& module) {
       .def("spec", [](const Job& job) { return work::read_job_spec(job); })
       .def("file_of",
            [](const Job& job, size_t piece) {
-             // As os.fsdecode has it: the folder's name need not be UTF-8.
+             // Decoded like os.fsdecode, because the folder's name need not be UTF-8.
              return nb::steal<nb::str>(PyUnicode_DecodeFSDefault(job.file_of(check(job, piece)).c_str()));
            })
       .def("state_of", &state_of)

@@ -9,7 +9,7 @@
 namespace nb = nanobind;
 
 NB_MODULE(_promin, module) {
-  // What is alive at the end of the process goes with it.
+  // Objects that are alive at the end of the process are not leaks.
   nb::set_leak_warnings(false);
   module.attr("__version__") = PROMIN_VERSION;
   promin::python::register_errors();

@@ -8,17 +8,17 @@
 
 namespace promin::python {
 
-/// A linear picture: rows from the top, columns, R, G and B.
+/// A linear picture with the shape (rows, columns, 3): rows from the top, then R, G and B.
 using PictureArray =
     nanobind::ndarray<const float, nanobind::shape<-1, -1, 3>, nanobind::c_contig, nanobind::device::cpu>;
 
-/// The pixels, copied.
+/// Returns a copy of the pixels as an Image.
 Image read_image_array(const PictureArray& pixels);
-/// The pixels as an array of NumPy's that owns them.
+/// Returns the pixels as a NumPy array that owns them.
 nanobind::object write_image_array(Image image);
 
-/// Any values as an array of NumPy's that owns them, of (rows, columns) and, where a value has several components,
-/// those.
+/// Returns values as a NumPy array that owns them. Its shape is (rows, columns), or (rows, columns, components) if a
+/// value has several components.
 template <typename Component, typename Value>
 nanobind::object write_array(std::vector<Value> values, const uvec2& size) {
   constexpr size_t kComponents = sizeof(Value) / sizeof(Component);

@@ -28,11 +28,11 @@ namespace nb = nanobind;
 namespace promin::python {
 namespace {
 
-/// Values of a channel: floats or integers of 32 bits.
+/// Values of a channel: 32-bit floats or integers.
 using ChannelArray = nb::ndarray<const uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-/// Values of Aovs::unlit.
+/// Values of Aovs::unlit, with the shape (rows, columns, 4).
 using UnlitArray = nb::ndarray<const float, nb::shape<-1, -1, 4>, nb::c_contig, nb::device::cpu>;
-/// x, y, width and height of the whole picture.
+/// The position (x, y) of a crop, and width and height of the whole picture.
 using Placement = std::pair<std::pair<uint32_t, uint32_t>, std::pair<uint32_t, uint32_t>>;
 
 void save(const std::filesystem::path& file, const PictureArray& pixels, const Metadata& metadata,
@@ -61,7 +61,7 @@ nb::object load(const std::filesystem::path& file) {
   return write_image_array(std::move(image));
 }
 
-/// The bits of a channel, whose rows are all read.
+/// Returns the bits of a channel, read in all its rows.
 std::vector<uint32_t> copy_channel(const ChannelFile& picture, const FileChannel& channel) {
   std::vector<uint32_t> values;
   values.reserve(size_t{channel.size.x} * channel.size.y);
@@ -71,7 +71,7 @@ std::vector<uint32_t> copy_channel(const ChannelFile& picture, const FileChannel
   return values;
 }
 
-/// All channels of a file: name, whether they are integers, and the bits of their values.
+/// Returns all channels of a file: the name, whether the values are integers, and the bits of the values.
 nb::list load_channels(const std::filesystem::path& file) {
   std::vector<std::vector<uint32_t>> all;
   std::optional<ChannelFile> picture;
@@ -89,7 +89,7 @@ nb::list load_channels(const std::filesystem::path& file) {
   return rows;
 }
 
-/// `unlit` is Aovs::unlit of the picture.
+/// Returns the 8-bit picture. `unlit` is Aovs::unlit of the picture.
 nb::object show(const PictureArray& pixels, const nb::dict& record, const std::optional<UnlitArray>& unlit) {
   Image image = read_image_array(pixels);
   std::vector<vec4> of_unlit(image.pixels.size(), vec4(0.0F));
@@ -134,7 +134,7 @@ nb::dict compare(const PictureArray& first, const PictureArray& second, bool is_
 
 Image read_image_array(const PictureArray& pixels) {
   Image image;
-  // Sizes beyond what a picture may have become one that is refused by its size.
+  // A size that does not fit into 32 bits becomes a size that the library refuses.
   image.size = {static_cast<uint32_t>(pixels.shape(1)), static_cast<uint32_t>(pixels.shape(0))};
   image.pixels.resize(pixels.shape(0) * pixels.shape(1));
   if (!image.pixels.empty()) std::memcpy(image.pixels.data(), pixels.data(), image.pixels.size() * sizeof(vec3));

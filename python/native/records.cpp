@@ -38,7 +38,7 @@ using Vec = glm::vec<N, T, glm::defaultp>;
 template <typename T>
 T read_one(const nb::dict& record);
 
-/// Makes the variant hold what the record is by its kind, one of the names.
+/// Sets the variant to the alternative that the record's "kind" names, one of the given names.
 template <typename... Kinds>
 void read_kind(std::variant<Kinds...>& value, Names names, const std::string& kind, const std::string& what,
                const nb::dict& record) {
@@ -55,7 +55,7 @@ class Reader {
  public:
   explicit Reader(const nb::dict& record) : record_(record) {}
 
-  /// A number, an enumerator by its name, or a struct as a dict.
+  /// Reads a number, an enumerator by its name, or a struct from a dict.
   template <typename T>
   void field(const std::string& name, T& value) const {
     if constexpr (std::is_enum_v<T>) {
@@ -111,9 +111,9 @@ class Reader {
   template <typename T>
   static T convert(const nb::object& value, const std::string& name, const char* kind) {
     T result;
-    // A number that is cut off, as 1.5 for an integer, is none of the right kind: Python's int() decides.
+    // A number that would be cut off, such as 1.5 for an integer, is an error: Python's int() decides.
     if (nb::try_cast<T>(value, result)) return result;
-    // Cut by characters, in Python: a cut between a character's bytes leaves what is no text.
+    // Python cuts the text, because it cuts between characters. A cut inside a character's bytes gives invalid text.
     const auto shown = nb::cast<std::string>(nb::str(nb::repr(value))[nb::slice(0, 80)]);
     throw UsageError({"python.value.wrong", name + " is " + shown + ", not " + kind, "", std::string("give ") + kind});
   }
@@ -139,7 +139,7 @@ class Writer {
     return writer.record_;
   }
 
-  /// A number, an enumerator as its name, or a struct as a dict.
+  /// Writes a number, an enumerator as its name, or a struct as a dict.
   template <typename T>
   void field(const std::string& name, T& value) {
     if constexpr (std::is_enum_v<T>) {

@@ -51,7 +51,7 @@ AovSet read_aovs(const std::vector<std::string>& names) {
   return set;
 }
 
-// The arrays of AOVs, by the type of a value.
+// Returns the array of an AOV; the overloads differ in the type of a value.
 nb::object write_aov(std::vector<float> values, const uvec2& size) {
   return write_array<float>(std::move(values), size);
 }
@@ -71,7 +71,7 @@ nb::dict write_aovs(Aovs aovs, const AovSet& choice, const uvec2& size) {
   return arrays;
 }
 
-/// Channels with their bits.
+/// Returns the channels with the bits of their values.
 nb::list write_cryptomatte(Cryptomatte cryptomatte, const uvec2& size) {
   nb::list channels;
   for (Channel& channel : cryptomatte.channels) {
@@ -134,7 +134,7 @@ class SharedRenderer {
     renderer_.emplace(std::move(renderer));
   }
 
-  /// `display` and the name of the scene's file are for the metadata alone.
+  /// Renders a picture. Only the metadata depend on `display` and the name of the scene's file.
   nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::dict& display,
                   const std::filesystem::path& scene_file, const nb::object& progress) {
     const View view = read_view(record);
@@ -199,16 +199,16 @@ class SharedRenderer {
     });
   }
 
-  // Before the renderer, which must end first.
+  // Declared before the renderer, because the renderer must be destroyed first.
   std::shared_ptr<OpenDevice> device_;
   AovSet aovs_;
-  /// Objects and materials alone, whose names Cryptomatte tells.
+  /// A scene with only the objects and materials, whose names Cryptomatte stores.
   Scene named_;
   std::optional<InProcess<std::unique_ptr<Renderer>>> renderer_;
   std::timed_mutex mutex_;
 };
 
-/// Name, channel of an EXR and letters of its components of each AOV.
+/// Returns for each AOV its name, its channel in an EXR, and the letters of its components.
 nb::list list_aovs() {
   nb::list rows;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \

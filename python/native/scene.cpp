@@ -35,7 +35,7 @@ template <typename T, int Columns>
 using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
 
-/// Of no array none. The array's shape says that its rows are Rows.
+/// Returns the rows of an array; empty if there is no array. The array's shape ensures that its rows have the type Row.
 template <typename Row, typename Array>
 std::vector<Row> copy_rows(const std::optional<Array>& rows) {
   std::vector<Row> result;
@@ -45,7 +45,7 @@ std::vector<Row> copy_rows(const std::optional<Array>& rows) {
   return result;
 }
 
-/// Python's matrices lie by rows, GLM's by columns.
+/// Python stores matrices by rows, GLM by columns.
 dmat4 read_matrix(const Matrix& matrix) {
   dmat4 result;
   for (int row = 0; row < 4; ++row) {
@@ -90,7 +90,8 @@ LightChoice read_choice(const std::string& name) {
   return static_cast<LightChoice>(find_name(light_choice_names(), name, "light"));
 }
 
-/// A copy with the light that the choice adds, in the surroundings and before the background of these options.
+/// Returns a copy of the scene with the light that `choice` adds, and with the surroundings and the background of these
+/// options.
 Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& words) {
   work::ViewOptions options = read_options(words).view;
   options.look.light = read_choice(choice);
@@ -110,7 +111,7 @@ void replace_all(std::vector<T>& values, const nb::list& records, const Read& re
   values = std::move(replaced);
 }
 
-/// Poses a camera that is not widened for a picture's size.
+/// Moves a camera, but does not widen it for a picture's size.
 Camera pose_exactly(const Scene& scene, Camera camera, const work::PoseOptions& pose) {
   const float aspect_ratio = std::exchange(camera.aspect_ratio, 0.0F);
   camera = work::pose_camera(scene, camera, pose, uvec2(1), work::Messages());
@@ -118,8 +119,8 @@ Camera pose_exactly(const Scene& scene, Camera camera, const work::PoseOptions& 
   return camera;
 }
 
-/// The camera of a picture with these options. `given` takes the place of the scene's cameras and is not widened. Where
-/// no sides are given, the camera is that of a picture of this aspect ratio, and none is widened.
+/// Returns the camera for a picture with these options. `given` replaces the scene's cameras and is not widened. If no
+/// sides are given, the camera is that of a picture with this aspect ratio, and no camera is widened.
 nb::dict choose_camera(const Scene& scene, const std::vector<std::string>& words, const std::optional<nb::dict>& given,
                        const std::optional<std::pair<uint32_t, uint32_t>>& sides, float aspect_ratio) {
   work::ViewOptions options = read_options(words).view;
@@ -134,7 +135,8 @@ nb::dict choose_camera(const Scene& scene, const std::vector<std::string>& words
   }));
 }
 
-/// What is wrong where a picture of this size shows nothing of the scene; empty where it may show something.
+/// Returns an explanation if a picture of this size shows nothing of the scene; returns an empty text if it may show
+/// something.
 std::string describe_empty_picture(const Scene& scene, const nb::dict& camera, uint32_t width, uint32_t height) {
   const Camera one = read_camera(camera);
   return name_keywords(work::describe_empty_pictures(scene, {&one, 1}, uvec2(width, height)));

@@ -4,5 +4,5 @@
 
 #include <nanobind/nanobind.h>
 
-// Scene is bound as it is: what fills it is used while nothing else has it (promin/_scene.py).
+// The module binds Scene itself. promin/_scene.py fills a scene only while no other object uses it.
 #include "promin/scene.h"

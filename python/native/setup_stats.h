@@ -10,7 +10,8 @@
 
 namespace promin::python {
 
-/// The figures by the names of their members, those of the tree beside them; warnings as sentences.
+/// Returns the statistics with their members' names as keys. The tree's statistics are in the same dict; warnings are
+/// sentences.
 inline nanobind::dict describe(const SetupStats& stats) {
   nanobind::dict result;
   result["bvh_ms"] = stats.bvh_ms;

@@ -16,10 +16,10 @@ namespace nb = nanobind;
 namespace promin::python {
 namespace {
 
-/// How often the waiting thread looks.
+/// Interval at which the waiting thread checks for signals and progress.
 constexpr std::chrono::milliseconds kLook{50};
 
-/// Whether the work is to go on. Throws python_error.
+/// Returns whether the work may continue. Throws python_error.
 bool ask(const nb::object& progress, double fraction) {
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
   return progress.is_none() || !progress(fraction).is(nb::handle(Py_False));
@@ -55,7 +55,7 @@ void run_watched(const nb::object& progress, const Work& work) {
     result.wait();
   }
   if (interruption) {
-    // What the work threw is the end that it was brought to.
+    // The work ended because of the interruption, so its own exception is dropped.
     throw nb::python_error(std::move(*interruption));
   }
   result.get();

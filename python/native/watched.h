@@ -11,16 +11,17 @@
 
 namespace promin::python {
 
-/// Work that takes a while and tells how far it is.
+/// Long work that reports its progress.
 using Work = std::function<void(const ProgressCallback&)>;
 
-/// Does the work on a thread of its own while the caller's, without the GIL, waits and every 50 ms takes the GIL, looks
-/// for signals and tells `progress`, a callable that takes the fraction, or None. So it does not matter on which thread
-/// the library reports, and Ctrl-C is answered on Python's main thread. A signal's exception, one of `progress`, or
-/// its returning False end the work before its next dispatch. Throws what the work does, after it has ended always.
+/// Does the work on a separate thread. Meanwhile the caller's thread waits without the GIL. Every 50 ms it takes the
+/// GIL, checks for signals and calls `progress`, a callable that receives the fraction, or None. The library may
+/// therefore report on any thread, and Python's main thread handles Ctrl-C. The work ends before its next dispatch if a
+/// signal or `progress` raises an exception or `progress` returns False. Always waits for the end of the work, then
+/// throws the work's exceptions.
 void run_watched(const nanobind::object& progress, const Work& work);
 
-/// Waits for the mutex, and gives up as the progress says: throws Cancelled.
+/// Waits for the mutex. Throws Cancelled if `progress` returns false meanwhile.
 std::unique_lock<std::timed_mutex> lock_watched(std::timed_mutex& mutex, const ProgressCallback& progress);
 
 }  // namespace promin::python

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays in the layout that the device uses: rays rounded to float32 once, hits as in HITS.npy."""
+"""Arrays in the layout that the device uses. Rays are rounded to float32 once; hits have the layout of HITS.npy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Float64s: TypeAlias = NDArray[np.float64]
 HIT_DTYPE = np.dtype(
     [("t", "<f4"), ("object", "<i4"), ("primitive", "<i4"), ("u", "<f4"), ("v", "<f4"), ("normal", "<f4", (3,))]
 )
-"""A hit, as `promin cast` writes it: see `Caster.cast`."""
+"""The type of a hit, as `promin cast` writes it: see `Caster.cast`."""
 
 
 
@@ -43,12 +43,13 @@ class Hits(np.ndarray[Any, np.dtype[Any]]):
 
 
 RaysLike: TypeAlias = Union[ArrayLike, "tuple[ArrayLike, ...]"]
-"""Rays: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins (..., 3), directions (..., 3))
-or (origins, directions, tmin, tmax), whose leading shapes are broadcast, with tmin 0 and tmax infinite by default."""
+"""Rays in one of three forms: an array (..., 8) of origin xyz, tmin, direction xyz, tmax; a tuple (origins (..., 3),
+directions (..., 3)); or a tuple (origins, directions, tmin, tmax). The leading shapes of a tuple's arrays are
+broadcast. By default tmin is 0 and tmax infinite."""
 
 
 _RAYS_A_PART = 2**15
-"""Number of rays that a thread packs at a time: they and their sources fit into the core's cache."""
+"""Number of rays that a thread packs at a time. The rays and their sources fit into the core's cache."""
 
 
 def to_numbers(value: object, what: str) -> NDArray[Any]:
@@ -63,7 +64,7 @@ def to_numbers(value: object, what: str) -> NDArray[Any]:
 
 
 def to_vectors(value: object, what: str, width: int = 3) -> NDArray[Any]:
-    """Returns numbers whose last axis has this width."""
+    """Returns an array of real numbers. Raises UsageError if its last axis does not have this width."""
     array = to_numbers(value, what)
     if array.ndim == 0 or array.shape[-1] != width:
         raise UsageError(f"{what} have the shape {array.shape}; give (..., {width})")
@@ -71,7 +72,8 @@ def to_vectors(value: object, what: str, width: int = 3) -> NDArray[Any]:
 
 
 def round_once(array: NDArray[Any]) -> Float32s:
-    """Rounds to float32 without a warning; numbers beyond its range become infinite."""
+    """Returns the numbers rounded to float32, without a warning. Numbers beyond the range of float32 become
+    infinite."""
     with np.errstate(over="ignore", invalid="ignore"):
         return np.ascontiguousarray(array, dtype=np.float32)
 
@@ -79,7 +81,7 @@ def round_once(array: NDArray[Any]) -> Float32s:
 def join_rays(
     rays: RaysLike, directions: ArrayLike | None, tmin: ArrayLike | None, tmax: ArrayLike | None
 ) -> object:
-    """Combines arguments that may hold each part of rays separately into one of the forms of RaysLike. Raises
+    """Returns rays in one of the forms of RaysLike. The arguments may hold the parts of rays separately. Raises
     UsageError."""
     if directions is None and tmin is None and tmax is None:
         return rays
@@ -96,7 +98,7 @@ def join_rays(
 
 
 def split_rays(rays: object) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Returns origins, tmin, directions and tmax of rays in either form. Their leading shapes may differ."""
+    """Returns origins, tmin, directions and tmax of rays in any form. Their leading shapes may differ."""
     if isinstance(rays, tuple) and 2 <= len(rays) <= 4 and not np.isscalar(rays[0]):
         origins = to_vectors(rays[0], "origins")
         directions = to_vectors(rays[1], "directions")
@@ -120,8 +122,8 @@ def to_whole_rays(rays: object) -> NDArray[Any]:
 
 
 def pack_rays(rays: object, center: Float64s) -> tuple[Float32s, tuple[int, ...]]:
-    """Returns rays as (n, 8) float32 in C order, and their leading shape. The center is subtracted from the origins in
-    float64 before they are rounded. An array that needs no change is not copied."""
+    """Returns rays as (n, 8) float32 in C order, and their leading shape. The function subtracts the center from the
+    origins in float64 before it rounds them. An array that needs no change is not copied."""
     is_moved = bool(center.any())
     if isinstance(rays, np.ndarray) and rays.dtype == np.float32 and not is_moved:
         array = to_whole_rays(rays)
@@ -163,17 +165,17 @@ def _for_each_part(shape: tuple[int, ...], task: Callable[[tuple[slice, ...]], N
     length = max(1, _RAYS_A_PART * shape[axis] // count)
     parts = [axis * (slice(None),) + (slice(at, at + length),) for at in range(0, shape[axis], length)]
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        # Raises here what a part has raised.
+        # Raises the exception of a part in this thread.
         for _ in threads.map(task, parts):
             pass
 
 
 def positions(rays: RaysLike, hits: NDArray[Any]) -> Float64s:
-    """Returns the hit points in float64: origin + t * direction of the rays as given.
+    """Returns the hit points (..., 3) in float64: origin + t * direction, with the rays as the caller gave them.
 
-    rays: as passed to `Caster.cast`. hits: (...) as it returned them. Returns (..., 3), NaN on a miss. The hit's t is a
+    rays: the argument of `Caster.cast`. hits: its result, of shape (...). A point is NaN on a miss. The hit's t is a
     float32, so the error of a point is up to 2^-24 of the distance along the ray plus the bound on hits
-    (docs/accuracy.md). `promin.compat.trimesh` and `Scene.positions` put it on the plane of the triangle. Raises
+    (docs/accuracy.md). `promin.compat.trimesh` and `Scene.positions` return points on the plane of the triangle. Raises
     UsageError if the shapes do not match."""
     origins, _, directions, _ = split_rays(rays)
     hits = check_hits(hits)

@@ -20,23 +20,23 @@ from promin._errors import UsageError
 from promin._scene import Scene, SceneLike, to_scene
 
 PROBE = np.array((0.4375, 0.625, 0.65625), np.float32)
-"""The direction of rays that find what is inside: no component is small or a simple ratio of another."""
+"""The direction of rays that test whether points are inside. No component is small or a simple ratio of another one."""
 _RAYS_AT_A_TIME = 2**20
-"""The number of rays that the library requests at a time."""
+"""The largest number of rays in one call of the library."""
 
 Progress = Union[Callable[[float], object], None]
-"""Receives the fraction that is done about twenty times a second, on the caller's thread. If it returns False, the call
-raises `promin.Cancelled`; if it raises an exception, the call raises that."""
+"""A callable that receives the fraction that is done about twenty times a second, on the caller's thread. If it returns
+False, the call raises `promin.Cancelled`. If it raises an exception, the call raises that exception."""
 
 
 class Caster:
     """Casts rays at a scene on a device.
 
     The constructor builds a bounding volume hierarchy. The scene may change afterwards; the Caster keeps its own
-    snapshot. Any thread may use a Caster, one at a time. It releases Python's lock, so other threads run meanwhile.
-    Ctrl-C ends a call before its next dispatch and leaves the Caster usable. A pickled Caster holds the scene, the
-    options and the choice of the device, and opens them at its first use. After a fork, every use in the child raises
-    RuntimeError."""
+    snapshot. Any thread may use a Caster, but only one at a time. A Caster releases Python's lock during a call, so
+    other threads run meanwhile. Ctrl-C ends a call before its next dispatch and leaves the Caster usable. A pickled
+    Caster holds the scene, the options and the choice of the device, and opens them at its first use. After a fork,
+    every use in the child raises RuntimeError."""
 
     _opened: tuple[Device, _promin.Caster, NDArray[np.float64]] | None
 
@@ -49,9 +49,9 @@ class Caster:
         builder: str = "sah",
         progress: Progress = None,
     ) -> None:
-        """device: a Device, a part of a name, an index, or None for the default one. bvh: a file of `promin-bvh build`
-        to read the tree from. builder: "sah", "median" or "spatial"; hits are the same. Raises UsageError, InputError
-        for an invalid scene, DeviceError, RunError, Cancelled."""
+        """device: a Device, a part of a device's name, an index, or None for the default device. bvh: a file that
+        `promin-bvh build` has written, from which the tree is read. builder: "sah", "median" or "spatial"; the hits do
+        not depend on it. Raises UsageError, InputError for an invalid scene, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._options = (str(builder), None if bvh is None else os.fsdecode(bvh))
         self._chosen = device
@@ -60,18 +60,18 @@ class Caster:
 
     @property
     def scene(self) -> Scene:
-        """The scene as it was when the Caster was made. Changing it has no effect."""
+        """The scene as it was when the Caster was created. Changes of this scene have no effect on the Caster."""
         return self._scene
 
     @property
     def device(self) -> Device:
-        """The device that it runs on."""
+        """The device on which the Caster runs."""
         return self._open()[0]
 
     @property
     def setup(self) -> dict[str, Any]:
-        """The cost of construction, with the names of include/promin/setup_stats.h: milliseconds, bytes, nodes,
-        warnings."""
+        """The cost of construction: milliseconds, bytes, nodes and warnings. The keys are the names of
+        include/promin/setup_stats.h."""
         return self._open()[1].setup()
 
     def cast(
@@ -86,18 +86,19 @@ class Caster:
     ) -> NDArray[Any]:
         """Returns the nearest hit of each ray.
 
-        rays, directions, tmin, tmax: origins (..., 3), directions (..., 3) and optionally tmin and tmax (...), 0 and
-        infinity by default, broadcast together; or one array (..., 8) of origin xyz, tmin, direction xyz, tmax; or a
-        tuple (origins, directions) or (origins, directions, tmin, tmax). Arrays may have any strides and real types.
-        Numbers are rounded to float32 once; C-contiguous float32 of shape (..., 8) is not copied. Directions have any
-        length except 0, t is in units of the direction as given, and a hit has tmin < t < tmax. A ray with a NaN misses
-        everything. out: an array to fill and return, C-contiguous and of the result's shape and type; reusing memory is
-        faster than allocating it.
+        rays, directions, tmin, tmax: the rays in one of three forms. Either origins (..., 3), directions (..., 3) and
+        optionally tmin and tmax (...), which are broadcast together and are 0 and infinity by default; or one array
+        (..., 8) of origin xyz, tmin, direction xyz, tmax; or a tuple (origins, directions) or (origins, directions,
+        tmin, tmax). Arrays may have any strides and real types. Numbers are rounded to float32 once; a C-contiguous
+        float32 array of shape (..., 8) is not copied. A direction may have any length except 0, t is in units of this
+        length, and a hit has tmin < t < tmax. A ray with a NaN misses everything. out: an array that the call fills and
+        returns. It is C-contiguous and has the result's shape and type. Reusing memory is faster than allocating it.
 
         Returns an array (...) of `promin.HIT_DTYPE`, which `promin cast` writes too: t (infinite on a miss), object and
-        primitive (-1 on a miss), u and v (weights of a triangle's second and third corner), normal (geometric, unit, as
-        wound or outward, never flipped to the ray; 0 on a miss). At equal t the lower (object, primitive) wins; a
-        triangle's edges belong to it. Raises UsageError, RunError, Cancelled."""
+        primitive (-1 on a miss), u and v (weights of a triangle's second and third corner), normal (the geometric unit
+        normal; 0 on a miss). The normal points to the side from which a triangle's corners run counterclockwise, and
+        outwards on a solid; it does not depend on the ray. At equal t the hit with the lower (object, primitive)
+        counts. A ray through an edge of a triangle hits the triangle. Raises UsageError, RunError, Cancelled."""
         _, native, center = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         hits = prepare_answers(out, shape, HIT_DTYPE, packed)
@@ -114,8 +115,8 @@ class Caster:
         out: NDArray[np.bool_] | None = None,
         progress: Progress = None,
     ) -> NDArray[np.bool_]:
-        """Returns for each ray whether it hits anything, as bool (...); this is faster than `cast`. rays to tmax and
-        out: as for `cast`."""
+        """Returns for each ray whether it hits anything, as bool (...). This is faster than `cast`. The arguments rays,
+        directions, tmin, tmax and out are those of `cast`, as are the exceptions."""
         _, native, center = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         answers = prepare_answers(out, shape, np.dtype(np.bool_), packed)
@@ -132,12 +133,13 @@ class Caster:
         out: NDArray[np.int32] | None = None,
         progress: Progress = None,
     ) -> NDArray[np.int32]:
-        """Returns the number of surfaces that each ray crosses, as int32 (...). rays to tmax and out: as for `cast`.
+        """Returns the number of surfaces that each ray crosses, as int32 (...). The arguments rays, directions, tmin,
+        tmax and out are those of `cast`.
 
-        A ray that hits an edge or a corner of a closed mesh crosses exactly one of the triangles there, and a ray along
-        a silhouette crosses none or two. The count is therefore odd exactly if the ray starts inside
-        (include/promin/caster.h has the rule). For `cast` an edge belongs to each of its triangles. Raises UsageError,
-        RunError, Cancelled."""
+        A ray that hits an edge or a corner of a closed mesh crosses exactly one of the triangles at this place. A ray
+        that touches a silhouette crosses no triangle or two. The count is therefore odd exactly if the ray starts
+        inside (include/promin/caster.h has the rule). In `cast`, a ray through an edge hits each triangle of the edge.
+        Raises UsageError, RunError, Cancelled."""
         _, native, center = self._open()
         packed, shape = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         counts = prepare_answers(out, shape, np.dtype(np.int32), packed)
@@ -145,13 +147,14 @@ class Caster:
         return counts
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Returns for each of the points (..., 3) whether it is inside a closed surface, as bool (...). The surface is
-        the scene as a whole.
+        """Returns for each of the points (..., 3) whether it is inside a closed surface, as bool (...). All objects of
+        the scene together are the surface.
 
         A point is inside if a ray from it crosses the surface an odd number of times. Edges and corners count once, as
-        for `count`. The opposite ray must agree. If it does not, the point is on the surface, or the surface is not
-        closed. Such a point counts as outside, and a Python warning reports their number. A point in two overlapping
-        solids counts as outside; make a Caster for each solid. Raises UsageError, RunError, Cancelled."""
+        for `count`. The ray in the opposite direction must give the same result. Otherwise the point is on the surface,
+        or the surface is not closed. Such a point counts as outside, and a Python warning reports their number. A point
+        in two overlapping solids counts as outside; make a Caster for each solid. Raises UsageError, RunError,
+        Cancelled."""
         places = to_vectors(points, "points")
         is_odd, agrees = (self.count(places, way) % 2 == 1 for way in (PROBE, -PROBE))
         doubtful = int((is_odd != agrees).sum())
@@ -173,10 +176,10 @@ class Caster:
         *,
         progress: Progress = None,
     ) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """Returns all crossings of each ray, by the rule of `count`, as (splits, hits). splits is int64 (n + 1) for the
-        n rays in C order; hits is an array of `promin.HIT_DTYPE`. The hits of ray i are hits[splits[i]:splits[i + 1]],
-        sorted by t, then by (object, primitive). All of them are kept in memory; see `iter_list`. rays to tmax: as for
-        `cast`. Raises as it does."""
+        """Returns all crossings of each ray as (splits, hits). `count` describes what a crossing is. splits is int64 (n
+        + 1) for the n rays in C order; hits is an array of `promin.HIT_DTYPE`. The hits of ray i are
+        hits[splits[i]:splits[i + 1]], sorted by t, then by (object, primitive). All hits are in memory at once;
+        `iter_list` avoids this. The arguments and the exceptions are those of `cast`."""
         _, native, center = self._open()
         packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         splits, rows = native.list(packed, None, progress)
@@ -192,9 +195,10 @@ class Caster:
         budget: int = 256 << 20,
         progress: Progress = None,
     ) -> Iterator[tuple[int, NDArray[np.int64], NDArray[Any]]]:
-        """Does the same as `list` in parts, for more hits than memory can hold. Yields (first, splits, hits), where
-        hits[splits[i]:splits[i + 1]] are the hits of ray first + i in C order. Each part has as many rays as have hits
-        of `budget` bytes together, but at least one. progress: receives the progress of each part separately."""
+        """Yields the result of `list` in parts, for more hits than memory can hold. A part is (first, splits, hits),
+        where hits[splits[i]:splits[i + 1]] are the hits of ray first + i in C order. Each part has as many rays as have
+        `budget` bytes of hits together, but at least one ray. progress: receives the progress of each part
+        separately."""
         if not isinstance(budget, (int, np.integer)) or not 0 < budget < 2**63:
             raise UsageError(f"budget is {budget!r:.80}; give a positive number of bytes")
         _, native, center = self._open()
@@ -214,7 +218,7 @@ class Caster:
             return self._opened
 
     def _make_private(self) -> None:
-        """Creates the members that are not pickled: open objects and their locks."""
+        """Creates the members that are not pickled: the open objects and their locks."""
         self._lock = threading.RLock()
         self._opened = None
 
@@ -229,7 +233,8 @@ class Caster:
 def prepare_answers(
     out: NDArray[Any] | None, shape: tuple[int, ...], dtype: np.dtype[Any], rays: NDArray[np.float32]
 ) -> NDArray[Any]:
-    """Returns the array for the results: the caller's, or a new one. Raises UsageError if the caller's does not fit."""
+    """Returns the array for the results: the caller's array or a new one. Raises UsageError if the caller's array does
+    not fit."""
     if out is None:
         return np.empty(shape, dtype)
     if not isinstance(out, np.ndarray) or out.dtype != dtype or out.shape != shape:
@@ -241,12 +246,12 @@ def prepare_answers(
 
 
 def as_bytes(hits: NDArray[Any]) -> NDArray[np.uint8]:
-    """Returns a view of the same memory as (n, 32) bytes."""
+    """Returns a view of the hits' memory as (n, 32) bytes."""
     return hits.reshape(-1).view(np.uint8).reshape(hits.size, HIT_DTYPE.itemsize)
 
 
 def _to_hits(rows: NDArray[np.uint8]) -> NDArray[Any]:
-    """Returns bytes (n, 32) from the library as hits (n,)."""
+    """Returns hits (n,) that share the memory of the library's bytes (n, 32)."""
     hits: NDArray[Any] = rows.view(HIT_DTYPE).reshape(-1).view(Hits)
     return hits
 
@@ -259,5 +264,5 @@ def _list_parts(
         splits, rows = native.list(packed[first : first + count], budget, progress)
         yield first, splits, _to_hits(rows)
         first += len(splits) - 1
-        # Rays whose hits exceed the budget are requested again.
+        # If the hits of some rays exceed the budget, these rays are cast again in the next call.
         count = min(2 * (len(splits) - 1), _RAYS_AT_A_TIME)

@@ -19,33 +19,34 @@ class DeviceInfo:
     """A description of a Vulkan device."""
 
     index: int
-    """Its index in `Device.list()`."""
+    """The device's index in `Device.list()`."""
     name: str
-    """The name that its driver gives."""
+    """The name that the device's driver reports."""
     type: str
-    """"discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"."""
+    """The kind of the device: "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"."""
     driver: str
     """The driver's name and version."""
     uuid: str
-    """Identifies the device permanently: "uuid:" with these 32 digits selects it. All lavapipe devices have the
-    same."""
+    """A permanent identifier of 32 digits: "uuid:" followed by it selects the device. All lavapipe devices have the
+    same one."""
     api_version: str
-    """The Vulkan version that it supports."""
+    """The Vulkan version that the device supports."""
     obstacles: tuple[str, ...] = ()
-    """Reasons why it cannot be used; empty for a usable one."""
+    """Reasons why promin cannot use the device; empty for a usable device."""
     lacks: tuple[str, ...] = ()
-    """Optional features that it lacks, and what promin does without them."""
+    """Optional features that the device lacks, and what promin does without them."""
     is_default: bool = False
-    """Whether it is the default device."""
+    """True if it is the default device."""
 
 
 class Device:
-    """An open Vulkan device. Any number of Casters and Renderers may share it, on any threads."""
+    """An open Vulkan device. Any number of Casters and Renderers on any threads may share it."""
 
     def __init__(self, selection: str | int | None = None) -> None:
         """Opens the device that `selection` names: an index of `Device.list()`, "uuid:" with a UUID, or a part of a
-        name in any case. Without a selection it prefers a GPU to a CPU. Raises DeviceError if no device is usable or
-        none matches; without any driver the message names the package with Mesa's drivers."""
+        device's name, in upper or lower case. Without a selection it opens a GPU, or a CPU if there is no GPU. Raises
+        DeviceError if no device is usable or none matches; without any driver the message names the package with Mesa's
+        drivers."""
         self._selection = _name(selection)
         self._native = _promin.Device.open(self._selection)
 
@@ -57,17 +58,18 @@ class Device:
 
     @property
     def info(self) -> DeviceInfo:
-        """Its entry in `Device.list()`."""
+        """The device's entry in `Device.list()`."""
         return DeviceInfo(**self._native.info())
 
     @property
     def choice(self) -> str:
-        """The reason why it was chosen, as a sentence."""
+        """The reason for the choice of this device, as a sentence."""
         return self._native.choice()
 
     @property
     def fingerprint(self) -> str:
-        """Name and driver, which together with promin's version determine the bits of pictures and hits."""
+        """Name and driver of the device. Together with promin's version they determine the bits of pictures and
+        hits."""
         info = self.info
         return f"{info.name}, {info.driver}"
 
@@ -79,11 +81,12 @@ class Device:
 
 
 DeviceLike = Union[Device, str, int, None]
-"""A device, or an argument of `Device()`. None is the default device, which all users share."""
+"""A device, or an argument of `Device()`. None stands for the default device, which all users share."""
 
 
 def find_device(device: DeviceLike) -> Device:
-    """Returns the device itself, a device that this process has already opened by this name, or a new one."""
+    """Returns the argument if it is a device, a device that this process has already opened with this name, or a new
+    device."""
     if isinstance(device, Device):
         return device
     name = _name(device)

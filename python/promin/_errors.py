@@ -12,24 +12,24 @@ class Problem(NamedTuple):
     """One reason of an error. `str(problem)` is its sentence, "WHERE: WHAT; CURE"."""
 
     code: str
-    """The kind of the problem, such as "job.piece.cut". Codes are stable; sentences are not."""
+    """The kind of the problem, such as "job.piece.cut". Codes do not change between versions; sentences may."""
     where: str
-    """A file, and after ": " the place in it; or a member of a scene. May be empty."""
+    """The place of the problem: a file, then ": " and a place in the file; or a member of a scene. May be empty."""
     what: str
-    """The fault, as a sentence without its end."""
+    """The problem, as a sentence without its full stop."""
     cure: str
-    """The remedy, as a sentence without its end. May be empty."""
+    """The way to solve the problem, as a sentence without its full stop. May be empty."""
 
     def __str__(self) -> str:
         return (self.where and self.where + ": ") + self.what + (self.cure and "; " + self.cure)
 
 
 class Error(Exception):
-    """Base class of promin's exceptions. `str(error)` is the first problem's sentence; the others follow, one on a
-    line."""
+    """Base class of promin's exceptions. `str(error)` is the first problem's sentence. The sentences of other problems
+    follow, one on each line."""
 
     problems: tuple[Problem, ...]
-    """The reasons, at least one."""
+    """The problems; there is at least one."""
 
     _CODE: ClassVar[str] = "work.failed"
 
@@ -43,13 +43,13 @@ class Error(Exception):
 
 
 class UsageError(Error, ValueError):
-    """An argument is wrong. The code is "argument.wrong" where this package finds it itself."""
+    """An argument is wrong. The code is "argument.wrong" if this package detects the error itself."""
 
     _CODE = "argument.wrong"
 
 
 class InputError(Error):
-    """A scene, ray or BVH file or a picture to read is bad, or a scene in memory."""
+    """A scene file, ray file, BVH file or input picture is invalid, or a scene in memory is."""
 
     _CODE = "input.wrong"
 

@@ -21,7 +21,7 @@ from promin._errors import UsageError
 from promin._records import Display, to_dict
 
 _MATTES = {"cryptomatte_object": "CryptoObject", "cryptomatte_material": "CryptoMaterial"}
-"""Names of the arrays, and of their layers in an EXR."""
+"""Names of the Cryptomatte arrays, and of their layers in an EXR."""
 
 
 @dataclass(frozen=True)
@@ -29,31 +29,33 @@ class Frame:
     """A picture with its AOVs and metadata."""
 
     rgb: NDArray[np.float32] = field(repr=False)
-    """Linear light, (rows, columns, 3); row 0 is the top."""
+    """The picture in linear light, (rows, columns, 3); row 0 is the top."""
     aovs: Mapping[str, NDArray[Any]] = field(repr=False)
-    """Arrays with the names of include/promin/aovs.h, (rows, columns) or (rows, columns, components). "cryptomatte"
-    gives two arrays, "cryptomatte_object" and "cryptomatte_material", (rows, columns, 6, 2) float32. They hold six
-    ranks, the largest share first, each with the id (see `cryptomatte_id`) and its share of the pixel, as in an EXR;
-    both are 0 in unused ranks."""
+    """The AOVs as arrays (rows, columns) or (rows, columns, components). The keys are the names of
+    include/promin/aovs.h. The AOV "cryptomatte" is two arrays, "cryptomatte_object" and "cryptomatte_material", (rows,
+    columns, 6, 2) float32. They hold six ranks, sorted by descending share. A rank has the id (see `cryptomatte_id`)
+    and its share of the pixel, as in an EXR; both are 0 in unused ranks."""
     metadata: Mapping[str, str]
-    """The metadata in the header of its EXR: scene, device, size and options."""
+    """The metadata for the header of an EXR: scene, device, size and options."""
     display: Display = Display()
-    """How it is displayed in 8 bits; the same as `promin render` uses."""
+    """The transform to 8 bits for display; the same as `promin render` uses."""
     error: Mapping[str, float] | None = None
-    """With an error target: `target`, `largest_claim`, `unmet_pixels` and `samples` of the whole picture."""
+    """The accuracy of a picture with an error target: `target`, `largest_claim`, `unmet_pixels` and `samples` of the
+    whole picture. None without an error target."""
     rays: Mapping[str, int] = field(default_factory=dict)
-    """Numbers of rays traced, by kind."""
+    """Numbers of rays that were traced, by kind of ray."""
     trace_ms: float = 0.0
-    """Milliseconds on the device."""
+    """Time of the dispatches on the device, in milliseconds."""
     placement: tuple[tuple[int, int], tuple[int, int]] | None = None
-    """For a crop its upper left pixel in the whole picture, and the size of the whole picture."""
+    """The position of a crop: its upper left pixel in the whole picture, and the size of the whole picture. None
+    without a crop."""
     unlit: NDArray[np.float32] | None = field(default=None, repr=False)
-    """The part of the picture that `display` does not change, (rows, columns, 4): the AOV "unlit" of
+    """The colours of the picture that `display` does not change, (rows, columns, 4): the AOV "unlit" of
     include/promin/aovs.h. None unless the scene has both unlit and lit materials."""
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height."""
+        """Width and height of the picture in pixels."""
         return self.rgb.shape[1], self.rgb.shape[0]
 
     def save(
@@ -65,10 +67,10 @@ class Frame:
         compression: str = "zip",
     ) -> None:
         """Writes the picture: an .exr with all AOVs or a .hdr in linear light, or a .png, .jpg, .webp or .tif after the
-        transform `display`. display: None is the picture's own. The file is written completely or not at all. These
-        options apply to an .exr. half: store colours, normals and coverage as 16-bit floats. compression: "none",
-        "rle", "zips", "zip" or "piz", always lossless. Raises UsageError for another ending,
-        RunError if the file cannot be written."""
+        transform `display`. display: the transform; None: the picture's own. The file is written completely or not at
+        all. These options apply to an .exr. half: store colours, normals and coverage as 16-bit floats. compression:
+        "none", "rle", "zips", "zip" or "piz", always lossless. Raises UsageError for another extension, RunError if the
+        file cannot be written."""
         file = os.fsdecode(path)
         if _promin.has_named_channels(file):
             channels = list_channels(self.aovs)
@@ -80,9 +82,10 @@ class Frame:
         _promin.write_image(file, self.rgb, list(self.metadata.items()), self.placement, channels, shown, exr)
 
     def matte(self, name: str, of: str = "object") -> NDArray[np.float32]:
-        """Returns the part of each pixel that objects of this name cover, or with of="material" materials of this name:
-        (rows, columns) float32, 0...1. The picture needs the AOV "cryptomatte". An object without a name is called by
-        its number, "object 3". An unknown name gives 0 everywhere."""
+        """Returns the fraction of each pixel that objects of this name cover, as (rows, columns) float32, 0...1. With
+        of="material" it returns the fraction that materials of this name cover. The picture needs the AOV
+        "cryptomatte". The name of an object without a name is made of its number: "object 3". For an unknown name all
+        fractions are 0."""
         layer = self.aovs.get(f"cryptomatte_{of}")
         if layer is None:
             raise UsageError(
@@ -93,7 +96,7 @@ class Frame:
         return np.asarray(np.where(ids == cryptomatte_id(name), shares, 0).sum(axis=-1), np.float32)
 
     def srgb(self, display: Display | None = None) -> NDArray[np.uint8]:
-        """Returns the picture as a screen displays it, (rows, columns, 3) in 8-bit sRGB, without noise."""
+        """Returns the picture as a screen displays it, in 8-bit sRGB (rows, columns, 3), without noise."""
         shown = _promin.show(self.rgb, to_dict(display or self.display), self.unlit)
         return np.asarray(np.floor(shown * 255.0 + 0.5), np.uint8)
 
@@ -116,8 +119,8 @@ def cryptomatte_id(name: str) -> np.float32:
 
 
 def to_mattes(channels: list[tuple[str, NDArray[Any]]]) -> dict[str, NDArray[np.float32]]:
-    """Returns the Cryptomatte arrays of Frame.aovs from an EXR's channels in order, float32 or its bits; empty if there
-    are none."""
+    """Returns the Cryptomatte arrays of Frame.aovs; empty if there are none. The argument holds an EXR's channels in
+    order, as float32 or as the bits of float32."""
     mattes = {}
     for name, layer in _MATTES.items():
         planes = [values for channel, values in channels if channel.startswith(layer)]
@@ -128,8 +131,8 @@ def to_mattes(channels: list[tuple[str, NDArray[Any]]]) -> dict[str, NDArray[np.
 
 
 def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDArray[np.uint32]]]:
-    """Returns the channels of an EXR in the order of the table: name, whether they are integers, and the bits of their
-    values."""
+    """Returns the channels of an EXR in the order of the table. A channel is its name, whether its values are integers,
+    and the bits of the values."""
     channels = []
     for name, channel, letters in _promin.list_aovs():
         if name not in aovs:
@@ -153,14 +156,15 @@ def list_channels(aovs: Mapping[str, NDArray[Any]]) -> list[tuple[str, bool, NDA
 def read_image(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     """Reads R, G and B of a picture file of any format that OpenImageIO supports. Returns (rows, columns, 3) float32
     without conversion: linear light from EXR and Radiance files, sRGB values in 0...1 from others. Colours of EXR and
-    WebP files are multiplied by alpha, which `read_aovs` reads; others are not. Raises InputError, RunError."""
+    WebP files are multiplied by alpha (`read_aovs` reads alpha); colours of other files are not. Raises InputError,
+    RunError."""
     return _promin.read_image(os.fsdecode(path))
 
 
 def read_aovs(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
-    """Reads all channels of a picture file except R, G and B. Returns arrays with the names of Frame.aovs: "alpha" of
-    any format, and "depth" and all others of an .exr that promin has written. Channels of other programs keep their
-    names in the file: (rows, columns), float32 or uint32. Raises InputError, RunError."""
+    """Reads all channels of a picture file except R, G and B. Returns arrays with the names of Frame.aovs: "alpha" from
+    any format, and all AOVs from an .exr that promin has written. Channels from other programs keep their names in the
+    file and are (rows, columns) float32 or uint32. Raises InputError, RunError."""
     channels = {
         name: values if is_integer else values.view(np.float32)
         for name, is_integer, values in _promin.read_channels(os.fsdecode(path))
@@ -172,7 +176,7 @@ def read_aovs(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
         elif letters and all(f"{channel}.{letter}" in channels for letter in letters):
             aovs[name] = np.stack([channels.pop(f"{channel}.{letter}") for letter in letters], axis=-1)
     planes = [channel for channel in channels if re.fullmatch(rf"({'|'.join(_MATTES.values())})\d\d\.[RGBA]", channel)]
-    # The letters' order is not the alphabet's.
+    # The order R, G, B, A is not alphabetical.
     planes.sort(key=lambda channel: (channel[:-1], "RGBA".index(channel[-1])))
     aovs.update(to_mattes([(channel, channels.pop(channel)) for channel in planes]))
     return {**aovs, **{name: values for name, values in channels.items() if name not in ("R", "G", "B")}}
@@ -188,12 +192,12 @@ def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: D
 
 
 def unlit_of(picture: object) -> NDArray[np.float32] | None:
-    """Returns the part of a Frame that its display does not change; None for an array."""
+    """Returns the colours of a Frame that its display does not change; None for an array."""
     return picture.unlit if isinstance(picture, Frame) else None
 
 
 def to_picture(rgb: object) -> NDArray[np.float32]:
-    """Returns a picture for the native module; for a Frame its light."""
+    """Returns the pixels of a picture for the native module. The argument is an array or a Frame."""
     if isinstance(rgb, Frame):
         return rgb.rgb
     array = to_numbers(rgb, "the pixels")

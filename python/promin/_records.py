@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Lights, materials, cameras and environments: the structs of include/promin as dataclasses. The comments there say
-more.
+"""Lights, materials, cameras and environments: the structs of include/promin as dataclasses. The comments in
+include/promin say more.
 
 Colours are linear RGB, angles are in radians, lengths in world units. Ranges are checked when a record is used."""
 
@@ -29,27 +29,28 @@ class Light:
     """A light (promin/lights.h). The default is a classic point light of power 1 at the origin."""
 
     kind: str = "point"
-    """"point", "directional", "spot" or "headlight", which shines in the direction of view."""
+    """The kind of the light: "point", "directional", "spot" or "headlight". A headlight shines in the direction of
+    view."""
     position: Vec3 = (0.0, 0.0, 0.0)
     """Position of point and spot lights."""
     direction: Vec3 = (0.0, 0.0, -1.0)
-    """Unit vector in which the light of directional and spot lights travels."""
+    """Unit vector: the direction in which the light of directional and spot lights travels."""
     diffuse: Vec3 = (1.0, 1.0, 1.0)
-    """Power in the diffuse term; in candela for lights with attenuation."""
+    """Power for the diffuse term; in candela for lights with attenuation."""
     specular: Vec3 = (1.0, 1.0, 1.0)
-    """Power in the specular term."""
+    """Power for the specular term, in the same units."""
     attenuation: str = "none"
-    """"none" or "inverse_square"."""
+    """The decrease of the power with the distance: "none" or "inverse_square"."""
     range: float = inf
-    """Distance beyond which a light with attenuation contributes nothing."""
+    """Distance beyond which a light with attenuation contributes nothing, in world units."""
     inner_cone_angle: float = 0.0
-    """Half the angle of the cone in which a spot has its full power."""
+    """Half the angle of the cone in which a spot light has its full power."""
     outer_cone_angle: float = 0.785398163
-    """Half the angle of the cone outside of which a spot contributes nothing, at most pi / 2."""
+    """Half the angle of the cone outside which a spot light contributes nothing, at most pi / 2."""
     is_on: bool = True
-    """Whether the light is on. A light that is off keeps its index."""
+    """True if the light is on. A light that is off keeps its index."""
     name: str = ""
-    """For people."""
+    """A name for people."""
 
 
 @dataclass(frozen=True)
@@ -57,13 +58,13 @@ class TextureSlot:
     """A reference from a material to a texture of the scene's file (promin/textures.h)."""
 
     texture: int
-    """Index of the scene's texture."""
+    """Index of the texture in the scene."""
     uv_set: int = 0
     """The set of the mesh's texture coordinates, 0 or 1."""
     to_u: Vec3 = (1.0, 0.0, 0.0)
-    """u = to_u . (s, t, 1)."""
+    """The first row of the transform of texture coordinates (s, t): u = to_u . (s, t, 1)."""
     to_v: Vec3 = (0.0, 1.0, 0.0)
-    """v = to_v . (s, t, 1)."""
+    """The second row of the transform: v = to_v . (s, t, 1)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,19 +72,19 @@ class Material:
     """The fields that all material models share (promin/materials.h). Use Phong, MetallicRoughness or Unlit."""
 
     name: str = ""
-    """For people."""
+    """A name for people."""
     emissive: Vec3 = (0.0, 0.0, 0.0)
     """Light that the surface emits."""
     emissive_texture: TextureSlot | None = None
-    """Factors of it."""
+    """Texture whose values multiply `emissive`."""
     alpha_mode: str = "opaque"
-    """"opaque", "mask" or "blend". Casts ignore alpha."""
+    """The effect of alpha on pictures: "opaque", "mask" or "blend". Casts ignore alpha."""
     alpha: float = 1.0
     """Opacity of the surface, 0...1."""
     alpha_cutoff: float = 0.5
-    """The smallest alpha at which a masked surface is present."""
+    """The smallest alpha at which a surface with alpha_mode "mask" is present."""
     is_double_sided: bool = True
-    """Whether pictures show both sides of triangles."""
+    """True if pictures show both sides of the material's triangles."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,27 +92,27 @@ class Phong(Material):
     """Phong's model (docs/model.md, "Phong"). The default is a matt light grey."""
 
     ambient: Vec3 = (0.8, 0.8, 0.8)
-    """Weight of ambient light."""
+    """Factor of ambient light."""
     diffuse: Vec3 = (0.8, 0.8, 0.8)
-    """Weight of N.L times a light's diffuse power."""
+    """Factor of N.L times a light's diffuse power."""
     specular: Vec3 = (0.0, 0.0, 0.0)
-    """Weight of the highlight."""
+    """Factor of the highlight times a light's specular power."""
     shininess: float = 0.0
-    """Phong's exponent; 0 or less: no highlight."""
+    """Phong's exponent. There is no highlight if it is 0 or less."""
     reflection: Vec3 = (0.0, 0.0, 0.0)
-    """Weight of the mirror ray's radiance."""
+    """Factor of the mirror ray's radiance."""
     transmission: Vec3 = (0.0, 0.0, 0.0)
-    """Weight of the refracted ray's radiance."""
+    """Factor of the refracted ray's radiance."""
     ior: float = 1.0
     """Index of refraction."""
     fresnel: bool = False
-    """Whether Fresnel's reflectance weights both."""
+    """True if Fresnel's reflectance multiplies `reflection`, and 1 minus the reflectance multiplies `transmission`."""
     diffuse_texture: TextureSlot | None = None
-    """Factors of ambient and diffuse."""
+    """Texture whose values multiply `ambient` and `diffuse`."""
     specular_texture: TextureSlot | None = None
-    """Factors of specular and reflection."""
+    """Texture whose values multiply `specular` and `reflection`."""
     normal_texture: TextureSlot | None = None
-    """Normals in the mesh's tangent space."""
+    """Texture of normals in the mesh's tangent space."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,43 +122,43 @@ class MetallicRoughness(Material):
     base_color: Vec3 = (1.0, 1.0, 1.0)
     """Albedo of the dielectric and reflectance of the metal, 0...1."""
     metallic: float = 1.0
-    """Weight of the metal, 0...1."""
+    """Weight of the metal in the mixture of dielectric and metal, 0...1."""
     roughness: float = 1.0
     """Perceptual roughness, 0...1."""
     ior: float = 1.5
-    """Of the dielectric."""
+    """Index of refraction of the dielectric."""
     specular: float = 1.0
     """Strength of the dielectric's reflection, 0...1."""
     specular_color: Vec3 = (1.0, 1.0, 1.0)
-    """Its colour."""
+    """Colour of the dielectric's reflection."""
     transmission: float = 0.0
-    """The part of the light that is transmitted, 0...1."""
+    """The fraction of the light that is transmitted, 0...1."""
     thickness: float = 0.0
-    """0 for a thin wall; else the surface bounds a volume."""
+    """0 for a thin wall. With any other value the surface is the boundary of a volume."""
     attenuation_color: Vec3 = (1.0, 1.0, 1.0)
-    """The colour that white light has after attenuation_distance."""
+    """The colour that white light has after the distance attenuation_distance in the volume."""
     attenuation_distance: float = inf
-    """See attenuation_color."""
+    """The distance to which attenuation_color refers, in world units."""
     dispersion: float = 0.0
-    """20 divided by the Abbe number."""
+    """20 divided by the Abbe number of the volume's glass."""
     normal_scale: float = 1.0
-    """Factor of x and y of the texture's normals."""
+    """Factor of x and y of the normal texture's normals."""
     occlusion_strength: float = 1.0
-    """0...1."""
+    """Strength of the occlusion texture, 0...1."""
     diffuse_transmission: float = 0.0
-    """The part of the scattered light that leaves on the other side, 0...1."""
+    """The fraction of the scattered light that leaves on the other side, 0...1."""
     diffuse_transmission_color: Vec3 = (1.0, 1.0, 1.0)
-    """The colour of the light that leaves on the other side, 0...1, in place of the base colour."""
+    """The colour of the light that leaves on the other side, 0...1; it replaces the base colour for this light."""
     clearcoat: float = 0.0
     """Weight of the clear coat, 0...1."""
     clearcoat_roughness: float = 0.0
-    """0...1."""
+    """Perceptual roughness of the clear coat, 0...1."""
     clearcoat_normal_scale: float = 1.0
     """Factor of x and y of the coat's normals."""
     sheen_color: Vec3 = (0.0, 0.0, 0.0)
     """Colour of the sheen of cloth; 0 for no sheen."""
     sheen_roughness: float = 0.0
-    """0...1."""
+    """Perceptual roughness of the sheen, 0...1."""
     iridescence: float = 0.0
     """Weight of a thin film that colours the reflection, 0...1."""
     iridescence_ior: float = 1.3
@@ -165,9 +166,9 @@ class MetallicRoughness(Material):
     iridescence_thickness_minimum: float = 100.0
     """The film's thickness in nanometres where its texture is 0, not negative."""
     iridescence_thickness_maximum: float = 400.0
-    """The same where its texture is 1, and without a texture."""
+    """The film's thickness in nanometres where its texture is 1, and everywhere without a texture."""
     anisotropy: float = 0.0
-    """How much highlights are stretched, 0...1, on meshes with texture coordinates."""
+    """Strength with which highlights are stretched, 0...1, on meshes with texture coordinates."""
     anisotropy_rotation: float = 0.0
     """Direction of the stretch in radians, counterclockwise from the tangent."""
     base_color_texture: TextureSlot | None = None
@@ -194,9 +195,9 @@ class Unlit(Material):
     """A material whose colour does not depend on light."""
 
     color: Vec3 = (1.0, 1.0, 1.0)
-    """What is seen."""
+    """The colour that pictures show."""
     color_texture: TextureSlot | None = None
-    """Factors of it."""
+    """Texture whose values multiply `color`."""
 
 
 @dataclass(frozen=True)
@@ -204,7 +205,7 @@ class Camera:
     """A pose and a projection (promin/camera.h). The default camera stands at the origin and looks along -Z."""
 
     eye: Vec3 = (0.0, 0.0, 0.0)
-    """Where it is."""
+    """Position of the camera in the world."""
     look: Vec3 = (0.0, 0.0, -1.0)
     """Unit vector in the direction of view."""
     up: Vec3 = (0.0, 1.0, 0.0)
@@ -212,24 +213,24 @@ class Camera:
     yfov: float = 0.7
     """Vertical field of view of a perspective camera, in (0, pi)."""
     projection: str = "perspective"
-    """"perspective" or "orthographic"."""
+    """The projection: "perspective" or "orthographic"."""
     ymag: float = 1.0
-    """Half the height of an orthographic camera's view."""
+    """Half the height of an orthographic camera's view, in world units."""
     near: float = 0.0
-    """Distance of the near plane. Nothing nearer is drawn."""
+    """Distance of the near plane in world units. Nothing nearer than this plane is drawn."""
     aspect_ratio: float = 0.0
-    """Width over height that the scene's file requests; 0 if it requests none."""
+    """Ratio of width to height that the scene's file requests; 0 if the file requests no ratio."""
     resolution: tuple[int, int] = (0, 0)
-    """The size in pixels that the scene's file requests; 0 if it requests none."""
+    """The size in pixels that the scene's file requests; 0 if the file requests no size."""
     name: str = ""
-    """For people."""
+    """A name for people."""
 
     @staticmethod
     def look_at(
         eye: Iterable[float], target: Iterable[float], up: Iterable[float] = (0.0, 1.0, 0.0), **other: Any
     ) -> Camera:
-        """Returns a camera at `eye` with `target` in the middle of its picture and `up` upwards. `other` are its
-        further fields. If `up` is parallel to the view, another direction is used."""
+        """Returns a camera at `eye` that has `target` in the middle of its picture and `up` pointing upwards. `other`
+        sets further fields. If `up` is parallel to the direction of view, the camera uses another up direction."""
         start = np.array(tuple(eye), np.float64)
         look = np.array(tuple(target), np.float64) - start
         look /= np.linalg.norm(look)
@@ -245,12 +246,12 @@ class Studio:
     """The built-in surroundings for scenes without light."""
 
     front: float = 0.0
-    """The azimuth from which the viewer looks at the scene, about +Y from +Z."""
+    """The azimuth from which the viewer looks at the scene, in radians about +Y from +Z towards +X."""
 
 
 @dataclass(frozen=True)
 class GradientSky:
-    """A gradient over the elevation (promin/environment.h)."""
+    """A gradient of colours over the elevation angle (promin/environment.h)."""
 
     top: Vec3 = (0.3, 0.5, 1.0)
     horizon: Vec3 = (0.8, 0.8, 0.9)
@@ -261,21 +262,22 @@ class GradientSky:
 
 @dataclass(frozen=True)
 class Panorama:
-    """An equirectangular picture of all directions, its middle at -Z; see `promin.read_image`."""
+    """An equirectangular picture of all directions; the middle of the picture is -Z. `promin.read_image` reads such
+    pictures."""
 
     image: NDArray[np.float32] = field(repr=False, compare=False)
-    """Linear RGB, (rows, columns, 3) float32."""
+    """The picture in linear RGB, (rows, columns, 3) float32."""
 
 
 @dataclass(frozen=True)
 class Backdrop:
-    """The background that the camera sees: a gradient from the picture's upper edge to its lower edge, linear RGB,
-    displayed unchanged."""
+    """The background that the camera sees: a gradient from the picture's upper edge to its lower edge, linear RGB.
+    Exposure and tone mapping do not change it."""
 
     top: Vec3 = (1.0, 1.0, 1.0)
     bottom: Vec3 = (1.0, 1.0, 1.0)
     radiance: float = 1.0
-    """Factor that turns its colours into radiance in mirrors and behind glass."""
+    """Factor from the backdrop's colours to radiance in mirrors and behind glass."""
 
 
 @dataclass(frozen=True)
@@ -283,35 +285,36 @@ class Environment:
     """The surroundings of the scene: everything except objects and lights (promin/environment.h)."""
 
     ambient: Vec3 = (0.0, 0.0, 0.0)
-    """Ambient radiance from all directions, if there is no sky."""
+    """Radiance of the ambient light from all directions; used if there is no sky."""
     background: Vec3 = (0.0, 0.0, 0.0)
-    """Radiance of rays that leave the scene."""
+    """Radiance that rays return if they leave the scene."""
     sky: Union[Studio, GradientSky, Panorama, None] = None
     """The sky, which replaces ambient light."""
     shows_sky: bool = False
-    """Whether the camera sees the sky in place of the background."""
+    """True if the camera sees the sky in place of the background."""
     rotation: float = 0.0
-    """Rotation of the sky about +Y."""
+    """Rotation of the sky about +Y, in radians."""
     intensity: float = 1.0
-    """Factor of the sky's radiance."""
+    """Factor by which the sky's radiance is multiplied."""
     backdrop: Union[Backdrop, None] = None
-    """Replaces the background in pictures without alpha."""
+    """The backdrop, which replaces the background in pictures without alpha."""
 
 
 @dataclass(frozen=True)
 class Display:
-    """How linear light is displayed in 8 bits (promin/display.h)."""
+    """The conversion of linear light to 8 bits for display (promin/display.h)."""
 
     exposure_ev: float = 0.0
-    """Stops."""
+    """Exposure in stops."""
     tone_mapping: str = "none"
-    """"none", "neutral", "aces", "reinhard" or "agx"."""
+    """The tone mapping: "none", "neutral", "aces", "reinhard" or "agx"."""
     dithers: bool = False
-    """Whether 8-bit values get noise before they are rounded."""
+    """True if 8-bit values get noise before they are rounded."""
 
 
 def change(record: Record, fields: Mapping[str, Any]) -> Record:
-    """Returns the record with other values of some fields. Raises UsageError for a field that it does not have."""
+    """Returns the record with other values for some fields. Raises UsageError for a field that the record does not
+    have."""
     assert dataclasses.is_dataclass(record)
     known = [f.name for f in dataclasses.fields(record)]
     for name in fields:
@@ -321,7 +324,7 @@ def change(record: Record, fields: Mapping[str, Any]) -> Record:
 
 
 def suggest(name: str, known: list[str]) -> str:
-    """Returns the cure for an unknown name."""
+    """Returns a suggestion for an unknown name."""
     near = [one for one in known if name in one.split("_") or name in one]
     near = sorted(near, key=len)[:1] or difflib.get_close_matches(name, known, 1)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
@@ -362,7 +365,8 @@ def to_dict(record: object) -> dict[str, Any]:
 
 
 def from_dict(kind: type[Record], values: Mapping[str, Any]) -> Record:
-    """Returns a record from a dict of the native module; for a Material the class of its model."""
+    """Returns a record from a dict of the native module. For a Material it returns the class of the material's
+    model."""
     fields = dict(values)
     if kind is Material:
         kind = _MODELS[fields.pop("model")]  # type: ignore[assignment]

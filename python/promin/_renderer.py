@@ -48,15 +48,16 @@ from promin._view import (
 )
 
 _ASPECT_RATIO = 16 / 9
-"""Aspect ratio of the camera that frames a scene if no size is given, as in `promin render` (test_tables.py)."""
+"""Aspect ratio of the camera that frames a scene if no size is given, the same as in `promin render`
+(test_tables.py)."""
 _NO_ID = np.uint32(2**32 - 1)
 """The value of the AOV `object` on a miss."""
 _MOST_STOPS = 64
-"""The largest exposure in stops, as in `promin render`."""
+"""The largest exposure in stops, the same as in `promin render`."""
 
 
 Background = Union[Sequence[float], str, None]
-"""A background as for `promin render --background`: three sRGB numbers from 0 to 1, "white", "#80a0ff",
+"""A background in one of the forms of `promin render --background`: three sRGB numbers from 0 to 1, "white", "#80a0ff",
 "linear:0.2,0.4,1" or "environment"."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -95,7 +96,7 @@ _ELSEWHERE = {
     "look": "a point to look at is look_at, a direction of view is direction",
     "output": "save what is returned: frame.save(file)",
 }
-"""Where there is what the programs have an option for and these functions no keyword."""
+"""Hints for options of the programs that these functions have no keyword for."""
 _OTHER_KEYWORDS = {
     "aov": "aovs",
     "framing": "from_",
@@ -103,26 +104,26 @@ _OTHER_KEYWORDS = {
     "shading": "debug_view",
     "width": "size",
 }
-"""Keywords whose names differ from the programs' options."""
+"""Keywords whose names differ from the names of the programs' options."""
 
 
 @dataclass(frozen=True)
 class _Opened:
-    """A renderer on its device."""
+    """A native renderer with its device."""
 
     device: Device
     native: _promin.Renderer
     lit: _promin.Scene
     """The scene with its lights."""
     aovs: tuple[str, ...]
-    """The AOVs of its pictures."""
+    """The AOVs of the renderer's pictures."""
 
 
 class Renderer:
     """Renders pictures of a scene on a device.
 
     The constructor lights the scene, builds a tree and compiles kernels. The scene may change afterwards; the Renderer
-    keeps its own snapshot. Threads, Ctrl-C, pickling and forks work as for a Caster."""
+    keeps its own snapshot. The rules of a Caster for threads, Ctrl-C, pickling and forks apply to a Renderer too."""
 
     _opened: _Opened | None
 
@@ -147,20 +148,21 @@ class Renderer:
         expected_samples: int | None = None,
         progress: Progress = None,
     ) -> None:
-        """aovs: what pictures tell beside their light, by the names of include/promin/aovs.h: "depth", "normal",
-        "object", ..., and "cryptomatte" (see Frame.matte); `render` may ask for others, and where they change the tree
-        is built anew. scene: or the path of its file. view: that of pictures which are given none; what it takes is
-        compiled at once. light: what stands in for light that the scene lacks: "auto", "studio", "headlight" or "none".
-        background: what lies behind all, as --background of promin render has it: three sRGB numbers from 0 to 1, a
-        name as "white" or "#80a0ff", which pictures show as that colour; "linear:0.2,0.4,1" for light, which is exposed
-        and tone mapped; "environment" for what lights the scene; None: the scene's, or a grey gradient. environment:
-        the file of an equirectangular panorama around the scene, in place of its sky. environment_rotation turns the
-        sky about +Y from +Z towards +X, light_rotation the directional lights too, in degrees; environment_intensity
-        multiplies its radiance. exposure: stops by which pictures are shown brighter, -64 to 64; "auto": what suits the
-        scene's light, 0 for most. texture_memory: the most bytes that textures take. expected_samples: about how many
-        samples all pictures will have together, over all pixels; where they are few, kernels are taken that are
-        compiled sooner and trace slower, with the same bits; None: many. The rest as Caster. Raises UsageError,
-        InputError, DeviceError, RunError, Cancelled."""
+        """aovs: the AOVs of the pictures, with the names of include/promin/aovs.h: "depth", "normal", "object", ...,
+        and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
+        Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
+        light: the light that is added to a scene without light: "auto", "studio", "headlight" or "none". background:
+        the background, as in `promin render --background`. Three sRGB numbers from 0 to 1, a name such as "white", or
+        "#80a0ff" are a colour that pictures show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone
+        mapped. "environment" shows the environment that lights the scene. None: the scene's background, or a grey
+        gradient. environment: the file of an equirectangular panorama, which replaces the scene's sky.
+        environment_rotation: degrees by which the sky is rotated about +Y from +Z towards +X. light_rotation: the same
+        rotation for the sky and the directional lights. environment_intensity: factor of the sky's radiance. exposure:
+        stops by which pictures are displayed brighter, -64 to 64; "auto": an exposure that suits the scene's light, 0
+        for most scenes. texture_memory: the largest number of bytes for textures. expected_samples: the approximate
+        number of samples of all pixels of all pictures together; if it is small, kernels are used that compile faster
+        and trace slower, with the same bits; None: a large number. The other arguments are those of a Caster. Raises
+        UsageError, InputError, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
@@ -186,7 +188,7 @@ class Renderer:
 
     @property
     def scene(self) -> Scene:
-        """The scene as it was when the Renderer was made."""
+        """The scene as it was when the Renderer was created."""
         return self._scene
 
     @property
@@ -196,37 +198,37 @@ class Renderer:
 
     @property
     def setup(self) -> dict[str, Any]:
-        """The cost of construction, with the names of include/promin/setup_stats.h."""
+        """The cost of construction. The keys are the names of include/promin/setup_stats.h."""
         return self._open().native.setup()
 
     @property
     def lights(self) -> list[Light]:
-        """Copies of the lights, including those that were added."""
+        """Copies of the lights, including the lights that the Renderer added."""
         lights = self._changes.get("lights")
         return list(lights) if lights is not None else [self._back(from_dict(Light, r)) for r in self._lit().lights()]
 
     @property
     def materials(self) -> list[Material]:
-        """Copies of the materials as used for lighting."""
+        """Copies of the materials, as the Renderer uses them."""
         materials = self._changes.get("materials")
         return list(materials) if materials is not None else [from_dict(Material, r) for r in self._lit().materials()]
 
     @property
     def environment(self) -> Environment:
-        """Ambient light, background and sky, including those that were added."""
+        """Ambient light, background and sky, including those that the Renderer added."""
         environment: Environment | None = self._changes.get("environment")
         return environment if environment is not None else from_dict(Environment, self._lit().environment())
 
     @property
     def display(self) -> Display:
-        """How pictures of the scene are displayed in 8 bits."""
+        """The transform with which 8-bit pictures of the scene are displayed."""
         shown = from_dict(Display, self._lit().display(self._light))
         return shown if self._exposure is None else replace(shown, exposure_ev=self._exposure)
 
     def camera(self, camera: CameraLike = None, aspect_ratio: float = _ASPECT_RATIO) -> Camera:
-        """The camera of pictures with this one, None being that of the Renderer's view, to change with
-        dataclasses.replace. aspect_ratio: of the picture in which the scene is framed. Raises UsageError where the
-        scene has none of this name or number."""
+        """Returns the camera that pictures have for this argument; None stands for the camera of the Renderer's view.
+        dataclasses.replace changes the result. aspect_ratio: the ratio of the picture in which the scene is framed.
+        Raises UsageError if the scene has no camera of this name or number."""
         if isinstance(camera, Camera):
             return camera
         record = self._choose_camera(change_view(self._view, {"camera": camera}), None, aspect_ratio)
@@ -234,7 +236,7 @@ class Renderer:
         return chosen
 
     def _choose_camera(self, view: View, sides: tuple[int, ...] | None, aspect_ratio: float) -> dict[str, Any]:
-        """For the native module; sides: of its pictures, None where they are not known."""
+        """Returns the camera's record for the native module. sides: the size of the picture; None if it is unknown."""
         given = None
         if isinstance(view.camera, Camera):
             given = move_camera(view.camera, self._scene.native_center)
@@ -277,8 +279,8 @@ class Renderer:
         near: float | None = None,
     ) -> Frame:
         """Renders one picture. view: None is the Renderer's own view; further keywords replace its fields. aovs: None
-        selects the Renderer's own AOVs. A picture of a scene file has the same bits as that of `promin render` with the
-        same options. Raises UsageError for arguments that break the rules of include/promin/view.h or contradict each
+        selects the Renderer's own AOVs. `promin render` with the same scene file and options writes a picture with the
+        same bits. Raises UsageError for arguments that break the rules of include/promin/view.h or contradict each
         other, RunError, Cancelled."""
         given = locals()  # each field of a view is a keyword of its name
         whole = settle_quality(change_view(self._view if view is None else of_view(view), given))
@@ -317,8 +319,8 @@ class Renderer:
         materials: Iterable[Material] | None = None,
         environment: Environment | None = None,
     ) -> None:
-        """Replaces all lights, all materials (by the same number of them) or the environment, without building a tree.
-        Raises InputError for invalid arguments, and then changes nothing."""
+        """Replaces all lights, all materials or the environment, without building a tree. The number of materials must
+        stay the same. Raises InputError for invalid arguments, and then changes nothing."""
         new: dict[str, Any] = {}
         if lights is not None:
             new["lights"] = _all_of(lights, Light)
@@ -339,12 +341,12 @@ class Renderer:
             self._changes.update(new)
 
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
-        """Changes a material of all later pictures, as Scene.set_material changes that of a scene, without building a
-        tree."""
+        """Changes a material in all later pictures, without building a tree. The arguments are those of
+        Scene.set_material."""
         self.update(materials=replace_one(self.materials, material, _one_of(new, Material), fields, "material"))
 
     def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
-        """Does the same for a light of `lights`."""
+        """Changes a light in all later pictures, as set_material does with a material."""
         self.update(lights=replace_one(self.lights, light, _one_of(new, Light), fields, "light"))
 
     def _check_background(self, aovs: tuple[str, ...]) -> None:
@@ -354,25 +356,25 @@ class Renderer:
             )
 
     def _describe_view(self, view: View) -> tuple[dict[str, Any], Display]:
-        """The view for the native module, and how its picture is shown."""
+        """Returns the view for the native module, and the display transform of its picture."""
         camera = self._choose_camera(view, size_of(view), _ASPECT_RATIO)
         shown = self.display if shows_light(view) else Display()
         return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """Returns the AOVs of these names with positions in the world."""
+        """Returns the AOVs of these names. Positions are in world coordinates."""
         if self._moves(names):
             is_hit = (aovs["object"] != _NO_ID)[..., np.newaxis]
             aovs["position"] = np.where(is_hit, aovs["position"] + self._scene.native_center, 0.0)
         return {name: values for name, values in aovs.items() if name in names}
 
-    # The native renderer, which is made when it is first needed.
+    # The native renderer, which is created at its first use.
 
     def _open(
         self, aovs: tuple[str, ...] | None = None, view: View | None = None, progress: Progress = None
     ) -> _Opened:
-        """Returns an open renderer whose pictures have these AOVs; None accepts any. view: the view of the picture to
-        render; None: the Renderer's own."""
+        """Returns an open renderer whose pictures have these AOVs; None accepts any. view: the view of the picture that
+        will be rendered; None: the Renderer's own view."""
         opened = self._opened
         if opened is None or aovs not in (None, opened.aovs):
             with self._lock:
@@ -381,8 +383,8 @@ class Renderer:
                     names = self._aovs if aovs is None else aovs
                     opened = self._make(names, view or settle_quality(self._view), progress)
                     self._opened = opened
-        # No lock if everything exists: a thread that changes the scene holds it while a picture is traced, and the
-        # progress callback of that picture may read the lights.
+        # No lock is taken if everything exists: a thread that changes the scene holds the lock while a picture is
+        # traced, and the progress callback of this picture may read the lights.
         return opened
 
     def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
@@ -424,14 +426,14 @@ class Renderer:
             native.set_environment(to_dict(value))
 
     def _take_back(self, native: _promin.Renderer, names: Iterable[str]) -> None:
-        """Restores the renderer's parts of these names. If that fails, the next use makes another renderer."""
+        """Restores the named values in the native renderer. If that fails, the next use makes another renderer."""
         lit = self._lit()
         try:
             for name in names:
                 if name in self._changes:
                     self._apply(native, name, self._changes[name])
                 elif name == "lights":
-                    # They are not converted to the world and back, which would round them.
+                    # The records are not converted to the world and back, because that would round them.
                     native.set_lights([to_dict(from_dict(Light, record)) for record in lit.lights()])
                 elif name == "materials":
                     native.set_materials([to_dict(from_dict(Material, record)) for record in lit.materials()])
@@ -469,7 +471,7 @@ def _panorama_words(file: str | os.PathLike[str] | None) -> list[str]:
     if file is None:
         return []
     if isinstance(file, (str, os.PathLike)):
-        # Where a process is that unpickles the Renderer, another folder may be the current one.
+        # The path is absolute, because a process that unpickles the Renderer may have another current folder.
         return ["--environment=" + os.path.abspath(os.fsdecode(file))]
     raise UsageError(f"environment is {file!r:.80}; give a panorama's file, or assign to scene.environment")
 
@@ -508,7 +510,7 @@ def _count(value: object, what: str) -> int:
 
 
 def _count_samples(view: View) -> int:
-    """Returns the approximate number of samples of a picture, which determines the kernels."""
+    """Returns the approximate number of samples of a picture. The choice of the kernels depends on it."""
     whole = settle_quality(view)
     crop = whole.crop
     if crop is not None and len(crop) == 4:
@@ -563,9 +565,9 @@ def render(
     fov: float | None = None,
     near: float | None = None,
 ) -> Frame:
-    """Renders one picture of a scene or a scene file, as in promin.render("model.glb", size="hd").save("model.png").
-    The defaults and keywords are those of `promin render`. For several pictures of one scene use a Renderer, whose
-    __init__ and `render` have these keywords and list the exceptions."""
+    """Renders one picture of a scene or a scene file. Example: promin.render("model.glb", size="hd").save("model.png").
+    The defaults and keywords are those of `promin render`. For several pictures of one scene, a Renderer is faster. Its
+    __init__ and `render` describe the keywords and the exceptions."""
     view = change_view(View(), locals())
     renderer = Renderer(
         scene,

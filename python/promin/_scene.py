@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: from a file, from arrays and shapes, or from a file with additions."""
+"""Scenes that are made from a file, from arrays and shapes, or from a file with additions."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ class ObjectInfo(NamedTuple):
     name: str
     """A name for people; may be empty."""
     primitive_count: int
-    """Number of triangles, or 1 for an analytic shape; 0 if nothing is drawn."""
+    """Number of the object's triangles, or 1 for an analytic shape; 0 if nothing is drawn."""
     material: int
-    """Index of the scene's material."""
+    """Index of the object's material in the scene."""
 
 
 @dataclass(frozen=True)
 class _File:
-    """A scene's file with its content at the time of reading."""
+    """A scene file and its content at the time of reading."""
 
     path: str
     sha256: str
@@ -57,7 +57,7 @@ class _Mesh:
     transform: NDArray[np.float64]
 
     def corners(self) -> NDArray[np.float64]:
-        """Returns the vertices in the world, in float64."""
+        """Returns the vertices in world coordinates, in float64."""
         return self.vertices @ self.transform[:3, :3].T + self.transform[:3, 3]
 
     def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> None:
@@ -65,7 +65,7 @@ class _Mesh:
         if transform is IDENTITY:
             vertices = vertices - center if center.any() else vertices
         elif vertices.dtype == np.float64 and len(vertices):
-            # Vertices are rounded relative to the mesh's own middle; the transform stays in double.
+            # The vertices are stored relative to the mesh's own middle, in float32; the transform stays in double.
             middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
             vertices = vertices - middle
             transform = _translation(-center) @ transform @ _translation(middle)
@@ -90,9 +90,9 @@ class _Shape:
 class Scene:
     """A scene to trace: objects, materials, lights, cameras and environment.
 
-    Objects are numbered in the order in which they are added, those of a file first. A scene is a plain value: Caster
-    and Renderer use its state at their construction. A pickled scene holds its arrays and the path and SHA-256 of its
-    file.
+    Objects are numbered in the order in which they are added; objects of a file come first. A scene is a plain value:
+    Caster and Renderer use its state at their construction. A pickled scene holds its arrays and the path and SHA-256
+    of its file.
 
     Precision: devices compute in float32. A scene with float64 vertices has a `center`, which is subtracted in float64
     from vertices, shapes, lights, cameras and the origins of rays before they are rounded. Hits and pictures are
@@ -105,13 +105,13 @@ class Scene:
 
     def __init__(self, *, center: ArrayLike | None = None) -> None:
         """Creates an empty scene. center: the point (3,) that is subtracted from coordinates before they are rounded.
-        None: if some vertices are float64, the middle of the bounds of all vertices, rounded to eighths of their size
-        or finer so that a scene around the origin is not moved; else the origin."""
+        None: if some vertices are float64, it is the middle of the bounds of all vertices, rounded to eighths of the
+        bounds' size or finer, so that a scene around the origin does not move; otherwise it is the origin."""
         self._file: _File | None = None
         self._parts: list[_Mesh | _Shape] = []
         self._materials: list[Material] = []
         self._lights: list[Light] = []
-        # All materials or lights, including those of the file, as soon as one of these is changed.
+        # All materials or all lights, including those of the file. Set when the caller changes one of them.
         self._all_materials: list[Material] | None = None
         self._all_lights: list[Light] | None = None
         self._cameras: list[Camera] = []
@@ -131,12 +131,12 @@ class Scene:
         variant: str = "",
         root: str | os.PathLike[str] | None = None,
     ) -> Scene:
-        """Reads a scene file; its ending determines the format: .gltf, .glb, .obj, .ply, .stl or .nff. strict: refuse a
-        file that breaks any rule of its format or requires an unknown extension of glTF; otherwise all geometry that
-        can be drawn is drawn, and `warnings` lists the repairs. variant: the one of the file's `variants` to use. root:
-        a further folder, besides the scene's own, whose files the scene may refer to; links are resolved first. Raises
-        InputError with all problems of the file, and UsageError if the variant does not exist or root is not a
-        folder."""
+        """Reads a scene file; the file name's extension determines the format: .gltf, .glb, .obj, .ply, .stl or .nff.
+        strict: refuse a file that breaks any rule of its format or requires an unknown extension of glTF; otherwise all
+        geometry that can be drawn is drawn, and `warnings` lists the repairs. variant: the material variant to use, one
+        of `variants`. root: a folder whose files the scene may refer to, in addition to the scene's own folder;
+        symbolic links are resolved first. Raises InputError with all problems of the file, and UsageError if the
+        variant does not exist or root is not a folder."""
         file = Path(os.fsdecode(path))
         folder = "" if root is None else os.path.abspath(os.fsdecode(root))
         base = _promin.Scene.load(str(file), bool(strict), str(variant), folder)
@@ -145,7 +145,7 @@ class Scene:
         scene._base = base
         return scene
 
-    # Adding.
+    # Methods that add to the scene.
 
     def add_triangles(
         self,
@@ -161,10 +161,10 @@ class Scene:
         """Adds a mesh and returns its object number.
 
         vertices: (n, 3) in world units; float32 keeps its type, all others become float64. faces: (m, 3) integers from
-        0 to n - 1, counterclockwise seen from outside; hits number them in this order. transform: (4, 4) for column
-        vectors, affine and not singular. material: a number from add_material; None: a light grey. normals: (n, 3) for
-        smooth shading, of any length except 0. colors: (n, 3) or (n, 4) linear factors of the material's colour. Raises
-        UsageError; `validate` finds further problems."""
+        0 to n - 1, counterclockwise as seen from outside; hits use the faces' numbers. transform: (4, 4) for column
+        vectors, affine and not singular. material: a number that add_material returned; None: a light grey. normals:
+        (n, 3) for smooth shading, of any length except 0. colors: (n, 3) or (n, 4) linear factors of the material's
+        colour. Raises UsageError; `validate` finds further problems."""
         points = to_vectors(vertices, "vertices")
         triangles = _to_faces(faces)
         if points.ndim != 2:
@@ -181,16 +181,18 @@ class Scene:
         return self._add(mesh)
 
     def add_sphere(self, center: ArrayLike = (0, 0, 0), radius: float = 0.5, **place: Any) -> int:
-        """Adds a sphere and returns its object number. `place` stands for the keywords of all shapes: transform=None,
-        material=None, name=""."""
+        """Adds a sphere and returns its object number. `place` stands for keywords that all shapes have:
+        transform=None, material=None, name=""."""
         return self._add_shape("sphere", place, center=center, radius=radius)
 
     def add_plane(self, point: ArrayLike = (0, 0, 0), normal: ArrayLike = (0, 1, 0), **place: Any) -> int:
-        """Adds an infinite plane through the point, with a normal of any length."""
+        """Adds an infinite plane through `point` and returns its object number. The normal may have any length except
+        0."""
         return self._add_shape("plane", place, point=point, normal=normal)
 
     def add_box(self, center: ArrayLike = (0, 0, 0), half_size: ArrayLike = (0.5, 0.5, 0.5), **place: Any) -> int:
-        """Adds a solid box along the axes; half_size is the distance of its faces from the middle."""
+        """Adds a solid box along the coordinate axes and returns its object number. half_size: the distance of the
+        faces from the middle."""
         return self._add_shape("box", place, center=center, half_size=half_size)
 
     def add_cylinder(
@@ -203,8 +205,8 @@ class Scene:
         is_open: bool = False,
         **place: Any,
     ) -> int:
-        """Adds a cylinder. center is the middle of its axis, half_height the distance from there to its disks. An open
-        cylinder has no disks."""
+        """Adds a cylinder and returns its object number. center: the middle of its axis. half_height: the distance of
+        its disks from there. An open cylinder has no disks."""
         return self._add_shape(
             "cylinder", place, center=center, axis=axis, half_height=half_height, radius=radius, is_open=is_open
         )
@@ -220,7 +222,8 @@ class Scene:
         is_open: bool = False,
         **place: Any,
     ) -> int:
-        """Adds a cone or frustum as add_cylinder does; the axis points from the bottom to the top."""
+        """Adds a cone or frustum and returns its object number. The axis points from the bottom to the top. The other
+        arguments are as in add_cylinder."""
         return self._add_shape(
             "cone",
             place,
@@ -241,7 +244,8 @@ class Scene:
         radius_top: float = 0.25,
         **place: Any,
     ) -> int:
-        """Adds the convex hull of two spheres whose centers are half_height away from the middle."""
+        """Adds a capsule, the convex hull of two spheres, and returns its object number. half_height: the distance of
+        the spheres' centres from the middle."""
         return self._add_shape(
             "capsule",
             place,
@@ -260,22 +264,23 @@ class Scene:
         return self._material_count() - 1
 
     def add_light(self, light: Light) -> int:
-        """Adds a light and returns its number. A scene without lights and sky is lit by `Renderer(light=...)`."""
+        """Adds a light and returns its number. If a scene has neither lights nor a sky, `Renderer(light=...)` adds
+        light."""
         lights = self._lights if self._all_lights is None else self._all_lights
         lights.append(_of(light, Light))
         self._forget_native()
         return len(self.lights) - 1
 
     def add_camera(self, camera: Camera) -> int:
-        """Adds a camera and returns its number; the first is the default."""
+        """Adds a camera and returns its number. The first camera is the default."""
         self._cameras.append(_of(camera, Camera))
         self._forget_native()
         return len(self.cameras) - 1
 
-    # Changing.
+    # Methods that change the scene.
 
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
-        """Changes a material by its name or number: `new` replaces it, or fields get other values, as in
+        """Changes a material by its name or number: `new` replaces it, or `fields` get other values. Example:
         scene.set_material("Fabric", base_color=(1, 0, 0), base_color_texture=None). A texture multiplies the colour or
         number; None removes the texture. Raises UsageError if there is no such material or field, if several materials
         have the name, and for a value of the wrong type; the scene then stays unchanged. `validate` checks ranges."""
@@ -283,20 +288,21 @@ class Scene:
         self.materials = replace_one(self.materials, material, other, fields, "material")
 
     def set_light(self, light: str | int, new: Light | None = None, **fields: Any) -> None:
-        """Changes a light as set_material does, as in scene.set_light(0, is_on=False)."""
+        """Changes a light in the same way as set_material changes a material. Example: scene.set_light(0,
+        is_on=False)."""
         other = None if new is None else _of(new, Light)
         self.lights = replace_one(self.lights, light, other, fields, "light")
 
-    # Reading.
+    # Properties of the scene.
 
     @property
     def path(self) -> Path | None:
-        """The file that it was read from."""
+        """The file from which the scene was read."""
         return None if self._file is None else Path(self._file.path)
 
     @property
     def center(self) -> NDArray[np.float64]:
-        """The point that is subtracted from coordinates before they are rounded to float32, (3,) float64."""
+        """The point (3,) float64 that is subtracted from coordinates before they are rounded to float32."""
         if self._center is not None:
             return self._center.copy()
         meshes = [part for part in self._parts if isinstance(part, _Mesh) and len(part.vertices)]
@@ -309,12 +315,13 @@ class Scene:
 
     @property
     def objects(self) -> list[ObjectInfo]:
-        """Its objects, indexed by the object numbers of hits; for an NFF file those numbers are of its surfaces."""
+        """The scene's objects, indexed by the object numbers of hits. In a scene from an NFF file each surface is an
+        object."""
         return [ObjectInfo(*row) for row in self.native().objects()]
 
     @property
     def materials(self) -> list[Material]:
-        """Copies of its materials. Assigning replaces them; see set_material."""
+        """Copies of the scene's materials. An assignment replaces all materials; set_material changes one."""
         return [from_dict(Material, record) for record in self.native().materials()]
 
     @materials.setter
@@ -324,7 +331,8 @@ class Scene:
 
     @property
     def lights(self) -> list[Light]:
-        """Copies of its lights, without those that a Renderer adds. Assigning replaces them; see set_light."""
+        """Copies of the scene's lights, without the lights that a Renderer adds. An assignment replaces all lights;
+        set_light changes one."""
         if self._all_lights is not None:
             return list(self._all_lights)
         base = [] if self._file is None else [from_dict(Light, record) for record in self._load_base().lights()]
@@ -337,13 +345,13 @@ class Scene:
 
     @property
     def cameras(self) -> list[Camera]:
-        """Copies of its cameras; if empty, a Renderer frames the scene."""
+        """Copies of the scene's cameras. If the list is empty, a Renderer frames the scene."""
         base = [] if self._file is None else [from_dict(Camera, record) for record in self._load_base().cameras()]
         return [to_world(camera, self.center) for camera in base] + list(self._cameras)
 
     @property
     def environment(self) -> Environment:
-        """Ambient light, background and sky. Assigning replaces it."""
+        """Ambient light, background and sky. An assignment replaces the environment."""
         if self._environment is not None:
             return self._environment
         return Environment() if self._file is None else from_dict(Environment, self._load_base().environment())
@@ -355,29 +363,31 @@ class Scene:
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
-        """The bounds of everything finite, (2, 3): smallest and largest corner of the rounded coordinates; None if
-        there is nothing."""
+        """The bounds of all finite geometry, (2, 3): the smallest and the largest corner of the rounded coordinates.
+        None if there is no finite geometry."""
         box = self.native().bounds()
         return None if box is None else np.array(box, np.float64) + self._native_center
 
     @property
     def warnings(self) -> list[str]:
-        """Features of its file that are not modelled, and assumptions, one sentence each."""
+        """Features of the scene's file that promin does not model, and assumptions that it made. Each is one
+        sentence."""
         return list(self.native().warnings())
 
     @property
     def variants(self) -> list[str]:
-        """Material variants of its file."""
+        """Material variants of the scene's file."""
         return list(self.native().variants())
 
     def validate(self) -> None:
-        """Raises InputError with all problems of the scene and their places, if any. Caster and Renderer do so too."""
+        """Raises InputError with all problems of the scene and their places; does nothing if there are none. Caster and
+        Renderer check the scene in the same way."""
         self.native().validate()
 
     def positions(self, rays: RaysLike, hits: NDArray[Any]) -> NDArray[np.float64]:
-        """Returns the hit points, (..., 3) float64, NaN on a miss. On meshes of `add_triangles` it is the intersection
-        of the ray with the plane of the triangle, computed in float64 from the vertices as given; elsewhere as
-        `promin.positions`."""
+        """Returns the hit points, (..., 3) float64, NaN on a miss. On a mesh that `add_triangles` added, a point is the
+        intersection of the ray with the plane of the triangle, computed in float64 from the caller's vertices. On other
+        objects it is the result of `promin.positions`."""
         points = positions(rays, hits)
         hits = check_hits(hits)
         origins, _, directions, _ = split_rays(rays)
@@ -401,10 +411,11 @@ class Scene:
         words = [f"{number} {word}{'s' * (number != 1)}" for number, word in counts]
         return f"<promin.Scene{name}: {', '.join(words)}>"
 
-    # Native parts, which are made when they are first needed.
+    # Native parts, which are created at their first use.
 
     def native(self) -> _promin.Scene:
-        """The library's read-only scene, with the center subtracted. For promin's own modules."""
+        """Returns the library's read-only scene, from which the center is subtracted. Only promin's own modules use
+        it."""
         with self._lock:
             if self._native is None:
                 center = self.center
@@ -413,11 +424,12 @@ class Scene:
             return self._native
 
     def snapshot(self) -> Scene:
-        """Returns a scene that does not change with this one, but shares its arrays and the data derived from them."""
+        """Returns a copy of the scene. Later changes of this scene do not change the copy, which shares its arrays and
+        the data derived from them."""
         twin = object.__new__(type(self))
         with self._lock:
             self.native()
-            # Not copy.copy, which pickles and would therefore read the file again.
+            # copy.copy would pickle the scene and therefore read the file again.
             twin.__dict__.update(self.__dict__)
         twin._lock = threading.RLock()
         twin._parts, twin._materials = list(self._parts), list(self._materials)
@@ -428,7 +440,7 @@ class Scene:
 
     @property
     def native_center(self) -> NDArray[np.float64]:
-        """The center that was subtracted in `native`."""
+        """The center that was subtracted from the coordinates of `native`."""
         self.native()
         return self._native_center
 
@@ -497,8 +509,8 @@ class Scene:
         return int(material)
 
     def _make_private(self) -> None:
-        """Creates the members that are not pickled: the library's scene of the file and its whole scene, which are made
-        on demand."""
+        """Creates the members that are not pickled: the library's scene of the file, and the library's whole scene.
+        Both are made at their first use."""
         self._lock = threading.RLock()
         self._base = None
         self._native = None
@@ -523,7 +535,8 @@ Named = TypeVar("Named", Material, Light)
 
 
 def to_scene(scene: SceneLike) -> Scene:
-    """Returns the scene, and reads it first if a file is given. Raises UsageError and the exceptions of Scene.load."""
+    """Returns the argument if it is a scene, or the scene of a file. Raises UsageError and the exceptions of
+    Scene.load."""
     if isinstance(scene, Scene):
         return scene
     if isinstance(scene, (str, os.PathLike)):
@@ -534,7 +547,8 @@ def to_scene(scene: SceneLike) -> Scene:
 def replace_one(
     records: list[Named], chosen: str | int, new: Named | None, fields: dict[str, Any], what: str
 ) -> list[Named]:
-    """Returns materials or lights in which the one of this name or number is replaced by `new`, with these fields."""
+    """Returns materials or lights with one of them replaced: the one with this name or number becomes `new`, with these
+    fields."""
     place = _find_one(records, chosen, what)
     records[place] = change(records[place] if new is None else new, fields)
     return records
@@ -556,8 +570,8 @@ def _find_one(records: list[Named], chosen: str | int, what: str) -> int:
 def meet_planes(
     origins: NDArray[Any], directions: NDArray[Any], triangles: NDArray[Any], otherwise: NDArray[Any]
 ) -> NDArray[np.float64]:
-    """Returns the points where rays (n, 3) intersect the planes of triangles (n, 3, 3), in float64; `otherwise` for
-    parallel ones."""
+    """Returns the points where rays (n, 3) intersect the planes of triangles (n, 3, 3), in float64. For a ray parallel
+    to its plane it returns the point of `otherwise`."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         t = np.einsum("ij,ij->i", normals, triangles[:, 0] - origins) / np.einsum("ij,ij->i", normals, directions)
@@ -580,7 +594,7 @@ def move_camera(camera: Camera, center: NDArray[np.float64]) -> dict[str, Any]:
 
 
 def to_world(record: Any, center: NDArray[np.float64]) -> Any:
-    """Returns a camera or light of a native scene with this center in world coordinates."""
+    """Returns a camera or light in world coordinates. The argument is a record of a native scene with this center."""
     if not center.any():
         return record
     name = "eye" if isinstance(record, Camera) else "position"
@@ -599,12 +613,13 @@ def _without(point: Any, center: NDArray[np.float64]) -> Any:
 
 
 def _middle(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns a point near the middle with few bits, so that small whole numbers stay exact after subtracting it."""
+    """Returns a point near the middle of the bounds whose coordinates have few bits, so that small whole numbers stay
+    exact after the point is subtracted."""
     with np.errstate(over="ignore", invalid="ignore"):
         middle = low / 2 + high / 2
         size = float(np.max(high - low))
     if not np.isfinite(middle).all() or not np.isfinite(size):
-        # Values that are not finite are refused with their place.
+        # The native module refuses numbers that are not finite and names their place.
         return np.zeros(3)
     if size == 0.0:
         return middle
@@ -624,7 +639,7 @@ def _hash(file: Path) -> str:
 
 
 def _frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """Returns a read-only copy."""
+    """Returns a read-only copy of the array."""
     own = np.array(array, order="C")
     own.setflags(write=False)
     return own
@@ -702,12 +717,12 @@ _READERS: dict[type[Any], Callable[[_promin.Scene, dict[str, Any]], None]] = {
     Light: _promin.Scene.add_light,
     Material: _promin.Scene.add_material,
 }
-"""The native module's readers of records."""
+"""Functions of the native module that read a record, by the class of the record."""
 
 
 def _of(record: Any, kind: type[Any]) -> Any:
-    """Returns the record. Raises UsageError if it has another type, or if the native module cannot read one of its
-    fields: a scene with such a record could neither be used nor corrected."""
+    """Returns the record. Raises UsageError if the record has another type, or if the native module cannot read one of
+    its fields. A scene with such a record could neither be used nor corrected."""
     if not isinstance(record, kind):
         raise UsageError(f"{record!r:.80} is not a promin.{kind.__name__}")
     _READERS[kind](_promin.Scene(), to_dict(record))

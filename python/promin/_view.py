@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Views of a scene and their rules. Open settings are decided as on the command line."""
+"""Views of a scene and their rules. Open settings are chosen as on the command line."""
 
 from __future__ import annotations
 
@@ -19,10 +19,12 @@ from promin._errors import UsageError
 from promin._records import Camera, Display, to_dict
 
 CameraLike = Union[Camera, str, int, None]
-"""A camera, or the name or number of a camera of the scene. None: its first, or one that frames the scene."""
+"""A camera, or the name or number of a camera of the scene. None stands for the scene's first camera, or for a camera
+that frames the scene if it has none."""
 
 Size = Union[tuple[int, int], Sequence[int], int, str, None]
-"""Width and height in pixels, a width, or a word of `promin render --size`: "640x480", "640", "x480", "hd"."""
+"""A size: width and height in pixels, a width alone, or a value of `promin render --size`, such as "640x480", "640",
+"x480" or "hd"."""
 
 Numbers = Union[Sequence[float], NDArray[Any]]
 """Three numbers."""
@@ -34,7 +36,7 @@ _ERROR_SPACES = _promin.list_choices()["error_in"]
 class View:
     """The camera, size, quality and mode of a picture. The defaults are those of `promin render`."""
 
-    # test_tables.py compares these words with the library's tables.
+    # test_tables.py compares the words in these docstrings with the library's tables.
 
     camera: CameraLike = None
     """The camera."""
@@ -42,78 +44,79 @@ class View:
     """Width and height in pixels, a width alone, "640x480" or "hd", "fullhd", "4k"; None: the size that the camera
     requests, else a height of 720."""
     crop: tuple[int, int, int, int] | None = None
-    """x0, y0, x1, y1: the pixels to trace, half-open."""
+    """The pixels to trace: x0, y0, x1, y1, without column x1 and row y1."""
     spp: int = 8
-    """Samples per pixel; 1 samples the centre."""
+    """Samples per pixel. A single sample is at the pixel's centre."""
     quality: str | None = None
-    """"draft", "normal", "high" or "best", in place of `spp` and `target_error`."""
+    """The quality, in place of `spp` and `target_error`: "draft", "normal", "high" or "best"."""
     max_depth: int | None = None
     """Largest number of bounces; None: 5, or 8 with glass."""
     target_error: float | None = None
-    """In place of `spp`: each pixel takes samples until its estimated error is at most this (docs/model.md, "Error of a
-    pixel")."""
+    """The target error, in place of `spp`. Each pixel takes samples until its estimated error is at most this
+    (docs/model.md, "Error of a pixel")."""
     time_limit: float | str | None = None
-    """Seconds, or a word such as "20s" or "2min": make the best picture that can be finished in this time, including
-    compilation."""
+    """The time for the picture: seconds, or a text such as "20s" or "2min". promin makes the best picture that it can
+    finish in this time, including compilation."""
     min_spp: int | None = None
-    """With an error target: smallest number of samples per pixel, a power of two. None: 8, or 4 for a coarse target."""
+    """Smallest number of samples per pixel with an error target, a power of two. None: 8, or 4 for a coarse target."""
     max_spp: int | None = None
-    """With an error target: largest number of samples per pixel, a power of two. None: 256."""
+    """Largest number of samples per pixel with an error target, a power of two. None: 256."""
     error_in: str = "linear"
-    """Where `target_error` is measured: in "linear" light, or on the "display", after `Renderer.display` has exposed,
-    tone mapped and encoded it as sRGB. The display of a saved file has no influence."""
+    """The values whose error `target_error` limits: "linear" light, or "display", the values after `Renderer.display`
+    has exposed, tone mapped and encoded the light as sRGB. The display of a saved file has no influence."""
     filter: str = "box"
-    """"box", "tent", "gauss" or "blackman-harris"."""
+    """The filter of a pixel's samples: "box", "tent", "gauss" or "blackman-harris"."""
     filter_width: float | None = None
     """Width of the filter in pixels; None: the filter's default."""
     depth: str = "ray"
-    """How the AOV `depth` is measured: "ray" is the distance from the eye, "plane" the distance along the direction of
-    view."""
+    """The definition of the AOV `depth`: "ray" is the distance from the eye, "plane" the distance along the direction
+    of view."""
     debug_view: str = "full"
-    """What the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth" or "steps"."""
+    """The property that the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth" or
+    "steps"."""
     shadows: bool = True
-    """Whether lights cast shadows."""
+    """True if lights cast shadows."""
 
-    # What changes the camera, as the options of `promin render` of these names do.
+    # The following fields change the camera, as the options of `promin render` with the same names do.
 
     from_: str | None = None
-    """"three-quarter", "front", "back", "left", "right", "top", "bottom" or "inside": shows all of the scene from
-    there, whatever cameras it has."""
+    """The side from which the camera looks: "three-quarter", "front", "back", "left", "right", "top", "bottom" or
+    "inside". The picture shows the whole scene from this side, and the scene's cameras are not used."""
     fit: float | None = None
-    """Share of the picture that such a view covers, 0.05 to 1; None: 0.85."""
+    """Fraction of the picture that the scene covers if `from_` is given, 0.05 to 1; None: 0.85."""
     azimuth: float | None = None
-    """Degrees by which the camera goes around the scene to the right."""
+    """Degrees by which the camera moves around the scene to the right; applied first."""
     elevation: float | None = None
-    """Degrees by which it then rises over the scene."""
+    """Degrees by which the camera moves upwards around the scene; applied second."""
     roll: float | None = None
-    """Degrees by which the picture then turns clockwise."""
+    """Degrees by which the picture rotates clockwise; applied last."""
     zoom: float | None = None
-    """Magnifies the picture around its middle; None: 1."""
+    """Factor by which the picture is magnified around its middle; None: 1."""
     eye: Numbers | None = None
-    """Place of the eye, instead of the camera's."""
+    """Position of the eye, in place of the camera's."""
     look_at: Numbers | None = None
-    """Point to look at."""
+    """The point at which the camera looks."""
     direction: Numbers | None = None
-    """Direction of view, instead of the camera's."""
+    """Direction of view, in place of the camera's."""
     up: Numbers | str | None = None
-    """Direction that is up in the scene or, where a camera is given, in its picture: a vector or "x", "y", "z", "-x",
-    "-y", "-z"; None: +Y, or the camera's."""
+    """The direction that points upwards in the scene or, if a camera is given, in its picture: a vector or "x", "y",
+    "z", "-x", "-y", "-z"; None: +Y, or the camera's."""
     fov: float | None = None
-    """Vertical field of view in degrees, instead of the camera's."""
+    """Vertical field of view in degrees, in place of the camera's."""
     near: float | None = None
-    """Distance before which nothing is drawn, instead of the camera's."""
+    """Distance of the near plane, in place of the camera's. Nothing nearer than this plane is drawn."""
 
 
 def of_view(view: object) -> View:
-    """Returns the view itself. Raises UsageError for other types."""
+    """Returns the argument if it is a View. Raises UsageError for other types."""
     if isinstance(view, View):
         return view
     raise UsageError(f"{view!r:.80} is not a promin.View")
 
 
 def change_view(view: View, given: Mapping[str, Any]) -> View:
-    """Returns the view with those of its fields that are given and not None. They replace the fields that contradict
-    them: a number of samples replaces the quality, and a camera replaces everything that changes the view's own."""
+    """Returns the view with the fields of `given` that are not None. A given field replaces the fields that contradict
+    it: a number of samples replaces the quality, and a camera replaces all fields that change the view's own camera."""
     changes = {name: given[name] for name in FIELDS if given.get(name) is not None}
     for name in list(changes):
         changes = {**dict.fromkeys(_TAKES_PLACE_OF.get(name, ())), **changes}
@@ -129,7 +132,7 @@ def change_view(view: View, given: Mapping[str, Any]) -> View:
 
 FIELDS = tuple(field.name for field in dataclasses.fields(View))
 POSE = FIELDS[FIELDS.index("from_") :]
-"""The fields that change the camera."""
+"""The names of the fields that change the camera."""
 _TAKES_PLACE_OF = {
     "camera": POSE,
     "from_": ("camera", "eye", "look_at", "direction"),
@@ -138,20 +141,20 @@ _TAKES_PLACE_OF = {
     "look_at": ("from_", "fit", "direction"),
     "direction": ("from_", "look_at"),
 }
-"""The fields that contradict a field."""
+"""For each field, the fields that contradict it."""
 
 _VECTORS = {
     **dict.fromkeys(("eye", "look_at", "direction"), "three numbers"),
     "background": 'three numbers or a word as "environment"',
     "up": 'three numbers or a word as "z"',
 }
-"""What options with three numbers take."""
+"""Values that options with three numbers accept."""
 
 _NUMBERS_OF_SAMPLES = ("spp", "target_error", "time_limit")
 
 
 def settle_quality(view: View) -> View:
-    """Returns the view with the settings that its quality stands for."""
+    """Returns the view with the settings of its quality."""
     if view.quality is None:
         return view
     for name in _NUMBERS_OF_SAMPLES:
@@ -172,17 +175,18 @@ def has_target(view: View) -> bool:
 
 
 def begins_with_target(view: View) -> bool:
-    """Returns whether the first picture has an error target: with a time limit it has one sample per pixel."""
+    """Returns whether the first picture has an error target. With a time limit it has none: it has one sample per
+    pixel."""
     return view.target_error is not None and view.time_limit is None
 
 
 def mode_of(view: View) -> dict[str, Any]:
-    """Returns the settings of the view that are compiled in."""
+    """Returns the settings of the view that are compiled into the pipeline."""
     return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
 
 
 def size_of(view: View) -> tuple[int, ...]:
-    """Returns the size in pixels; 0 if the camera determines it."""
+    """Returns the size in pixels; a side of 0 is determined by the camera."""
     if view.size is None:
         return (0, 0)
     if isinstance(view.size, str):
@@ -199,8 +203,8 @@ def size_of(view: View) -> tuple[int, ...]:
 
 
 def option_words(name: str, value: object) -> list[str]:
-    """The option of `promin render` that has a keyword's name, with the words of its value; no words where it is None.
-    Raises UsageError where the value is neither a text nor as many numbers as the option takes."""
+    """Returns the option of `promin render` for a keyword, with the words of its value; empty if the value is None.
+    Raises UsageError if the value is neither a text nor as many numbers as the option accepts."""
     if value is None:
         return []
     option = "--" + name.rstrip("_").replace("_", "-")
@@ -212,12 +216,12 @@ def option_words(name: str, value: object) -> list[str]:
     count = 3 if name in _VECTORS else 1
     if any(word.startswith("--") for word in words) or (len(words) != count and not is_text):
         raise UsageError(f"{name} is {value!r:.80}; give {_VECTORS.get(name, 'a number')}")
-    # A word alone may begin with a dash.
+    # A single word may begin with a dash.
     return [f"{option}={words[0]}"] if len(words) == 1 else [option, *words]
 
 
 def camera_words(view: View) -> list[str]:
-    """The options of `promin render` that choose the view's camera and change it."""
+    """Returns the options of `promin render` that choose and change the view's camera."""
     words = [] if view.camera is None or isinstance(view.camera, Camera) else [f"--camera={view.camera}"]
     return words + [word for name in POSE for word in option_words(name, getattr(view, name))]
 
@@ -267,7 +271,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
 
 
 def check_shading(view: View, aovs: tuple[str, ...]) -> None:
-    """Refuses options that need light: a debug view has no error estimate and no alpha."""
+    """Raises UsageError for options that need light: a debug view has no error estimate and no alpha."""
     if shows_light(view):
         return
     for name, lacks in (("error", "error"), ("alpha", "background")):
@@ -279,7 +283,7 @@ def check_shading(view: View, aovs: tuple[str, ...]) -> None:
 
 
 def _check_samples(view: View) -> None:
-    """Checks the rules of promin's options about samples."""
+    """Raises UsageError if the view breaks a rule of the options about samples."""
     if view.error_in not in _ERROR_SPACES:
         names = " or ".join(f'"{name}"' for name in _ERROR_SPACES)
         raise UsageError(f"error_in is {view.error_in!r:.80}; give {names}")

@@ -64,11 +64,11 @@ class Piece:
     """A piece of a job, whether done or not."""
 
     number: int
-    """From 0 on."""
+    """Number of the piece, counted from 0."""
     name: str
-    """Its name in the manifest, which says which part of the whole it is."""
+    """Name of the piece in the manifest. It contains the part of the whole that the piece covers."""
     file: str
-    """Its file when it is done."""
+    """The file of the piece, which exists when the piece is done."""
     weight: float
     """Amount of work relative to other pieces of the job: pixels or rays."""
 
@@ -83,13 +83,13 @@ class Receipt:
     """SHA-256 of the piece's bytes."""
     bytes: int
     ms: float
-    """Milliseconds that it took."""
+    """Time that the piece took, in milliseconds."""
     made_on: str
-    """Device and driver."""
+    """Device and driver that made the piece."""
     fingerprint: str
-    """`Runner.fingerprint`; empty if a program made it, which computes none."""
+    """`Runner.fingerprint` of the maker; empty if a program made the piece, because programs compute no fingerprint."""
     version: str
-    """Of promin."""
+    """Version of promin."""
     host: str
     pid: int
 
@@ -100,20 +100,21 @@ class Receipt:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The comparison of an existing piece with the same piece made again, perhaps on another device."""
+    """The result of comparing an existing piece with the same piece made again, perhaps on another device."""
 
     is_equal: bool
-    """To the bit."""
+    """True if both pieces have the same bits."""
     is_within: bool
-    """Whether they are equal or within the bounds between devices: at most 0.5 % of pixels or rays are mismatches."""
+    """True if both pieces are equal or differ only within the bounds between devices: at most 0.5 % of pixels or rays
+    are mismatches."""
     largest: float
-    """The largest difference among all pixels or rays that are no mismatches: for a pixel's numbers at most 0.004
-    (relative for numbers beyond 1), for rays at most 16 in units of K of t (docs/glossary.md)."""
+    """The largest difference of pixels or rays that are not mismatches. For a pixel's numbers it is at most 0.004
+    (relative for numbers above 1); for rays it is at most 16, in units of K of t (docs/glossary.md)."""
     mismatches: int
-    """Mismatches: pixels or rays that differ by more, or that show another surface, for example because of rounding at
-    an edge."""
+    """Number of mismatches: pixels or rays that differ by more than the bounds, or that show another surface, for
+    example because of rounding at an edge."""
     count: int
-    """Number of all pixels or rays of the piece, if it is not equal."""
+    """Number of all pixels or rays of the piece. It is set only if the pieces are not equal."""
 
 
 class RaySource(Protocol):
@@ -125,19 +126,19 @@ class RaySource(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of their container, without its folder."""
+        """Name of the container of the rays, without its folder."""
 
     @property
     def size_bytes(self) -> int:
-        """Size of their container in bytes."""
+        """Size of the container in bytes."""
 
     @property
     def sha256(self) -> str:
-        """A hash over all rays, which identifies them."""
+        """A hash over all rays, which identifies the rays."""
 
     def read(self, first: int, count: int) -> NDArray[np.float32]:
-        """Returns the rays from `first` up to, but without, `first` + `count` as (count, 8) float32 in C order: origin,
-        tmin, direction, tmax."""
+        """Returns the rays `first` to `first` + `count` - 1 as (count, 8) float32 in C order: origin, tmin, direction,
+        tmax."""
 
 
 def create(
@@ -178,13 +179,13 @@ def create_with(
     files: Sequence[PathLike] = (),
     make: Make | None = None,
 ) -> Job:
-    """Does the same for a job whose pieces a function makes.
+    """Creates or continues a job, as `create` does, but a function makes its pieces.
 
-    kind: a word for the kind of the pieces. options: everything that determines their bytes, except files, which are
-    hashed. pieces: their names, all different, of letters, digits, "_" and "-". make: takes a piece's number and
-    returns a text about the piece and its bytes, which must always be the same; after opening the job elsewhere, pass
-    it again to `Job.runner`. A job of the kind "cast" can be merged if its texts and bytes have the format that
-    docs/jobs.md gives for rays.
+    kind: a word for the kind of the pieces. options: everything that determines the pieces' bytes, except files, which
+    are hashed. pieces: the names of the pieces, all different, of letters, digits, "_" and "-". make: takes a piece's
+    number and returns a text about the piece and its bytes, which must always be the same; after opening the job
+    elsewhere, pass it again to `Job.runner`. A job of the kind "cast" can be merged if its texts and bytes have the
+    format that docs/jobs.md gives for rays.
 
     Raises UsageError if the folder belongs to another job, InputError, RunError."""
     names = [str(name) for name in pieces]
@@ -199,15 +200,15 @@ def create_with(
 
 
 def open(folder: PathLike) -> Job:
-    """Opens the job of a folder. Reads only the folder, neither scenes nor devices. Raises InputError if there is no
-    job."""
+    """Opens the job of a folder. The function reads only the folder and needs neither scenes nor devices. Raises
+    InputError if there is no job."""
     name = os.fsdecode(folder)
     return Job(_promin.Job.open(name), name)
 
 
 def list_gpus() -> list[str]:
-    """Returns an argument for `Job.runner`, "uuid:…", for each device of this machine that is not a CPU; empty if there
-    is none or no Vulkan."""
+    """Returns an argument for `Job.runner`, "uuid:…", for each device of this machine that is not a CPU. The list is
+    empty if there is no such device or no Vulkan."""
     try:
         infos = Device.list()
     except DeviceError:
@@ -216,8 +217,8 @@ def list_gpus() -> list[str]:
 
 
 class Job:
-    """A job in its folder, as `create` and `open` return it. Any thread may use it. The state of pieces is read from
-    the disk at each request."""
+    """A job in its folder, as `create` and `open` return it. Any thread may use it. Each request for the state of a
+    piece reads the disk."""
 
     def __init__(
         self,
@@ -254,7 +255,7 @@ class Job:
 
     @property
     def folder(self) -> str:
-        """The folder as given."""
+        """The folder as the caller gave it."""
         return self._folder
 
     @property
@@ -264,12 +265,13 @@ class Job:
 
     @property
     def options(self) -> dict[str, str]:
-        """The inputs of the pieces' bytes other than files: the version of results and options by name."""
+        """The inputs that determine the pieces' bytes, except files: the version of results, and options by their
+        names."""
         return dict(self._options)
 
     @property
     def files(self) -> list[tuple[str, int, str]]:
-        """Name, size in bytes and SHA-256 of the files that the pieces depend on."""
+        """Name, size in bytes and SHA-256 of each file on which the pieces depend."""
         return list(self._files)
 
     @property
@@ -291,16 +293,16 @@ class Job:
         return self._native.state_of(number)[1]
 
     def sha256(self, number: int) -> str:
-        """Returns the SHA-256 of the bytes of a piece that is done. Raises InputError if it is not done."""
+        """Returns the SHA-256 of the bytes of a piece that is done. Raises InputError if the piece is not done."""
         return self._native.sha256(number)
 
     def read(self, number: int) -> tuple[str, bytes]:
-        """Returns the text and the bytes of a piece that is done. Raises InputError if it is not done."""
+        """Returns the text and the bytes of a piece that is done. Raises InputError if the piece is not done."""
         return self._native.read(number)
 
     def preview(self, number: int, most_px: int = 128) -> NDArray[np.uint8] | None:
         """Returns a preview of a piece of a picture, sRGB (rows, columns, 3) without tone mapping, with at most the
-        given number of rows and columns; None for other pieces. Raises InputError if it is not done."""
+        given number of rows and columns; None for other pieces. Raises InputError if the piece is not done."""
         if self._kind != "render":
             return None
         description, data = self.read(number)
@@ -316,7 +318,7 @@ class Job:
         return np.ascontiguousarray(np.round(255.0 * codes), np.uint8)
 
     def receipt(self, number: int) -> Receipt | None:
-        """Returns the record of a piece that is done; None if it is not done. Fields that the ledger lacks, for example
+        """Returns the record of a piece that is done; None for other pieces. Fields that the ledger lacks, for example
         because a process was killed before it could write them, are empty or 0."""
         stored = self._native.stored(number)
         if stored is None:
@@ -329,10 +331,10 @@ class Job:
         return Receipt(number, name, sha256, size, 0.0, "", "", self._options.get("version", ""), "", 0)
 
     def events(self, maker: str | None = None) -> list[dict[str, Any]]:
-        """Returns the events of the ledger sorted by time, or those of one maker in their order. Each is a dict with
-        "event" ("begun", "done", "failed" or "stopped"), "number", "piece", "time_s" (since 1970), "made_on",
-        "fingerprint" and "maker" (HOST-PID); "done" adds the fields of a Receipt, "failed" the sentence "why". A maker
-        without an event after "begun" is still making the piece, or has died."""
+        """Returns the events of all ledgers sorted by time, or the events of one maker in the order of its ledger. Each
+        event is a dict with "event" ("begun", "done", "failed" or "stopped"), "number", "piece", "time_s" (since 1970),
+        "made_on", "fingerprint" and "maker" (HOST-PID); "done" adds the fields of a Receipt, "failed" the sentence
+        "why". A maker without an event after "begun" is still making the piece, or has died."""
         return self._ledger.events(maker)
 
     def write(
@@ -344,8 +346,8 @@ class Job:
         made_on: str = "",
         fingerprint: str = "",
     ) -> Receipt:
-        """Writes a piece, completely or not at all, and its receipt. It is for programs that make pieces themselves;
-        the text and the bytes must be those that any other maker would write. Raises RunError."""
+        """Writes a piece, completely or not at all, and its receipt. Programs that make pieces themselves use this
+        function. The text and the bytes must be the same as any other maker would write. Raises RunError."""
         return Receipt(**self._native.write(number, description, data, ms, made_on, fingerprint))
 
     def runner(
@@ -356,13 +358,14 @@ class Job:
         rays: RaySource | None = None,
         on_step: Callable[[str], object] = lambda words: None,
     ) -> Runner:
-        """Returns a maker of pieces on this machine. It reads the scene and opens the device once.
+        """Returns a Runner, which makes pieces on this machine. The Runner reads the scene and opens the device once.
 
-        device: a Device, a part of a name, an index, or None for the default one. make, rays: as given to `create_with`
-        and `create`. on_step: receives the name of each long step, such as "loads the scene" or "compiles". The tree of a
-        large scene is shared in DIR/trees; the first process that needs it writes it. Raises UsageError if a file or
-        the version of results has changed, so that the job would be another one now, and names the change; InputError
-        if the folder does not say how pieces are made, or a file is missing; DeviceError, RunError."""
+        device: a Device, a part of a device's name, an index, or None for the default device. make, rays: the
+        arguments of `create_with` and `create`. on_step: receives the name of each long step, such as "loads the
+        scene" or "compiles". Processes share the tree of a large scene in DIR/trees; the first process that needs the
+        tree writes it. Raises UsageError if a file or the version of results has changed since the job was created,
+        and names the change; InputError if the folder does not say how pieces are made, or a file is missing;
+        DeviceError, RunError."""
         make = make or self._make
         if make is None and (self._plan is None or (rays is not None and rays is not self._rays)):
             if self._kind not in ("render", "cast"):
@@ -373,28 +376,28 @@ class Job:
         return Runner(self, device, make)
 
     def check_outputs(self, outputs: Sequence[PathLike]) -> None:
-        """Checks before the work whether `merge` would refuse these files: their endings and number, several frames in
-        one file, and files that are inputs of the job. Raises UsageError, InputError."""
+        """Checks before the work whether `merge` would refuse these files: their extensions and number, several frames
+        in one file, and files that are inputs of the job. Raises UsageError, InputError."""
         self._native.check_outputs([os.fsdecode(output) for output in outputs])
 
     def merge(
         self, outputs: Sequence[PathLike], *, allow_mixed: bool = False, frames: Sequence[int] | None = None
     ) -> None:
-        """Puts all pieces together and writes the files, byte for byte those of a single run; each completely or not at
-        all.
+        """Combines all pieces and writes the files. The files have the same bytes as those of a single run. Each file
+        is written completely or not at all.
 
-        outputs: for "render" pictures (.exr, .png), for a camera path with #### for the number of a frame; for "cast"
-        one .npy of hits or counts, with --all followed by the offsets. allow_mixed: whether results of rays may come
-        from several drivers. frames: only these frames of a camera path, so only their pieces must be done; None: all.
-        Raises RunError if pieces are missing or bad, and names some; InputError if they do not belong together;
-        UsageError."""
+        outputs: for "render", pictures (.exr, .png); for a camera path the names have #### in place of the number of a
+        frame. For "cast", one .npy file of hits or counts; with --all also the file of offsets. allow_mixed: whether
+        results of rays may come from several drivers. frames: only these frames of a camera path, so only their pieces
+        must be done; None: all. Raises RunError if pieces are missing or bad, and names some; InputError if they do not
+        belong together; UsageError."""
         chosen = None if frames is None else [index(frame) for frame in frames]
         if chosen and min(chosen) < 0:
             raise UsageError(f"frames has {min(chosen)}, of {self.folder}; frames are counted from 0")
         self._native.merge([os.fsdecode(output) for output in outputs], allow_mixed, chosen, None)
 
     def clear_leftovers(self) -> None:
-        """Removes the temporary files of processes on this machine that ended before they had finished writing."""
+        """Removes temporary files that processes on this machine left when they ended while writing."""
         self._native.clear_leftovers()
 
     def __repr__(self) -> str:
@@ -405,8 +408,8 @@ class Job:
 
 
 class Runner:
-    """Makes pieces of a job on one device, for one thread at a time. It releases Python's lock, so other threads run
-    meanwhile. Ctrl-C ends a piece before its next dispatch, and nothing of that piece is written."""
+    """Makes pieces of a job on one device. Only one thread at a time may use it. It releases Python's lock, so other
+    threads run meanwhile. Ctrl-C stops a piece before its next dispatch, and nothing of this piece is written."""
 
     def __init__(self, job: Job, device: DeviceLike, make: Make | None) -> None:
         """Use `Job.runner`."""
@@ -421,12 +424,12 @@ class Runner:
 
     @property
     def job(self) -> Job:
-        """The job whose pieces it makes."""
+        """The job whose pieces the Runner makes."""
         return self._job
 
     @property
     def made_on(self) -> str:
-        """Device and driver; "Python" if a function makes the pieces."""
+        """Device and driver of the Runner; "Python" if a function makes the pieces."""
         return "Python" if self._native is None else self._native.made_on()
 
     @property
@@ -443,14 +446,15 @@ class Runner:
             return _fingerprints[info]
 
     def run(self, number: int, stop: Stop | None = None) -> Receipt:
-        """Makes and writes a piece unless it is done. Returns the receipt of the new or the existing piece.
+        """Makes and writes a piece unless the piece is done. Returns the receipt of the new or the existing piece.
 
-        If another build of promin has made the job's pieces, the first call makes one of them again to compare it.
+        If another build of promin has made the job's pieces, the first call makes one of them again to compare the
+        bits.
 
-        stop: called about twenty times a second; for pieces that a function makes, before and after the function. If it
-        returns True, `run` raises Cancelled and nothing is written. Every event is recorded in the ledger. Raises
-        InputError if an input has changed, UsageError if another build of promin has made the job's pieces with other
-        bits, RunError."""
+        stop: a function that is called about twenty times a second; if a function makes the pieces, `stop` is called
+        before and after it. If it returns True, `run` raises Cancelled and nothing is written. Every event is recorded
+        in the ledger. Raises InputError if an input has changed, UsageError if another build of promin has made the
+        job's pieces with other bits, RunError."""
         done = self._job.receipt(number)
         if done is not None:
             return done
@@ -479,9 +483,9 @@ class Runner:
         return hashlib.sha256(self._call_make(number, stop)[1]).hexdigest()
 
     def compare(self, number: int, stop: Stop | None = None) -> Comparison:
-        """Makes a piece again and compares it with the one on the disk. Writes nothing. Devices with the same
-        fingerprint give the same bits; others agree within the bounds. Pieces that a function makes are equal or not.
-        Raises InputError if the piece is not done."""
+        """Makes a piece again and compares it with the piece on the disk. Writes nothing. Devices with the same
+        fingerprint give the same bits; pieces of other devices agree within the bounds. For pieces that a function
+        makes, only equal bits count as agreement. Raises InputError if the piece is not done."""
         if self._native is not None:
             return Comparison(**self._native.compare(number, _progress_of(stop)))
         is_equal = self.recompute(number, stop) == self._job.sha256(number)
@@ -498,7 +502,7 @@ class Runner:
 
 
 class _Ledger:
-    """Reads the makers' events, and later only new ones; an incomplete line is read when it is complete."""
+    """Reads the makers' events. Later reads return only new events. An incomplete line is read after it is complete."""
 
     def __init__(self, folder: Path, pieces: Sequence[str]) -> None:
         self._folder = folder
@@ -534,7 +538,7 @@ class _Ledger:
             told = self._by_maker.setdefault(file.stem, [])
             for event in _parse(whole, self._pieces):
                 event["maker"] = file.stem
-                # The order of a maker's events does not depend on its clock, which may be set back.
+                # Events of one maker keep their order even if the maker's clock is set back.
                 told.append((max(float(event["time_s"]), told[-1][0] if told else 0.0), event))
                 if event["event"] == "done":
                     self._receipts.setdefault(event["number"], []).append(event)
@@ -545,7 +549,7 @@ _OF_RECEIPT = {"sha256": str, "size_bytes": int, "ms": (int, float), "version": 
 
 
 def _parse(text: bytes, pieces: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """Returns the events of these pieces; damaged lines are skipped."""
+    """Returns the events of these pieces. Damaged lines are skipped."""
     for line in text.splitlines():
         try:
             event = json.loads(line)
@@ -576,7 +580,7 @@ def _receipt_of(event: dict[str, Any]) -> Receipt:
 
 
 def _is_utf8(word: str) -> bool:
-    """Returns whether the text contains no surrogates of os.fsdecode for bytes that are not UTF-8."""
+    """Returns whether the text is valid UTF-8: it contains no surrogates, which os.fsdecode uses for other bytes."""
     try:
         word.encode()
     except UnicodeEncodeError:
@@ -585,7 +589,8 @@ def _is_utf8(word: str) -> bool:
 
 
 def _weigh(name: str) -> float:
-    """Returns the number of pixels or rays of a piece: its name contains the ranges of rows and columns, or of rays."""
+    """Returns the number of pixels or rays of a piece. The piece's name contains the ranges of its rows and columns, or
+    of its rays."""
     ranges = [int(end) - int(begin) for begin, end in re.findall(r"(\d+)-(\d+)", name)]
     return float(math.prod(ranges)) if ranges else 1.0
 

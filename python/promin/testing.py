@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Picture tests: compares a picture with a baseline file, by the measure of `promin compare`.
+"""Functions for picture tests: they compare a picture with a baseline file and use the measures of `promin compare`.
 
     def test_part():
         frame = promin.Renderer(scene).render(size=(320, 240))
         promin.testing.assert_same_picture(frame, "tests/baselines/part.exr")
 
-With PROMIN_UPDATE_BASELINES=1 in the environment, baselines are written and not compared."""
+If the environment has PROMIN_UPDATE_BASELINES=1, the functions write baselines and compare nothing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from promin._frame import Frame, read_image, to_picture, unlit_of, write_image
 from promin._records import Display, to_dict
 
 PictureLike = Union[Frame, ArrayLike, "os.PathLike[str]", str]
-"""A Frame, linear light (rows, columns, 3), or a picture file."""
+"""A picture: a Frame, linear light (rows, columns, 3), or a picture file."""
 
 UPDATE_VARIABLE = "PROMIN_UPDATE_BASELINES"
 
@@ -52,7 +52,7 @@ class Difference:
     flip: float
     """The mean of FLIP, 0...1."""
     flip_map: NDArray[np.float32]
-    """FLIP of each pixel, (rows, columns)."""
+    """FLIP of each pixel, (rows, columns), 0...1."""
 
     @property
     def percent(self) -> float:
@@ -61,16 +61,16 @@ class Difference:
 
 
 def compare(reference: PictureLike, picture: PictureLike, *, fail: float = 0.0, linear: bool = True) -> Difference:
-    """Returns the measures of `promin compare`. fail: a pixel differs if one of its channels differs by more. linear:
-    whether the values are linear light; else they are sRGB values in 0...1. Only FLIP depends on it. Raises InputError
-    if the sizes differ."""
+    """Returns the measures of `promin compare`. fail: a pixel differs if one of its channels differs by more than this.
+    linear: whether the values are linear light; otherwise they are sRGB values in 0...1. Only FLIP depends on `linear`.
+    Raises InputError if the sizes differ."""
     first, second = _pixels(reference), _pixels(picture)
     return Difference(**_promin.compare(first, second, bool(linear), float(fail)))
 
 
 def fingerprint(device: Device | None = None) -> str:
-    """Returns eight letters that identify the name and driver of a device, for the names of its baselines. Pictures
-    have the same bits on the same device."""
+    """Returns eight letters that identify the name and driver of a device, to be used in the names of the device's
+    baselines. Pictures have the same bits on the same device."""
     return hashlib.sha256((device or Device()).fingerprint.encode()).hexdigest()[:8]
 
 
@@ -93,8 +93,8 @@ def assert_same_picture(
     and `update` writes that file: one for each driver whose bits differ. update: whether to write the baseline; None:
     write it if PROMIN_UPDATE_BASELINES is set and not "0".
 
-    If they differ, NAME.actual.exr (linear light) and NAME.difference.png (FLIP from black to white) are written beside
-    the baseline, or into PROMIN_TEST_OUTPUT. Raises InputError if the baseline is missing."""
+    If the pictures differ, NAME.actual.exr (linear light) and NAME.difference.png (FLIP from black to white) are
+    written beside the baseline, or into PROMIN_TEST_OUTPUT. Raises InputError if the baseline is missing."""
     shared = Path(os.fsdecode(baseline))
     if shared.suffix not in (".exr", ".png"):
         raise UsageError(f"a baseline is an .exr or a .png, not {shared}")
@@ -129,7 +129,8 @@ def assert_same_picture(
 
 
 def heat(flip_map: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Returns errors 0...1 (rows, columns) as linear colours from black over violet and orange to white."""
+    """Returns colours for errors 0...1 (rows, columns), as linear light: from black through violet and orange to
+    white."""
     places = np.clip(np.nan_to_num(flip_map, nan=1.0), 0.0, 1.0) * (len(_HEAT) - 1)
     codes = np.stack([np.interp(places, np.arange(len(_HEAT)), _HEAT[:, i]) for i in range(3)], axis=-1)
     linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
@@ -137,7 +138,7 @@ def heat(flip_map: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _to_codes(srgb: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Returns values rounded to 8 bits, so that they are equal if their 8-bit values are."""
+    """Returns values rounded to 8 bits. Two results are equal if the 8-bit values are equal."""
     return np.asarray(np.floor(srgb * 255.0 + 0.5) / 255.0, np.float32)
 
 

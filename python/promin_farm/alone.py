@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""`promin-farm work`: a process that makes its share of a job alone, without Dask, for queues of any kind."""
+"""`promin-farm work`: a process that makes its share of a job without Dask, for queues of any kind."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _SELF = "this process"
 
 
 class Signals:
-    """Handles SIGINT and SIGTERM: the first ends the work after the current piece, the second abandons that piece
-    too."""
+    """Handles SIGINT and SIGTERM: the first ends the work after the current piece, the second abandons the current
+    piece."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -37,11 +37,11 @@ class Signals:
             signal.signal(number, handler)
 
     def end_soon(self) -> bool:
-        """Returns whether there was a signal."""
+        """Returns whether there was at least one signal."""
         return self.count > 0
 
     def end_now(self) -> bool:
-        """Returns whether there were two signals."""
+        """Returns whether there were at least two signals."""
         return self.count > 1
 
     def _count(self, number: int, frame: FrameType | None) -> None:
@@ -85,8 +85,8 @@ class Alone:
 
 
 def find_share(words: str | None) -> tuple[int, int]:
-    """Returns I and N of "I/N", where I counts from 0. Without an argument it returns those of this process in its
-    Slurm array, else 0 and 1. Raises UsageError."""
+    """Returns I and N of "I/N", where I counts from 0. Without an argument it returns the numbers of this process in
+    its Slurm array, or 0 and 1 without an array. Raises UsageError."""
     if words is None:
         env = os.environ
         if "SLURM_ARRAY_TASK_COUNT" not in env:
@@ -94,8 +94,8 @@ def find_share(words: str | None) -> tuple[int, int]:
         step = int(env.get("SLURM_ARRAY_TASK_STEP", "1")) or 1
         first = int(env.get("SLURM_ARRAY_TASK_MIN", "0"))
         tasks = int(env["SLURM_ARRAY_TASK_COUNT"])
-        # A list with gaps has numbers beyond its count. Two tasks then start with the same share, which only costs
-        # time.
+        # In a list with gaps, a task's number may exceed the number of tasks. Two tasks then start with the same share,
+        # which only costs time.
         return (int(env["SLURM_ARRAY_TASK_ID"]) - first) // step % tasks, tasks
     index, _, count = words.partition("/")
     if index.isdigit() and count.isdigit() and int(index) < int(count):
@@ -115,7 +115,7 @@ def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch
     whole = Tally()
 
     def run(numbers: list[int], survey: Survey) -> bool:
-        """Returns whether the process may continue."""
+        """Makes these pieces and returns whether the process may continue."""
         foreman = Foreman(job, crew, watch, settings=settings, tries=survey.tries, stop=signals.end_soon)
         # Pieces that have killed other processes come last, because they may kill this one.
         tally = foreman.run(sorted(numbers, key=lambda n: survey.tries[n].deaths if n in survey.tries else 0))
@@ -133,7 +133,7 @@ def work(job: jobs.Job, share: tuple[int, int], device: str | None, watch: Watch
         )
         first = index * survey.total // count
         missing = [n for n in [*range(first, survey.total), *range(first)] if n not in taken]
-        # Only a few at a time, because other processes take pieces from the same list.
+        # Only a few pieces are made at a time, because other processes take pieces from the same list.
         goes_on = bool(missing) and run(missing[: max(1, len(missing) // (2 * count))], survey)
     worker.close()
     return whole

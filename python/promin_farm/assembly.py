@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a job's files from its pieces: frames of a path while other frames are made, everything else at the end."""
+"""Writes a job's files from its pieces. Frames of a camera path are written while other frames are made, all other
+files at the end."""
 
 from __future__ import annotations
 
@@ -23,29 +24,30 @@ class Assembly:
         self._outputs = settings.outputs
         self._allow_mixed = settings.allow_mixed
         self._missing: dict[int, set[int]] = {}
-        """For each frame that is not written, the pieces that it waits for."""
+        """For each frame that is not written, the pieces that are missing."""
         self._ready: queue.SimpleQueue[int | None]
         """Frames to write; None ends the thread."""
         self._written: set[int] = set()
         self._frames: dict[int, int] = {}
-        """The frame of each piece; either for all pieces or for none."""
+        """The frame of each piece. Either all pieces have a frame or none has."""
         for piece in job.pieces:
             frame = frame_number_of(piece)
             if frame is None:
-                break  # A single picture, or rays; there may be a million pieces.
+                break  # A picture or rays; there may be a million pieces.
             self._frames[piece.number] = frame
 
     @contextmanager
     def writing(self, missing: Iterable[int], stop: Callable[[], bool]) -> Iterator[None]:
-        """A context in which frames are written on a separate thread. missing: the pieces to make. stop: whether to
-        leave out frames that have not been started; waiting frames are also left out after an error."""
+        """A context in which frames are written on a separate thread. missing: the pieces to make. stop: a function
+        that returns True if frames that have not been started must be left out. Waiting frames are also left out after
+        an error."""
         if not self._outputs or not self._frames:
             yield
             return
         self._ready = queue.SimpleQueue()
         self._missing = {frame: set() for frame in self._frames.values() if frame not in self._written}
         for number in missing:
-            # A piece that is altered after its frame was written is made again with the same bytes.
+            # If a piece is altered after its frame was written, it is made again with the same bytes.
             if self._frames[number] in self._missing:
                 self._missing[self._frames[number]].add(number)
         for frame, numbers in self._missing.items():
@@ -66,7 +68,7 @@ class Assembly:
             thread.join()
 
     def piece_done(self, number: int) -> None:
-        """Reports within `writing` that the piece is done."""
+        """Records that the piece is done; to be called within `writing`."""
         frame = self._frames.get(number)
         if frame not in self._missing:
             return
@@ -90,5 +92,5 @@ class Assembly:
             try:
                 self._job.merge(self._outputs, allow_mixed=self._allow_mixed, frames=[frame])
             except jobs.Error:
-                continue  # It is tried again at the end, and reported then.
+                continue  # The frame is tried again at the end; an error is reported then.
             self._written.add(frame)

@@ -16,10 +16,10 @@ from promin_farm.survey import take_survey
 
 @dataclass
 class Audit:
-    """The results, piece by piece."""
+    """The results of an audit for each piece."""
 
     fingerprint: str
-    """Of this process."""
+    """The fingerprint of this process."""
     within: dict[str, jobs.Comparison] = field(default_factory=dict)
     """Results by name for pieces of this fingerprint, which must have equal bits."""
     across: dict[str, jobs.Comparison] = field(default_factory=dict)
@@ -27,13 +27,13 @@ class Audit:
 
     @property
     def is_good(self) -> bool:
-        """Returns whether all pieces are correct."""
+        """Returns whether all audited pieces are correct."""
         return all(found.is_equal for found in self.within.values()) and all(
             found.is_within for found in self.across.values()
         )
 
     def describe(self) -> str:
-        """Returns a line for each piece with other bits, then the counts."""
+        """Returns a line for each piece whose bits differ, then the counts."""
         lines = []
         for name, found in self.within.items():
             if not found.is_equal:
@@ -60,7 +60,7 @@ def _describe(found: jobs.Comparison) -> str:
 
 
 def parse_share(words: str) -> float:
-    """Returns the number for "1%" or "0.01". Raises UsageError."""
+    """Returns the share as a number, for "1%" or "0.01". Raises UsageError."""
     try:
         share = float(words[:-1]) / 100.0 if words.endswith("%") else float(words)
     except ValueError:
@@ -71,7 +71,8 @@ def parse_share(words: str) -> float:
 
 
 def pick_sample(job: jobs.Job, numbers: list[int], share: float, seed: int) -> list[int]:
-    """Returns the same sample for the same job and seed: the pieces with the smallest hashes, at least one."""
+    """Returns a sample of the pieces: those with the smallest hashes, at least one. The same job and seed give the same
+    sample."""
 
     def key(number: int) -> str:
         return hashlib.sha256(f"{job.id} {seed} {number}".encode()).hexdigest()

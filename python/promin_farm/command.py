@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _check_first(words: list[str]) -> None:
-    """Raises UsageError where a scene or a job stands in place of the command."""
+    """Raises UsageError if the first word is a scene or a job and not a command."""
     first = Path(words[0]) if words else Path()
     if first.suffix.lower() in _SCENES:
         raise jobs.UsageError(f"{first} is a scene, not a command; use: {_render_words(first)}")
@@ -78,7 +78,7 @@ def _check_first(words: list[str]) -> None:
 
 
 def _check_folder(folder: str) -> None:
-    """Raises UsageError for a scene."""
+    """Raises UsageError if the argument is a scene and not a job's folder."""
     if Path(folder).is_file():
         cure = f"; to make a job of it, use: {_render_words(Path(folder))}"
         is_scene = Path(folder).suffix.lower() in _SCENES
@@ -86,7 +86,7 @@ def _check_folder(folder: str) -> None:
 
 
 def _render_words(scene: Path) -> str:
-    """The command that renders a scene."""
+    """Returns the command that renders a scene."""
     return shlex.join(["promin-farm", "render", str(scene), "-o", f"{scene.stem}.png", "--job", f"{scene.stem}.job"])
 
 
@@ -182,10 +182,10 @@ def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
         if not value:
             raise jobs.UsageError(f"there is no {what}; give one with {name}")
     if options.command == "cast":
-        from promin_farm.rays import prepare_rays  # Loading NumPy takes a while.
+        from promin_farm.rays import prepare_rays  # Imported late, because loading NumPy takes a while.
 
         arguments = prepare_rays(arguments, Path(options.job))
-        # The assembly writes them after the hits.
+        # The assembly writes the offsets after the hits.
         options.output += [options.offsets] if options.offsets else []
     job = jobs.create(options.command, arguments, os.path.abspath(options.job))
     return _run(job, options)
@@ -199,7 +199,7 @@ def _run(job: jobs.Job, options: argparse.Namespace) -> int:
     folder = Path(job.folder)
     settings = Settings.read(folder).with_outputs(options.output)
     settings = replace(settings, allow_mixed=settings.allow_mixed or options.allow_mixed, retries_from=time.time())
-    # A resumed job without files needs no check.
+    # A resumed job without output files needs no check.
     if settings.outputs:
         check_outputs(job, settings.outputs)
     settings.write(folder)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Crews on Dask distributed: a running cluster, or workers that a queue starts.
+"""Crews on Dask distributed: a cluster that is already running, or workers that a queue starts.
 
-It uses Dask's Client, of any version since 2022. Dask's scheduler carries numbers and receipts between the foreman and
-the workers; the foreman decides where a piece is made."""
+The module uses Dask's Client, of any version since 2022. Dask's scheduler carries numbers and receipts between the
+foreman and the workers. The foreman decides which worker makes a piece."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from promin_farm.foreman import PROOF
 from promin_farm.watch import of_workers
 
 _LOST_S = 45
-"""A nanny without a worker is given up after this time, and another takes its seat."""
+"""A nanny that has no worker after this time is given up, and another one takes its seat."""
 _PATIENCE_S = 600.0
 _TOP_UP_S = 15.0
 _CONNECT_S = 20
-"""Time to wait for a scheduler."""
+"""Time to wait for a scheduler, in seconds."""
 
 
 def need(module: str, package: str) -> Any:
@@ -48,13 +48,14 @@ class DaskCrew:
     def __init__(
         self, client: Any, job: jobs.Job, patience_s: float, keep_up: Callable[[], None] | None = None
     ) -> None:
-        """keep_up: requests new workers from a queue in place of lost ones; called from time to time."""
+        """keep_up: a function that requests new workers from a queue in place of lost ones. It is called from time to
+        time."""
         self.patience_s = patience_s
         self._client = client
         self._folder = job.folder
         self._keep_up = keep_up
         self._kept_up = time.monotonic()
-        # Two runs of one job have different tasks in Dask, so that each foreman gets only its own answers.
+        # Two runs of one job use different task names in Dask, so each foreman gets only its own answers.
         self._keys = f"{job.id[:16]}-{secrets.token_hex(4)}"
         self._count = 0
         self._futures: dict[tuple[str, int], Any] = {}
@@ -102,7 +103,7 @@ class DaskCrew:
         if (member, number) not in self._futures or self._futures[member, number] is not future:
             return None
         del self._futures[member, number]
-        answer: worker.Answer | None = None  # The worker has ended with it; the piece may or may not be written.
+        answer: worker.Answer | None = None  # The worker has ended; the piece may or may not be written.
         try:
             if future.status == "finished":
                 answer = future.result(timeout=10)
@@ -135,7 +136,7 @@ def _refusal_of(error: BaseException) -> worker.Answer | None:
 
 
 def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]:
-    """Joins a cluster. Raises RunError if there is none at the address."""
+    """Joins a cluster. Raises RunError if there is no cluster at the address."""
     quiet()
     distributed = need("distributed", "Dask distributed")
     try:
@@ -148,7 +149,7 @@ def open_remote(job: jobs.Job, address: str, stack: Any) -> tuple[DaskCrew, str]
 
 
 def quiet() -> None:
-    """Silences Dask's messages about each worker that comes and goes; the foreman reports what matters."""
+    """Silences Dask's messages about workers that come and go. The foreman reports the important events."""
     dask = need("dask", "Dask distributed")
     dask.config.set(
         {

@@ -8,7 +8,7 @@ from promin import jobs
 
 
 def exit_code_of(error: BaseException) -> int:
-    """Returns 1 for failures while running, 2 for wrong use, 3 for bad input, 4 for a missing device."""
+    """Returns the exit code: 1 for failures while running, 2 for wrong use, 3 for bad input, 4 for a missing device."""
     if isinstance(error, jobs.UsageError):
         return 2
     if isinstance(error, jobs.InputError):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Files that several machines may write at the same time: each appears completely or not at all, without locks."""
+"""Files that several machines may write at the same time, without locks. Each file appears completely or not at all."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 
 def write_whole(file: Path, content: str | bytes) -> None:
-    """Replaces the file at once. Raises OSError."""
+    """Replaces the file atomically. Raises OSError."""
     file.parent.mkdir(parents=True, exist_ok=True)
     temporary = _write_beside(file, content)
     try:
@@ -23,7 +23,7 @@ def write_whole(file: Path, content: str | bytes) -> None:
 
 
 def claim(file: Path, content: str) -> str:
-    """Writes the file if it does not exist, and returns its content. If several processes claim it at the same time,
+    """Writes the file if it does not exist, and returns its content. If several processes write it at the same time,
     all get the content of one of them, because creating a link is atomic, also on NFS. Raises OSError."""
     try:
         return file.read_text()
@@ -41,7 +41,7 @@ def claim(file: Path, content: str) -> str:
 
 
 def read_json(file: Path) -> dict[str, Any] | None:
-    """Returns the JSON object in the file; None if the file does not exist or holds none."""
+    """Returns the JSON object in the file; None if the file does not exist or contains no JSON object."""
     try:
         value = json.loads(file.read_bytes())
     except (OSError, ValueError):
@@ -51,7 +51,7 @@ def read_json(file: Path) -> dict[str, Any] | None:
 
 def _write_beside(file: Path, content: str | bytes) -> Path:
     temporary = file.with_name(f".{file.name}.{os.getpid()}-{secrets.token_hex(4)}.tmp")
-    # File names in it need not be UTF-8: surrogates of os.fsdecode become their bytes again.
+    # File names in the content need not be UTF-8. Surrogates of os.fsdecode become the original bytes again.
     data = content.encode(errors="surrogateescape") if isinstance(content, str) else content
     try:
         with open(temporary, "xb") as stream:

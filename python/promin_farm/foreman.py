@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The main loop of the farm: it decides which worker makes which piece, and when again, until all pieces are done or
-none can be made.
+"""The main loop of the farm: it decides which worker makes which piece and which pieces are tried again, until all
+pieces are done or the remaining pieces cannot be made.
 
-It knows no scheduler. A `Crew` carries pieces to workers and answers back. The foreman gives each worker its current
-piece and a few more, and forgets a piece when it is answered. A scheduler therefore has little to remember with a
-million pieces, and little to repeat after the end of a worker."""
+The foreman does not depend on a scheduler. A `Crew` carries pieces to workers and answers back. The foreman gives each
+worker its current piece and a few more. When the answer arrives, it forgets the piece. A scheduler therefore has little
+to remember with a million pieces, and little to repeat after the end of a worker."""
 
 from __future__ import annotations
 
@@ -25,42 +25,43 @@ from promin_farm.survey import Tries, open_piece
 from promin_farm.worker import Answer
 
 PROOF = -1
-"""Sent in place of a piece's number: the worker must compute its fingerprint."""
+"""A number that is sent in place of a piece's number: the worker must compute its fingerprint."""
 _SHORT_MS = 1000.0
 _MOST_IN_A_ROW = 10
 _MOST_ALIKE = 3
-"""If at least this number of different pieces fail in a row, the job and not a piece is at fault."""
+"""Number of different pieces. If at least this many pieces fail in a row, the job and not a piece is at fault."""
 _MOST_DEATHS_PROVING = 5
 _MOST_LOST_PROOFS = 5
 _REFUSED_S = 2.0
 _SPACE_AFTER = 4
-"""Number of finished pieces from which the duration of others is estimated."""
+"""Number of finished pieces that are needed to estimate the duration of other pieces."""
 
 
 class Crew(Protocol):
     """A set of workers, local or remote."""
 
     patience_s: float
-    """Time that the foreman waits if no worker can take a piece: for workers that are restarted, or that a queue has
-    yet to start."""
+    """Time in seconds that the foreman waits if no worker can take a piece. A worker may be restarting, or a queue may
+    not have started it yet."""
 
     most_at_once: int
-    """Number of pieces that a worker may have."""
+    """Number of pieces that a worker may have at the same time."""
 
     def members(self) -> set[str]:
-        """Returns the current workers. Raises RunError if they are no longer known."""
+        """Returns the current workers. Raises RunError if the crew has lost contact with them."""
 
     def send(self, member: str, number: int) -> None:
         """Sends a piece, or PROOF, to a worker."""
 
     def next_answer(self, timeout_s: float) -> tuple[str, int, Answer | None] | None:
-        """Returns the worker, its piece and its answer, which is None if it was lost; None after the timeout."""
+        """Waits for an answer and returns the worker, its piece and the answer. The answer is None if it was lost.
+        Returns None after the timeout."""
 
     def withdraw(self, member: str, number: int) -> None:
-        """Withdraws a piece that has not been started; it is then not answered."""
+        """Withdraws a piece that has not been started. The worker then gives no answer for it."""
 
     def forget(self, member: str) -> None:
-        """Drops all answers of a member that has ended."""
+        """Drops all answers of a worker that has ended."""
 
 
 class Watch(Protocol):
@@ -73,7 +74,7 @@ class Watch(Protocol):
         """Counts a finished piece."""
 
     def tick(self, worker_count: int) -> None:
-        """Called often."""
+        """Called often, so that the watch can update its display."""
 
 
 @dataclass
@@ -81,13 +82,13 @@ class Member:
     """The foreman's record of a worker."""
 
     state: str = "proving"
-    """"proving", "ready", "idle" or "refused"."""
+    """State of the worker: "proving", "ready", "idle" or "refused"."""
     fingerprint: str = ""
     name: str = ""
-    """As its ledger is named."""
+    """Name of the worker's ledger."""
     ends_at: float = float("inf")
     pieces: list[int] = field(default_factory=list)
-    """The pieces that it has, in the order of sending."""
+    """The pieces that the worker has, in the order of sending."""
     lost_proofs: int = 0
 
 
@@ -102,13 +103,13 @@ class Tally:
     exit_code: int = 0
     was_stopped: bool = False
     foreign: dict[int, str] = field(default_factory=dict)
-    """Pieces that need a fingerprint that no worker has, with that fingerprint."""
+    """Pieces that need a fingerprint that no worker has, each with this fingerprint."""
     repeats: int = 0
-    """Pieces that were sent again."""
+    """Number of pieces that were sent again."""
 
 
 class Foreman:
-    """Directs one run over some pieces of a job."""
+    """Directs one run, which makes some pieces of a job."""
 
     def __init__(
         self,
@@ -121,8 +122,8 @@ class Foreman:
         stop: Callable[[], bool] = lambda: False,
         leave: Callable[[], bool] = lambda: False,
     ) -> None:
-        """tries: earlier failures of pieces. stop: True ends the run after the current pieces. leave: True ends it at
-        once."""
+        """tries: earlier failures of pieces. stop: a function that ends the run after the current pieces by returning
+        True. leave: a function that ends the run at once by returning True."""
         self._job = job
         self._crew = crew
         self._watch = watch
@@ -200,7 +201,8 @@ class Foreman:
             self._crew.send(name, PROOF)
 
     def _mourn(self, member: Member) -> None:
-        """Counts a death for the piece that the worker was making, but not for pieces that it had not started."""
+        """Counts a death for the piece that the worker was making. Pieces that the worker had not started are not
+        counted."""
         at_hand = open_piece(self._job, member.name) if member.name else None
         for number in member.pieces:
             if number == at_hand:
@@ -208,7 +210,8 @@ class Foreman:
             self._again(number)
 
     def _again(self, number: int) -> None:
-        """Puts a piece behind all others, so that a piece that kills its workers does not delay the rest."""
+        """Moves a piece to the end of the list, so that a piece that kills its workers does not delay the other
+        pieces."""
         self._tally.repeats += 1
         if self._tries[number].is_hopeless:
             self._give_up(number)
@@ -222,7 +225,8 @@ class Foreman:
 
     def _send_pieces(self) -> None:
         typical_ms = median(self._recent_ms) if self._recent_ms else 0.0
-        # One piece waits while another is made; more if making a piece takes about as long as sending it.
+        # A worker has one piece waiting while it makes another. It has more if making a piece takes about as long as
+        # sending it.
         depth = 4 if self._recent_ms and typical_ms < _SHORT_MS else 2
         for round_ in range(1, min(depth, self._crew.most_at_once) + 1):
             for name, member in self._members.items():
@@ -329,14 +333,14 @@ class Foreman:
             )
 
     def _check_patience(self) -> None:
-        """Gives up after a while if there is work but no worker."""
+        """Ends the run after a while if there is work but no worker."""
         if self._count_sent() or any(member.state == "proving" for member in self._members.values()):
             self._idle_since = None
             return
         now = time.monotonic()
         if self._idle_since is None:
             self._idle_since = now
-        # A worker that is present and takes no pieces will not do so later.
+        # A worker that is present and takes no pieces now will not take any later.
         patience_s = min(self._crew.patience_s, _REFUSED_S) if self._members else self._crew.patience_s
         if now - self._idle_since < patience_s:
             return

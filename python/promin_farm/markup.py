@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""HTML and SVG as nested calls, which close their elements and escape text."""
+"""HTML and SVG as nested function calls. The functions close their elements and escape text."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class Markup(str):
 
 
 def element(name: str, /, *content: str, **attributes: object) -> Markup:
-    """Returns an element with this content; plain text is escaped. An attribute whose name is a Python keyword ends in
-    "_" ("class_"). "_" within a name stands for "-"."""
+    """Returns an element with this content; plain text in it is escaped. An attribute whose name is a Python keyword
+    ends in "_" ("class_"). "_" within a name stands for "-"."""
     words = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{html.escape(str(value))}"' for key, value in attributes.items()
     )

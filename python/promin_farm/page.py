@@ -23,9 +23,9 @@ from promin_farm.watch import duration
 
 _EVERY_S = 15.0
 _MOST_COST = 0.05
-"""The largest part of a run's time that the page may take, approximately."""
+"""The largest fraction of a run's time that the page may take, approximately."""
 _NEW_PICTURES_S = 2.0
-"""Time that a page may spend on reading pieces for new pictures; the next page adds more."""
+"""Time in seconds that a page may spend on reading pieces for new pictures. The next page adds more pictures."""
 _MOST_STRETCHES = 3000
 _WIDTH_PX = 1000
 _LANE_PX = 18
@@ -64,7 +64,7 @@ class Page:
         self._next = now + max(_EVERY_S, (now - begun) / _MOST_COST)
 
     def write(self, survey: Survey | None = None) -> None:
-        """Writes the page. Failures are ignored, because the work does not need it."""
+        """Writes the page. Failures are ignored, because the work does not depend on the page."""
         try:
             survey = survey or take_survey(self._job)
             pictures = write_pictures(self._job, survey.done, _NEW_PICTURES_S)
@@ -124,7 +124,7 @@ def _failures(job: jobs.Job, survey: Survey) -> str:
 
 @dataclass(frozen=True)
 class _Window:
-    """The part of a picture that a piece covers, according to its name."""
+    """The rectangle of a picture that a piece covers, read from the piece's name."""
 
     frame: str
     top: int
@@ -157,7 +157,7 @@ def _image(file: str, **attributes: object) -> Markup:
 
 
 def _mosaic(places: list[_Window], pictures: Mapping[int, str]) -> Markup:
-    """Arranges the pieces of one picture."""
+    """Returns the pictures of pieces, arranged at their places in the whole picture."""
     top, left = min(place.top for place in places), min(place.left for place in places)
     rows = max(place.bottom for place in places) - top
     columns = max(place.right for place in places) - left
@@ -183,7 +183,7 @@ def _timeline(job: jobs.Job, survey: Survey) -> str:
     begin = min(stretch.begun for stretch in stretches)
     length_s = max(stretch.ended or now for stretch in stretches) - begin
     scale = _WIDTH_PX / max(length_s, 1e-3)
-    # One lane for each process, in the order in which they started.
+    # The timeline has one row for each process, in the order in which the processes started.
     lanes = {worker: i for i, worker in enumerate(dict.fromkeys(stretch.worker for stretch in stretches))}
 
     def bar(stretch: Stretch) -> Markup:

@@ -18,8 +18,9 @@ _PX = 128
 
 
 def write_pictures(job: jobs.Job, done: set[int], most_s: float) -> dict[int, str]:
-    """Returns preview files, by number of the piece and relative to the job's folder, for finished pieces that are
-    spread over the job. Missing previews are made for at most the given time. Raises OSError and promin's errors."""
+    """Returns preview files of finished pieces that are spread over the job. The keys are numbers of pieces; the files
+    are relative to the job's folder. Missing previews are made for at most the given time. Raises OSError and promin's
+    errors."""
     files = {}
     until = time.monotonic() + most_s
     for number in range(0, len(job.pieces), max(1, -(-len(job.pieces) // _MOST))):
@@ -40,7 +41,7 @@ def write_pictures(job: jobs.Job, done: set[int], most_s: float) -> dict[int, st
 
 
 def encode_png(columns: int, rows: int, rgb: bytes) -> bytes:
-    """Encodes three channels of 8 bits, row by row from the top."""
+    """Returns the bytes of a PNG file with three channels of 8 bits, whose rows start at the top."""
 
     def chunk(name: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))

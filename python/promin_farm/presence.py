@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The workers of a job. Each has a file `farm/workers/HOST-PID.json` in the job's folder, which it touches while it
-lives."""
+"""The workers of a job. Each worker has a file `farm/workers/HOST-PID.json` in the job's folder, which it touches while
+it runs."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from promin_farm.files import read_json, write_whole
 BEAT_S = 10.0
 _LOOK_S = 0.5
 _MOST_TOLD = 8
-"""Number of processes whose starts are shown."""
+"""Number of processes whose starting steps are shown."""
 STALE_S = 60.0
-"""A worker on another host counts as dead if it has not touched its file for this time."""
+"""Time in seconds. A worker on another host counts as dead if it has not touched its file for this time."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class Presence:
     number."""
     fingerprint: str
     device: str
-    """In words."""
+    """Device and driver of the worker, for people."""
     threads: str
-    """LP_NUM_THREADS; empty if the driver decides."""
+    """LP_NUM_THREADS of the worker; empty if the driver chooses the number of threads."""
 
     @property
     def name(self) -> str:
-        """The name of its ledger."""
+        """The name of the worker's ledger."""
         return f"{self.host}-{self.pid}"
 
 
@@ -87,10 +87,11 @@ class Heart:
 
 
 class Start:
-    """Records the steps of a process that starts to work on a job, in `farm/starts/HOST-PID`, a few words per line."""
+    """Records the steps of a process that starts to work on a job. It writes a line with a few words for each step to
+    `farm/starts/HOST-PID`."""
 
     def __init__(self, folder: Path, also: Callable[[str], None]) -> None:
-        """also: receives the words too."""
+        """also: a function that receives the words too."""
         self._file = folder / "farm" / "starts" / f"{socket.gethostname()}-{os.getpid()}"
         self._also = also
 
@@ -101,21 +102,22 @@ class Start:
             with self._file.open("a") as stream:
                 stream.write(words + "\n")
         except OSError:
-            pass  # For the same reason as in Heart.
+            pass  # A full disk must not end a worker that only reports its steps.
 
 
 class Starts:
-    """Reads the steps of processes that start to work on a job, for a command that waits for the first of them."""
+    """Reads the steps of processes that start to work on a job. A command uses it while it waits for the first of these
+    processes."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / "farm" / "starts"
         self._ends = {file.name: file.stat().st_size for file in self._folder.glob("*")}
-        """The end of the text that has been shown, by the name of the ledger."""
+        """The end of the text that has been shown, for each ledger name."""
         self._told: set[str] = set()
         self._read_at = 0.0
 
     def tell_news(self, say: Callable[[str], None], now: float) -> None:
-        """Reports new steps of a few processes. now: the time in seconds; it reads the folder at most twice a
+        """Reports new steps of a few processes. now: the time in seconds. The folder is read at most twice a
         second."""
         if now - self._read_at < _LOOK_S:
             return
@@ -140,7 +142,8 @@ class Starts:
 
 
 class Roll:
-    """Determines which processes are alive, by the names of their ledgers. It looks once and caches the result."""
+    """Determines which processes are alive. Processes are named like their ledgers. The object checks each process once
+    and caches the result."""
 
     def __init__(self, folder: Path) -> None:
         self.workers: dict[str, Presence] = {}
@@ -158,13 +161,13 @@ class Roll:
                 self._ages[presence.name] = age
 
     def is_alive(self, name: str, last_sign: float) -> bool:
-        """Returns whether the process HOST-PID that writes a ledger is alive. last_sign: the time of its last line. It
-        decides for processes on other hosts without a file (those of `promin render --job`): they count as dead after
-        ten minutes."""
+        """Returns whether the process HOST-PID that writes a ledger is alive. last_sign: the time of its last line. For
+        a process on another host without a file (a process of `promin render --job`), the last line decides: the
+        process counts as dead after ten minutes."""
         host, _, pid_word = name.rpartition("-")
         presence = self.workers.get(name)
         if presence and self._ages[name] > 1e8:
-            return False  # It has recorded its end.
+            return False  # The worker has recorded its end.
         if host == socket.gethostname() and pid_word.isdigit():
             started = _start_of(int(pid_word))
             if started is None:
@@ -176,7 +179,7 @@ class Roll:
 
 
 def _now_of_disk(folder: Path) -> float:
-    """Returns the time of the file system, which may be on another machine."""
+    """Returns the current time of the file system, which may be on another machine."""
     probe = folder / "farm" / f".clock.{os.getpid()}.tmp"
     try:
         probe.parent.mkdir(exist_ok=True)
@@ -189,7 +192,7 @@ def _now_of_disk(folder: Path) -> float:
 
 
 def _start_of(pid: int) -> int | None:
-    """Returns None if there is no such process; a zombie does not count."""
+    """Returns the start of a process in clock ticks; None if there is no such process. A zombie does not count."""
     try:
         words = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
     except OSError:

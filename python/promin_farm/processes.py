@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A crew of processes on this machine. The command sends them numbers of pieces by pipes and gets answers back
+"""A crew of processes on this machine. The command sends numbers of pieces to them through pipes and gets answers back
 (promin_farm.seat)."""
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from promin_farm.worker import Answer
 
 _PATIENCE_S = 180.0
 _GOES_WITHIN_S = 5.0
-"""A process that is still making a piece or compiling is killed after this time."""
+"""Seconds after which a process that must end is killed, because it is still making a piece or compiling."""
 _PROGRAM = "import sys; sys.path[:] = {path!r}; from promin_farm import seat; seat.main({folder!r})"
 
 
@@ -32,7 +32,7 @@ class Seat:
     """A seat for a worker: a device and, if the device is a CPU, a number of threads."""
 
     device: str | None
-    """An argument of `--device`; None is the default."""
+    """An argument of `--device`; None stands for the default device."""
     threads: int | None = None
 
     @property
@@ -51,14 +51,14 @@ def deal_seats(devices: list[str], count: int | None) -> list[Seat]:
     """Returns a seat for each device, or `count` seats that share the devices. All workers of a machine share its
     cores.
 
-    devices: arguments of `--device`; without any the default device, which may be a CPU."""
+    devices: arguments of `--device`. An empty list stands for the default device, which may be a CPU."""
     count = count or max(1, len(devices))
     threads = max(1, count_cores() // count) if count > 1 else None
     return [Seat(devices[i % len(devices)] if devices else None, threads) for i in range(count)]
 
 
 class _Process:
-    """A worker process. It gets one number at a time, so that the others can be withdrawn."""
+    """A worker process. It gets one number at a time, so that the crew can withdraw the other pieces."""
 
     def __init__(self, folder: str, seat: Seat, ended: queue.SimpleQueue[tuple[str, int, Answer]]) -> None:
         self.seat = seat
@@ -76,7 +76,7 @@ class _Process:
             start_new_session=True,
         )
         self.name = f"{socket.gethostname()}-{self._popen.pid}"
-        """The name of its ledger."""
+        """The name of the process's ledger."""
         threading.Thread(target=self._read, name="promin-farm answers", daemon=True).start()
 
     def is_alive(self) -> bool:
@@ -93,7 +93,7 @@ class _Process:
                 self._waiting.remove(number)
 
     def dismiss(self) -> None:
-        """Lets the process end."""
+        """Closes the process's input, so that the process ends."""
         assert self._popen.stdin is not None
         try:
             self._popen.stdin.close()
@@ -101,7 +101,7 @@ class _Process:
             pass
 
     def wait(self, until: float) -> None:
-        """Kills the process if it has not ended by this time of time.monotonic()."""
+        """Kills the process if it has not ended by this time, measured with time.monotonic()."""
         try:
             self._popen.wait(max(0.0, until - time.monotonic()))
         except subprocess.TimeoutExpired:
@@ -117,7 +117,7 @@ class _Process:
             self._popen.stdin.write(f"{self._at}\n")
             self._popen.stdin.flush()
         except (OSError, ValueError):
-            pass  # It has ended, which the crew notices.
+            pass  # The process has ended, and the crew notices this later.
 
     def _read(self) -> None:
         assert self._popen.stdout is not None
@@ -130,7 +130,7 @@ class _Process:
 
 
 class LocalCrew:
-    """A process for each seat. If one ends, another takes its seat."""
+    """A crew with one process for each seat. If a process ends, another one takes its seat."""
 
     patience_s = _PATIENCE_S
     most_at_once = 4
@@ -167,7 +167,7 @@ class LocalCrew:
             process.withdraw(number)
 
     def forget(self, member: str) -> None:
-        """Answers of a dead process still count."""
+        """Answers that a dead process has sent still count."""
 
     def _find(self, member: str) -> list[_Process]:
         return [process for process in self._processes if process.name == member]

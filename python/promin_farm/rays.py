@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Converts the rays of a zarr array to the NumPy file that promin casts, once for each job, chunk by chunk."""
+"""Converts the rays of a zarr array to the NumPy file that promin casts. The conversion runs once for each job, chunk
+by chunk."""
 
 from __future__ import annotations
 
@@ -17,9 +18,9 @@ _ROWS = 1 << 20
 
 
 def prepare_rays(arguments: list[str], folder: Path) -> list[str]:
-    """Returns the arguments of `cast` with DIR.rays.npy in place of a name that ends in .zarr. The file has the bytes
-    of the array, so the identity of the job depends only on the rays and not on their source. Raises UsageError and
-    InputError."""
+    """Returns the arguments of `cast` with DIR.rays.npy in place of a name that ends in .zarr. The file contains the
+    same numbers as the array, so the identity of the job depends on the rays and not on their source. Raises UsageError
+    and InputError."""
     folder = folder.absolute()
     target = folder.with_name(f"{folder.name}.rays.npy")
     return [str(_copy(Path(word), target)) if word.rstrip("/").endswith(".zarr") else word for word in arguments]
@@ -37,7 +38,7 @@ def _copy(source: Path, target: Path) -> Path:
         raise jobs.InputError(
             f"the array is {array.dtype} {array.shape}, {source}; give an array of N x 8 float32 numbers"
         )
-    # Whole chunks at a time, because a chunk can only be unpacked as a whole.
+    # Whole chunks are read at a time, because zarr can only unpack a whole chunk.
     step = max(1, _ROWS // array.chunks[0]) * array.chunks[0]
     parts = [slice(begin, begin + step) for begin in range(0, array.shape[0], step)]
     if target.exists():

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A run: a crew makes the missing pieces of a job, then its files are written from the pieces."""
+"""A run of a job: a crew makes the missing pieces, then the run writes the job's files from the pieces."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from promin_farm.survey import take_survey
 from promin_farm.watch import Progress, of_pieces, of_workers
 
 _MOST_ROUNDS = 3
-"""Number of times that pieces which are altered during the job are made again before this is reported."""
+"""Number of times that altered pieces are made again before the run reports an error."""
 _MOST_NAMED = 5
 
 
@@ -43,7 +43,7 @@ class Options:
 
 
 def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
-    """Makes the missing pieces, writes the outputs, and returns the exit code. Raises promin's errors."""
+    """Makes the missing pieces, writes the outputs and returns the exit code. Raises promin's errors."""
     _check(options)
     job.clear_leftovers()
     assembly = Assembly(job, settings)
@@ -55,7 +55,7 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
                 return exit_code
         try:
             assembly.write_rest()
-            job.clear_leftovers()  # Temporary files of workers that were killed while they wrote.
+            job.clear_leftovers()  # Removes temporary files of workers that were killed while they wrote.
             break
         except (jobs.InputError, jobs.RunError):
             if round_ + 1 == _MOST_ROUNDS or all(job.state(piece.number) == "done" for piece in job.pieces):
@@ -71,7 +71,8 @@ def carry_on(job: jobs.Job, settings: Settings, options: Options) -> int:
 
 
 def check_outputs(job: jobs.Job, outputs: list[str]) -> None:
-    """Checks the outputs before the work, which may be long. Raises UsageError, InputError and RunError."""
+    """Checks the outputs before the work, because the work may take long. Raises UsageError, InputError and
+    RunError."""
     job.check_outputs(outputs)
     for output in outputs:
         if outputs.count(output) > 1:
@@ -106,7 +107,7 @@ def _check(options: Options) -> None:
 
 
 def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int], assembly: Assembly) -> int | None:
-    """Makes the pieces. Returns None if all are done, else the exit code."""
+    """Makes the pieces. Returns None if all pieces are done, otherwise the exit code."""
     survey = take_survey(job)
     claim_what_is_there(job, settings, survey.fingerprints)
     page = Page(job)
@@ -138,13 +139,13 @@ def _make(job: jobs.Job, settings: Settings, options: Options, missing: list[int
 
 
 def _open_crew(job: jobs.Job, options: Options, stack: ExitStack) -> tuple[Crew, str, int]:
-    """Returns the crew, its description, and the number of its workers; 0 if a cluster determines it."""
+    """Returns the crew, its description and the number of its workers. The number is 0 if a cluster determines it."""
     if options.scheduler in QUEUES:
         workers = options.workers or 1
         return *open_queue(job, str(options.scheduler), workers, options.queue_config, stack), workers
     if options.scheduler:
         return *open_remote(job, options.scheduler, stack), 0
-    # Each GPU has a worker; a CPU has one worker that uses all of it.
+    # Each GPU has one worker. A CPU has one worker, which uses all cores.
     seats = deal_seats(options.devices or jobs.list_gpus(), options.workers)
     threads = f", LP_NUM_THREADS={seats[0].threads} each" if seats[0].threads else ""
     words = f"{of_workers(len(seats))} on this machine{threads}"

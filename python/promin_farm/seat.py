@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A worker process on this machine, which `processes` starts. It reads a number per line and makes that piece, or
-computes its fingerprint for PROOF. It writes the number and the answer as a line of JSON. It ends when its standard
-input ends, and then abandons its current piece."""
+"""A worker process on this machine, which `processes` starts. It reads one number per line and makes the piece with
+this number, or computes its fingerprint if the number is PROOF. It writes the number and the answer as a line of JSON.
+When its standard input ends, it abandons its current piece and ends."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from promin_farm.foreman import PROOF
 
 
 def main(folder: str) -> None:
-    """Works until the standard input ends."""
+    """Makes pieces until the standard input ends."""
     answers = os.fdopen(os.dup(1), "w", buffering=1)
-    # Keeps the output of drivers out of the answers.
+    # Sends the output of drivers to standard error, so that standard output contains only answers.
     os.dup2(2, 1)
     numbers: queue.SimpleQueue[int | None] = queue.SimpleQueue()
     is_over = threading.Event()

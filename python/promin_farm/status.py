@@ -16,8 +16,8 @@ _SLOWEST = 5
 
 
 def rate_of(job: jobs.Job, survey: Survey) -> tuple[float, str] | None:
-    """Returns the amount of work per second and its unit: rays, which for pictures are camera rays, or pixels if an
-    error target determines the number of rays. None if nothing was made."""
+    """Returns the amount of work per second and its unit; None if nothing was made. The unit is rays (for pictures,
+    camera rays), or pixels if an error target determines the number of rays."""
     if survey.rate is None:
         return None
     if job.kind == "cast":
@@ -28,13 +28,13 @@ def rate_of(job: jobs.Job, survey: Survey) -> tuple[float, str] | None:
 
 
 def slowest(survey: Survey) -> list[tuple[int, float]]:
-    """Returns numbers and milliseconds of the pieces that took longest."""
+    """Returns the numbers and the milliseconds of the pieces that took longest."""
     times = [(number, float(receipt["ms"])) for number, receipt in survey.receipts.items() if "ms" in receipt]
     return sorted(times, key=lambda item: -item[1])[:_SLOWEST]
 
 
 def to_json(job: jobs.Job, survey: Survey) -> dict[str, Any]:
-    """Returns names and numbers. Times are in seconds, None if unknown."""
+    """Returns the status as a dict for JSON. Times are in seconds, None if unknown."""
     names = [piece.name for piece in job.pieces]
     rate = rate_of(job, survey)
     return {
@@ -62,7 +62,7 @@ def to_json(job: jobs.Job, survey: Survey) -> dict[str, Any]:
 
 
 def describe(job: jobs.Job, survey: Survey) -> str:
-    """Returns a description of a few lines."""
+    """Returns a description of the status in a few lines."""
     share = 100.0 * survey.weight_done / max(survey.weight_done + survey.weight_left, 1e-9)
     lines = [
         f"{job.kind} of {survey.total} pieces: {len(survey.done)} done ({share:.0f} %), {len(survey.running)} running, "
@@ -86,7 +86,7 @@ def describe(job: jobs.Job, survey: Survey) -> str:
 
 
 def amount(value: float) -> str:
-    """Formats a number with a letter for thousands, millions and billions."""
+    """Returns a number with a letter for thousands, millions or billions."""
     for factor, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
         if value >= factor:
             return f"{value / factor:.3g} {letter}"

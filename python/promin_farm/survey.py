@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The state of a job, from its ledgers and the existing pieces. Nothing is hashed; `verify`, `resume` and the assembly
-do that."""
+"""The state of a job, from its ledgers and the existing pieces. A survey hashes nothing; `verify`, `resume` and the
+assembly hash the pieces."""
 
 from __future__ import annotations
 
@@ -27,43 +27,43 @@ class Tries:
 
     failures: int = 0
     deaths: int = 0
-    """Number of processes that ended while they made it."""
+    """Number of processes that ended while they made the piece."""
     reason: str = ""
-    """The last one."""
+    """The reason of the last failure."""
 
     @property
     def is_hopeless(self) -> bool:
-        """Returns whether the piece is not tried again."""
+        """Returns whether the piece has failed so often that it is not tried again."""
         return self.failures >= MOST_FAILURES or self.deaths >= MOST_DEATHS
 
     def fail(self, reason: str) -> None:
-        """Counts an error."""
+        """Counts a failure."""
         self.failures += 1
         self.reason = reason
 
     def die(self, worker: str) -> None:
-        """Counts the end of a process."""
+        """Counts the end of a process that made the piece."""
         self.deaths += 1
         self.reason = f"{worker} ended while it made the piece"
 
     def describe(self) -> str:
-        """Returns a description with the last reason."""
+        """Returns a description of the failed attempts with the last reason."""
         counts = [f"{self.failures} failures"] * bool(self.failures) + [f"{self.deaths} deaths"] * bool(self.deaths)
         return f"{' and '.join(counts) or 'no try'}, the last: {self.reason}"
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """The time in which a process made a piece or was making it."""
+    """The time during which a process made a piece."""
 
     number: int
     worker: str
     begun: float
-    """Seconds since 1970."""
+    """Start of the time, in seconds since 1970."""
     ended: float | None
-    """None of what runs."""
+    """End of the time, in seconds since 1970; None if the process is still making the piece."""
     outcome: str
-    """"done", "failed", "died", "running"."""
+    """The result: "done", "failed", "died" or "running"."""
 
 
 @dataclass
@@ -75,30 +75,30 @@ class Survey:
     done: set[int] = field(default_factory=set)
     running: list[Stretch] = field(default_factory=list)
     tries: dict[int, Tries] = field(default_factory=dict)
-    """Failed attempts since `retries_from`."""
+    """Failed attempts since `retries_from`, by number of the piece."""
     receipts: dict[int, dict[str, Any]] = field(default_factory=dict)
-    """The last receipt of each finished piece."""
+    """The last receipt of each finished piece, by number of the piece."""
     stretches: list[Stretch] = field(default_factory=list)
     weight_done: float = 0.0
     weight_left: float = 0.0
     rate: float | None = None
-    """Work per second over the last ten minutes of work; None if nothing was made."""
+    """Amount of work per second over the last ten minutes of work; None if nothing was made."""
 
     @property
     def failed(self) -> dict[int, Tries]:
-        """Returns the pieces that are given up."""
+        """Returns the failed attempts of the pieces that are not tried again."""
         return {number: tries for number, tries in self.tries.items() if tries.is_hopeless and number not in self.done}
 
     @property
     def time_left_s(self) -> float | None:
-        """Returns the remaining time; None if no process works or the rate is unknown."""
+        """Returns the remaining time in seconds; None if no process works or the rate is unknown."""
         if not self.running or not self.rate:
             return None
         return self.weight_left / self.rate
 
     @property
     def fingerprints(self) -> dict[int, str]:
-        """Returns the known fingerprints of finished pieces."""
+        """Returns the known fingerprints of finished pieces, by number of the piece."""
         return {n: str(receipt["fingerprint"]) for n, receipt in self.receipts.items() if receipt.get("fingerprint")}
 
 
@@ -126,7 +126,7 @@ def take_survey(job: jobs.Job) -> Survey:
 
 
 def open_piece(job: jobs.Job, worker: str) -> int | None:
-    """Returns the piece that a process has begun and not ended."""
+    """Returns the piece that a process has begun and not finished."""
     events = job.events(worker)
     return int(events[-1]["number"]) if events and events[-1]["event"] == "begun" else None
 
@@ -153,7 +153,7 @@ def _take(survey: Survey, event: dict[str, Any], at_hand: dict[str, dict[str, An
 
 
 def _take_open(survey: Survey, worker: str, begun: dict[str, Any], since: float) -> None:
-    """Processes pieces without an end event: they are running, or their process has ended."""
+    """Processes pieces that were begun and have no later event. A process is making such a piece, or it has ended."""
     at = float(begun["time_s"])
     if not survey.roll.is_alive(worker, at):
         _bury(survey, worker, begun, at, since)
@@ -167,14 +167,14 @@ def _bury(survey: Survey, worker: str, begun: dict[str, Any], at: float, since: 
     number, began = int(begun["number"]), float(begun["time_s"])
     survey.stretches.append(Stretch(number, worker, began, at, "died"))
     if number in survey.done:
-        # It may have been written before its receipt.
+        # The piece may have been written before its receipt.
         survey.receipts.setdefault(number, begun)
     if began >= since:
         survey.tries.setdefault(number, Tries()).die(worker)
 
 
 def _rate_of(stretches: list[Stretch], weights: list[float]) -> float | None:
-    """Returns the rate over the last minutes in which pieces were made, whenever that was."""
+    """Returns the rate over the last minutes in which pieces were made. These minutes may be in the past."""
     made = [s for s in stretches if s.outcome == "done" and s.ended is not None]
     if not made:
         return None

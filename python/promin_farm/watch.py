@@ -30,7 +30,8 @@ class Progress:
         on_tick: Callable[[], None] = lambda: None,
         on_piece: Callable[[int], None] = lambda number: None,
     ) -> None:
-        """on_tick: called often. on_piece: called with the number of each finished piece."""
+        """on_tick: a function that is called often. on_piece: a function that is called with the number of each
+        finished piece."""
         self._stream = stream or sys.stderr
         self._is_quiet = is_quiet
         self._on_tick = on_tick
@@ -66,7 +67,7 @@ class Progress:
         if self._is_quiet or now - self._last_shown < (_EVERY_S if self._is_terminal else _LINES_EVERY_S):
             return
         if self._last_shown == 0.0 and not self._is_terminal:
-            self._last_shown = now  # The first line has no information until some time has passed.
+            self._last_shown = now  # An earlier first line would contain no information.
             return
         self._last_shown = now
         line = self.describe(worker_count)
@@ -77,14 +78,14 @@ class Progress:
             print(f"promin-farm: {line}", file=self._stream, flush=True)
 
     def describe(self, worker_count: int) -> str:
-        """Returns the line to show."""
+        """Returns the line of progress."""
         left = self.time_left_s()
         words = f"{self._done} of {of_pieces(self._total)}, {of_workers(worker_count)}"
         return words + (f", {duration(left)} left" if left is not None else "")
 
     def time_left_s(self) -> float | None:
-        """Returns the remaining time, estimated from the pieces of the last two minutes; None before the first
-        piece."""
+        """Returns the remaining time in seconds, estimated from the pieces of the last two minutes; None before the
+        first piece."""
         if not self._recent:
             return None
         span = time.monotonic() - max(self._begun, time.monotonic() - _RATE_OVER_S)
@@ -109,10 +110,10 @@ def duration(seconds: float) -> str:
 
 
 def of_pieces(count: int) -> str:
-    """In words."""
+    """Returns a number of pieces in words."""
     return "1 piece" if count == 1 else f"{count} pieces"
 
 
 def of_workers(count: int) -> str:
-    """In words."""
+    """Returns a number of workers in words."""
     return "1 worker" if count == 1 else f"{count} workers"

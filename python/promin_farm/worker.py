@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The work of a process of the farm: it opens the job once, computes its fingerprint, and makes pieces.
 
-The two functions take strings and numbers and return JSON values, so that nothing else is transferred. They raise
-nothing, because an exception from another machine says less than a sentence. Each answer has one of these keys:
+The functions `prove` and `make` take strings and numbers and return JSON values, so that nothing else is transferred.
+They return an error as a sentence and raise no exception, because an exception from another machine says less. Each
+answer has one of these keys:
 
     proof     the fingerprint and what the process is
     idle      why this process can do nothing here (no device)
@@ -36,7 +37,7 @@ class Bench:
     """A job that is open in this process: its scene, its device and its compiled kernels."""
 
     def __init__(self, folder: str, device: str | None, say: Callable[[str], None]) -> None:
-        """say: receives the current step. Raises promin's errors."""
+        """say: a function that receives the name of the current step. Raises promin's errors."""
         self.folder = Path(folder)
         self.stamp = _stamp_of(self.folder)
         self.job = jobs.open(folder)
@@ -49,7 +50,7 @@ class Bench:
         self.heart = Heart(self.folder, fingerprint, str(getattr(self.runner, "made_on", "")))
 
     def find_obstacle(self, number: int | None) -> Answer | None:
-        """Returns an obstacle if the whole job or a piece needs other bits than those of this process."""
+        """Returns an obstacle if the whole job, or a piece, needs bits of another fingerprint than this process has."""
         if number is None and self.settings.allow_mixed:
             return None
         group = "job" if number is None else group_of(self.job, self.job.pieces[number], self.settings)
@@ -76,8 +77,8 @@ _using = threading.RLock()
 def prove(folder: str, device: str | None = None, say: Callable[[str], None] = lambda words: None) -> Answer:
     """Opens the job unless it is open, and returns the fingerprint of this process.
 
-    device: an argument of `--device`; None: PROMIN_DEVICE of the environment, else the default. say: receives its
-    current step, which the folder also shows."""
+    device: an argument of `--device`; None: the environment variable PROMIN_DEVICE, or the default device. say: a
+    function that receives the current step, which is also recorded in the folder."""
     with _using:
         try:
             bench = _open(folder, device, say)
@@ -98,7 +99,8 @@ def prove(folder: str, device: str | None = None, say: Callable[[str], None] = l
 
 
 def make(folder: str, number: int, stop: Callable[[], bool] | None = None) -> Answer:
-    """Makes a piece unless it is done. stop: called during the work; True abandons the piece."""
+    """Makes a piece unless it is done. stop: a function that is called during the work and abandons the piece by
+    returning True."""
     with _using:
         try:
             bench = _open(folder, None)
@@ -115,7 +117,7 @@ def make(folder: str, number: int, stop: Callable[[], bool] | None = None) -> An
             return {"left": True}
         except Exception as error:
             if isinstance(error, jobs.DeviceError):
-                close()  # A lost device is opened again for the next piece.
+                close()  # A lost device is closed here and opened again for the next piece.
             sentence = _sentence(error)
             return {"failed": sentence, "is_disk_full": any(words in sentence for words in _DISK_FULL)}
         return {"done": receipt.to_dict()}
@@ -133,7 +135,7 @@ def close() -> None:
 def _open(folder: str, device: str | None, say: Callable[[str], None] = lambda words: None) -> Bench:
     global _bench
     if _bench and (str(_bench.folder) != folder or _stamp_of(_bench.folder) != _bench.stamp):
-        close()  # Another job, or a new job in the same folder.
+        close()  # The open job is another job, or an older job in the same folder.
     if _bench:
         _bench.settings = Settings.read(_bench.folder)
     else:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests share: scenes of the repository, the program to compare with, a box."""
+"""Fixtures that the tests share: scenes of the repository, the program for comparisons, a box."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session", autouse=True)
 def default_device() -> Iterator[Optional[promin.Device]]:
-    """The default device, open for all tests, so that the kernels of one test serve the next; or None."""
+    """The default device, or None if there is none. It stays open for all tests, so that kernels that one test compiled
+    serve the next."""
     try:
         yield find_device(None)
     except promin.DeviceError:
@@ -50,7 +51,7 @@ def run_promin() -> Callable[..., None]:
 
 @contextlib.contextmanager
 def fails(kind: type[promin.Error], code: str, *words: str) -> Iterator[pytest.ExceptionInfo[promin.Error]]:
-    """Expects an error with a problem of this code, whose sentence contains the words."""
+    """Expects an error with a problem of this code. The problem's sentence must contain the words."""
     with pytest.raises(kind) as caught:
         yield caught
     problems = caught.value.problems
@@ -58,7 +59,7 @@ def fails(kind: type[promin.Error], code: str, *words: str) -> Iterator[pytest.E
 
 
 def make_box(center: object = (0, 0, 0), size: float = 2.0) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Corners and faces of a cube, its corners counter-clockwise from outside."""
+    """Returns the corners and faces of a cube. The corners of a face run counter-clockwise as seen from outside."""
     bits = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)], np.float64)
     quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
     faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
@@ -67,7 +68,7 @@ def make_box(center: object = (0, 0, 0), size: float = 2.0) -> tuple[NDArray[np.
 
 @pytest.fixture
 def box() -> promin.Scene:
-    """A cube of edge 2 around the origin."""
+    """Returns a scene with a cube of edge 2 around the origin."""
     scene = promin.Scene()
     scene.add_triangles(*make_box())
     return scene
@@ -81,7 +82,7 @@ def box_caster() -> promin.Caster:
 
 
 def make_rays(count: int, seed: int = 1, spread: float = 3.0) -> NDArray[np.float32]:
-    """Rays from around the origin towards it."""
+    """Returns random rays that start around the origin and run towards it."""
     random = np.random.default_rng(seed)
     rays = np.zeros((count, 8), np.float32)
     rays[:, 0:3] = spread * random.normal(size=(count, 3))

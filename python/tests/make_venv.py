@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a venv with promin, what its tests need, and trimesh's own tests; where all is there, brings promin up to date.
+"""Makes a venv with promin, the packages that its tests need, and trimesh's own tests. If the venv exists, only updates
+promin.
 
     make_venv.py VENV --build FOLDER [--library BUILD] [--compiler CXX]
 
-With --library the module is built over the libraries of that build, and nothing is done where none of its sources is
-newer than the last installation; else these are built too. It takes python3-venv, python3-dev and PyPI."""
+With --library the module is built over the libraries of that build, and nothing is done if no source is newer than the
+last installation. Without it, the libraries are built too. The script needs python3-venv, python3-dev and PyPI."""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 NEEDED = ["numpy", "nanobind>=2.4", "scikit-build-core>=0.11"]
-# What is installed, or compiled into the module.
+# Files that are installed, or compiled into the module.
 PACKAGE_SOURCES = ("CMakeLists.txt", "LICENSE", "README", "app/", "cmake/", "engine/", "include/", "pyproject.toml", "python/")
 FARM_WITH = ["distributed", "dask-jobqueue", "zarr"]
 TESTS_WITH = [
@@ -65,12 +66,12 @@ def main() -> None:
     if options.library is not None and not (options.venv / "trimesh").exists():
         fetch_trimesh_tests(pip, options.venv)
     stamp.touch()
-    # A source that is changed meanwhile is newer.
+    # The stamp gets the time of the start, so that a source that changes during the installation is newer.
     os.utime(stamp, (start, start))
 
 
 def is_newest(stamp: Path, library: Path) -> bool:
-    """Whether the stamp is there, and no source of the package and no library of the build is newer."""
+    """Returns whether the stamp exists and is newer than every source of the package and every library of the build."""
     if not stamp.exists():
         return False
     listed = subprocess.run(["git", "ls-files"], cwd=REPOSITORY, capture_output=True, text=True)
@@ -81,7 +82,7 @@ def is_newest(stamp: Path, library: Path) -> bool:
 
 
 def fetch_trimesh_tests(pip: list[str], venv: Path) -> None:
-    """Into VENV/trimesh/tests, as they are in trimesh's source distribution."""
+    """Copies trimesh's tests from its source distribution to VENV/trimesh/tests."""
     downloads = venv / "downloads"
     run([*pip, "download", "--no-deps", "--no-binary", ":all:", "-d", str(downloads), "trimesh"])
     (archive,) = downloads.glob("trimesh-*.tar.gz")

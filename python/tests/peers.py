@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Rays from Python beside others: the tables of docs/python.md.
+"""Compares promin's rays from Python with other libraries: the tables of docs/python.md.
 
     peers.py rates MESH...      rays a second, in turns, medians
     peers.py wrong [COUNT]      wrong answers of rays that are aimed at corners and edges
 
-Takes trimesh, embreex and open3d; what is not installed is left out."""
+Uses trimesh, embreex and open3d. Libraries that are not installed are left out."""
 
 from __future__ import annotations
 
@@ -25,18 +25,19 @@ import promin
 TURNS = 5
 SIDE = 1000
 RAYS_OF_SLOW = 2000
-"""So many of the rays are cast by what takes hours for all."""
+"""Number of rays for libraries that would need hours for all rays."""
 
 
 class Peer(NamedTuple):
-    """Who answers rays of a mesh. Rays are what `take` makes of origins and directions (n, 3) float64."""
+    """A library that casts rays at a mesh. `take` converts origins and directions (n, 3) float64 to the library's
+    rays."""
 
     name: str
     take: Callable[[Any, Any], Any]
     hits: Callable[[Any], Any]
-    """Whether each ray hits anything, of what finds the nearest hit."""
+    """Returns whether each ray hits anything, according to the library's search for the nearest hit."""
     counts: Callable[[Any], Any]
-    """How often each ray crosses the mesh."""
+    """Returns the number of crossings of each ray with the mesh."""
     is_slow: bool = False
 
 
@@ -46,7 +47,7 @@ def make_peers(vertices: Any, faces: Any) -> Iterator[Peer]:
     caster = promin.Caster(scene)
 
     def pack(origins: Any, directions: Any) -> NDArray[np.float32]:
-        """float32, without the center, as an application of promin's keeps rays."""
+        """Returns rays in float32, without subtracting the center, as an application of promin would store them."""
         zero = np.zeros((len(origins), 1))
         return np.hstack([origins - scene.center, zero, directions, zero + np.inf]).astype(np.float32)
 
@@ -89,7 +90,8 @@ def make_peers(vertices: Any, faces: Any) -> Iterator[Peer]:
 
 
 def make_rays(low: Any, high: Any) -> dict[str, tuple[Any, Any]]:
-    """Of a camera before the mesh in pixel order, and random ones from around it towards it."""
+    """Returns rays of a camera in front of the mesh, in pixel order, and random rays from around the mesh towards
+    it."""
     middle, radius = (low + high) / 2, np.linalg.norm(high - low) / 2
     x, y = np.meshgrid(*2 * [(np.arange(SIDE) + 0.5) / SIDE * 2 - 1])
     camera = np.stack([x * 0.45, -y * 0.45, -np.ones_like(x)], axis=-1).reshape(-1, 3)
@@ -117,10 +119,10 @@ def measure(file: str) -> None:
                 some = slice(None, None, SIDE**2 // RAYS_OF_SLOW if peer.is_slow else 1)
                 taken = peer.take(rays[0][some], rays[1][some])
                 if not peer.is_slow:
-                    peer.hits(taken)  # What the peer before has left in caches and memory is not timed.
+                    peer.hits(taken)  # Keeps caches of the previous library out of the time.
                 start = time.perf_counter()
                 hits = peer.hits(taken)
-                # The first turn makes ready.
+                # The first turn only warms up.
                 times.setdefault(peer.name, []).append((time.perf_counter() - start) / len(hits))
                 shares[peer.name] = hits.mean()
         for name, all_times in times.items():
@@ -129,7 +131,7 @@ def measure(file: str) -> None:
 
 
 def make_ball(levels: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A cube of quads, cut `levels` times each way and pulled onto a sphere: a closed mesh."""
+    """Returns a closed mesh: the quads of a cube, cut `levels` times in each direction and projected onto a sphere."""
     vertices, faces = make_box()
     for _ in range(levels):
         edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
@@ -143,18 +145,19 @@ def make_ball(levels: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 
 def aim(vertices: Any, faces: Any, count: int) -> tuple[Any, Any]:
-    """Rays from inside, one half of them at corners, the other at the middles of edges."""
+    """Returns rays from inside. One half is aimed at corners, the other half at the middles of edges."""
     random = np.random.default_rng(1)
     corners = vertices[random.integers(len(vertices), size=count // 2)]
     ends = faces[random.integers(len(faces), size=count - count // 2)][:, :2]
     targets = np.concatenate([corners, vertices[ends].mean(axis=1)])
-    # Of few bits, so that rays at a box's corners meet them exactly.
+    # The origins have few bits, so that rays towards a box's corners hit them exactly.
     origins = np.round(random.uniform(-0.3, 0.3, targets.shape) * 64) / 64
     return origins, targets - origins
 
 
 def find_wrong(peer: Peer, origins: Any, directions: Any) -> tuple[int, int, int]:
-    """How many of how many rays from inside a closed mesh hit nothing, and have an even number of crossings."""
+    """Returns three numbers for rays from inside a closed mesh: the rays that hit nothing, the rays with an even number
+    of crossings, and all rays."""
     some = slice(None, None, max(1, len(origins) // RAYS_OF_SLOW) if peer.is_slow else 1)
     taken = peer.take(origins[some], directions[some])
     hits, counts = np.asarray(peer.hits(taken)), np.asarray(peer.counts(taken))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A plugin of pytest's that has Open3D's test_raycasting_scene.py test promin's class (test_open3d.py)."""
+"""A pytest plugin that lets Open3D's test_raycasting_scene.py test promin's class (test_open3d.py)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Theirs = open3d.t.geometry.RaycastingScene
 
 
 class WithTheirPoints(RaycastingScene):
-    """For the case that asks for rays and for closest points alike: the latter by Open3D's own class."""
+    """The class for a test that casts rays and finds closest points. Open3D's own class finds the closest points."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -31,7 +31,7 @@ class WithTheirPoints(RaycastingScene):
         return super().add_triangles(vertex_positions, triangle_indices)
 
 
-# Their helper, which is beside their file.
+# Replaces a helper module of Open3D's tests, which is in the folder of its tests.
 helpers = types.ModuleType("open3d_test")
 helpers.__dict__["list_devices"] = lambda **_: [open3d.core.Device("CPU:0")]
 sys.modules["open3d_test"] = helpers

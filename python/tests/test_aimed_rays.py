@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Rays that are aimed at corners and edges of closed meshes, near and far: none slips through, and parity is right."""
+"""Rays that are aimed at corners and edges of closed meshes, near and far. No ray slips through, and parities are
+right."""
 
 from __future__ import annotations
 

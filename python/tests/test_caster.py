@@ -96,7 +96,7 @@ def test_many_rays_are_packed_by_all_cores_as_few_are_by_one(
     assert leading == shape and packed.dtype == np.float32 and packed.tobytes() == expected.tobytes()
     parts = (rays[..., 0:3], rays[..., 4:7], rays[..., 3], rays[..., 7])
     assert pack_rays(parts, taken)[0].tobytes() == expected.tobytes()
-    # One origin for all, and one tmin.
+    # All rays have the same origin and the same tmin.
     expected[:, :3], expected[:, 3], expected[:, 7] = np.subtract((1.5, 2.5, 1e9), taken), 0.25, np.inf
     assert pack_rays(((1.5, 2.5, 1e9), parts[1], 0.25), taken)[0].tobytes() == expected.tobytes()
 
@@ -145,7 +145,7 @@ def test_a_file_far_from_the_origin_has_a_centre(tmp_path: Path) -> None:
     scene = promin.Scene.load(_write_obj(tmp_path / "far.obj", vertices, faces))
     assert np.abs(scene.center - center).max() < 0.5
     assert scene.bounds is not None and np.abs(scene.bounds - (center + [[-0.25], [0.25]])).max() < 1e-7
-    # What is added goes to its place beside it.
+    # Objects that are added later use the same center.
     scene.add_sphere(center + [2.0, 0.0, 0.0], 0.25)
     scene.add_camera(promin.Camera(eye=tuple(center + [0.0, 0.0, 4.0])))
     assert scene.cameras[0].eye == tuple(center + [0.0, 0.0, 4.0])
@@ -344,7 +344,8 @@ def test_positions() -> None:
 
 
 def cut_ball(radius: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A ball of triangles whose corners are whole numbers times 1/64, and so are the middles of edges times 1/128."""
+    """Returns a ball of triangles. The corners are multiples of 1/64, and the middles of edges are multiples of
+    1/128."""
     vertices, faces = make_ball(2)
     return np.round(vertices * radius * 64) / 64, faces
 
@@ -352,8 +353,9 @@ def cut_ball(radius: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 def lies_within(
     points: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
-    """Whether points are inside of a mesh around the origin that each ray from there leaves once, in float64: whether
-    the tetrahedron of the origin and a triangle, with its inner sides, holds the point."""
+    """Returns whether points are inside a mesh around the origin, in float64. A ray from the origin must leave the mesh
+    once. A point is inside if the tetrahedron of the origin and a triangle contains it, including the tetrahedron's
+    inner sides."""
     result = np.zeros(len(points), bool)
     for corners in vertices[faces]:
         weights = np.linalg.solve(corners.T, points.T)
@@ -372,7 +374,7 @@ def test_points_are_inside_whatever_their_rays_are_aimed_at(recwarn: pytest.Warn
     triangles = np.concatenate([faces, faces + len(outer)])
     middles = (corners[triangles] + corners[np.roll(triangles, 1, axis=1)]).reshape(-1, 3) / 2
     aims = np.concatenate([corners, middles])
-    # Each ray, or the one the other way, meets a corner or the middle of an edge exactly.
+    # Each ray, or the ray in the opposite direction, hits a corner or the middle of an edge exactly.
     steps = np.array([-4, -2, -1, -0.5, -0.25, 0.25, 0.5, 1, 2, 4]).reshape(-1, 1, 1)
     points = (aims - steps * PROBE.astype(np.float64)).reshape(-1, 3)
     assert (points == points.astype(np.float32)).all(), "no number is rounded"

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The code in README.md and docs/python.md can be pasted, the tutorial works as it stands, and the examples run."""
+"""Tests that the code in README.md and docs/python.md can be pasted, that the tutorial works as written, and that the
+examples run."""
 
 from __future__ import annotations
 
@@ -72,6 +73,6 @@ def test_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cloud.stat().st_size > 10000 and (tmp_path / "c.png").exists()
     scene = REPOSITORY / "scenes/sphere.gltf"
     run_example("thickness.py", monkeypatch, scene, "-o", thickness, "--picture", tmp_path / "t.png", "--columns", 65)
-    assert np.load(thickness).max() == pytest.approx(2.0, rel=1e-3)  # its one ball has a radius of 1
+    assert np.load(thickness).max() == pytest.approx(2.0, rel=1e-3)  # The scene's only ball has a radius of 1.
     run_example("turntable.py", monkeypatch, REPOSITORY / "scenes/box.gltf", "-o", sheet, "--views", 3)
     assert promin.read_image(sheet).shape == (400, 400, 3)

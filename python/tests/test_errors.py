@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong calls end in exceptions with the library's sentences, never in a crash."""
+"""Wrong calls raise exceptions with the library's sentences and never crash."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 import promin
 
 ERRORS = (promin.Error, TypeError, ValueError)
-# The same cases in every run; a case that was found elsewhere is told by an @example or a test of its own.
+# Every run has the same cases. A failing case that was found elsewhere becomes an @example or a test of its own.
 search = functools.partial(settings, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 
 
@@ -63,7 +63,7 @@ def test_importing_needs_no_driver_and_opening_names_the_variable() -> None:
     done = run(code, VK_DRIVER_FILES="/nonexistent", VK_ICD_FILENAMES="/nonexistent")
     assert done.returncode == 1
     assert "DeviceError" in done.stderr and "which VK_DRIVER_FILES names" in done.stderr
-    # Neither Vulkan's loader nor OpenImageIO is loaded before it is needed.
+    # The Vulkan loader and OpenImageIO are loaded only when they are needed.
     code = "import promin\nmaps = open('/proc/self/maps').read()\n"
     code += "assert 'libvulkan' not in maps and 'OpenImageIO' not in maps"
     assert run(code).returncode == 0
@@ -163,7 +163,7 @@ def test_random_views(renderer: promin.Renderer, data: st.DataObject) -> None:
     ]
     values = {name: data.draw(VALUES) for name in data.draw(st.lists(st.sampled_from(names), min_size=1, max_size=3))}
     if isinstance(values.get("spp"), int) or isinstance(values.get("time_limit"), (int, float)):
-        return  # these may be right, and take long
+        return  # These arguments may be right, and would take long.
     try:
         renderer.render(promin.View(size=(4, 3), **values))
     except ERRORS as error:

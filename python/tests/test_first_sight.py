@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What a new user types: a picture in one line, the words of the programs, materials by name, and cures for mistakes."""
+"""The first calls of a new user: a picture in one line, the words of the programs, materials by name, and cures for
+mistakes."""
 
 from __future__ import annotations
 
@@ -64,7 +65,8 @@ def test_an_exposure_is_that_of_promin_render(
 
 @pytest.fixture(scope="module")
 def scene_with_cameras(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A triangle and a bar below it with two cameras: a perspective one of an aspect ratio of 2 and one that is not."""
+    """Returns a scene with a triangle, a bar below it, and two cameras: a perspective camera with an aspect ratio of 2
+    and an orthographic one."""
     triangles = np.array([[0, 0, 0], [2, 0, 0], [0, 1, 0], [-1, -2, -3], [3, -2, -3], [0, -1, 0]], np.float32)
     data = base64.b64encode(triangles.tobytes()).decode()
     accessor = {"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3"}
@@ -96,7 +98,7 @@ def sky(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def as_options(keywords: dict[str, Any]) -> list[object]:
-    """The words of the same options of `promin render`."""
+    """Returns the words of the same options for `promin render`."""
     words: list[object] = []
     for name, value in keywords.items():
         words.append("--" + name.rstrip("_").replace("_", "-"))

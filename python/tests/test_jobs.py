@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""promin.jobs: pieces that any process may make, and files that are those of a single run."""
+"""Tests of promin.jobs: any process may make a piece, and the files are the same as those of a single run."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ PATH = {
 
 @pytest.fixture
 def scene(scenes: Path, tmp_path: Path) -> Path:
-    """A copy that may be changed."""
+    """Returns the path of a copy that a test may change."""
     return Path(shutil.copy(scenes / "box.gltf", tmp_path / "box.gltf"))
 
 
@@ -66,7 +66,7 @@ def test_pictures_are_those_of_the_single_run(scene: Path, tmp_path: Path, run_p
     assert [job.state(piece.number) for piece in job.pieces] == ["done"] * count
     job.merge([tmp_path / "merged.exr"])
     assert (tmp_path / "merged.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
-    # The program takes it for its own.
+    # The program accepts the job as its own.
     run_promin("render", *words, "--pieces", count, "--job", tmp_path / "job", "-o", tmp_path / "again.exr")
     assert (tmp_path / "again.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
     assert len([event for event in job.events() if event["event"] == "done"]) == count
@@ -81,7 +81,7 @@ def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) ->
     runner = job.runner()
     for number in (1, 2, 3):
         runner.run(number)
-    # A frame whose pieces are there does not wait for the others.
+    # A frame whose pieces are done can be written before the other frames.
     job.merge([tmp_path / "early.##.png"], frames=[1])
     assert (tmp_path / "early.01.png").read_bytes() == (tmp_path / "whole.01.png").read_bytes()
     with fails(promin.RunError, "job.pieces.missing", "1 of 4", "frame000000_"):
@@ -118,7 +118,7 @@ def test_answers_to_rays_are_those_of_the_single_run(
 
 
 class Chunks:
-    """Rays that lie in no .npy file."""
+    """Rays that are not in an .npy file."""
 
     name = "rays.chunks"
 
@@ -142,7 +142,7 @@ def test_rays_of_python(scene: Path, tmp_path: Path) -> None:
     job.merge([tmp_path / "hits.npy"])
     hits = np.load(tmp_path / "hits.npy")
     assert hits.tobytes() == promin.Caster(promin.Scene.load(scene)).cast(source.rays).tobytes()
-    # Elsewhere they are passed again, and others are refused.
+    # A job that is opened elsewhere needs the rays again, and refuses other rays.
     again = jobs.open(tmp_path / "job")
     assert again.runner(rays=source).recompute(2) == job.sha256(2)
     with fails(promin.UsageError, "job.other", '"rays.chunks"'):
@@ -175,7 +175,7 @@ def test_receipts_and_events(scene: Path, tmp_path: Path) -> None:
     assert receipt.fingerprint == runner.fingerprint == job.runner().fingerprint and len(receipt.fingerprint) == 64
     assert receipt.made_on == runner.made_on and receipt.pid == os.getpid() and receipt.ms > 0
     assert json.loads(json.dumps(receipt.to_dict()))["version"] == promin.__version__
-    # Done is done: what is returned is what was told.
+    # A second run does not make the piece again: it returns the same receipt.
     before = Path(job.pieces[1].file).stat().st_mtime_ns
     assert (
         runner.run(1) == receipt == jobs.open(tmp_path / "job").receipt(1) == pickle.loads(pickle.dumps(job)).receipt(1)
@@ -187,7 +187,7 @@ def test_receipts_and_events(scene: Path, tmp_path: Path) -> None:
     assert [(event["event"], event["number"]) for event in job.events()] == [("begun", 1), ("done", 1)]
     assert [event["event"] for event in job.events(f"{os.uname().nodename}-{os.getpid()}")] == ["begun", "done"]
     assert job.events("nobody-1") == []
-    # What the ledger cannot tell is left open; half a line waits, and what is no line is left out.
+    # Fields that the ledger lacks are empty. Half a line waits for its end, and a line without an event is skipped.
     (ledger,) = (tmp_path / "job/ledger").iterdir()
     ledger.write_bytes(b"\xff{}\n[]\n{}\n" + ledger.read_bytes()[:-1])
     bare = jobs.open(tmp_path / "job").receipt(1)
@@ -322,7 +322,7 @@ def test_comparisons_of_answers(scene: Path, rays: Path, tmp_path: Path, query: 
     hits = hits.reshape(-1, 8)
     met = np.flatnonzero(hits[:, 1] >= 0) if query != "--any" else np.flatnonzero(np.isfinite(hits[:, 0].view("f4")))
     if query != "--any":
-        hits[met, 0] += 1  # The next number.
+        hits[met, 0] += 1  # The next representable number.
         job.write(0, description, hits.tobytes() + tail)
         found = runner.compare(0)
         assert (found.is_equal, found.is_within, found.mismatches, found.count) == (False, True, 0, 1000)
@@ -335,7 +335,8 @@ def test_comparisons_of_answers(scene: Path, rays: Path, tmp_path: Path, query: 
 
 
 def test_a_tree_is_built_once(tmp_path: Path, run_promin: RunPromin) -> None:
-    """Of a mesh that is large enough, by several who begin at once; what is damaged is built again."""
+    """Several processes that begin at the same time build the tree of a large mesh once. A damaged tree is built
+    again."""
     side = 240
     x, y = np.meshgrid(np.arange(side + 1), np.arange(side + 1))
     vertices = np.stack([x, y, 3 * np.sin(0.1 * x) * np.cos(0.07 * y)], -1).reshape(-1, 3)
@@ -375,7 +376,7 @@ def test_events_are_those_of_the_job_in_the_order_of_their_makers(tmp_path: Path
     wrong = [line("begun", 2, "c", 4.0), line("begun", 0, "b", 4.0), line("begun", -1, "b", 4.0)]
     (tmp_path / "job/ledger/y-1.jsonl").write_text("".join([*wrong, line("begun", 1, "b", 6.0)]))
     told = [(event["maker"], event["event"], event["number"]) for event in job.events()]
-    # The clock of x was put back meanwhile.
+    # The clock of the maker x was set back meanwhile.
     assert told == [("x-1", "begun", 0), ("x-1", "stopped", 0), ("y-1", "begun", 1), ("x-1", "begun", 1)]
 
 
@@ -625,7 +626,7 @@ def test_files_are_checked_before_the_work(scene: Path, rays: Path, tmp_path: Pa
     with fails(promin.UsageError, "output.input"):
         casts.merge([rays])
     assert rays.read_bytes() == content
-    # Somebody else's folder does not lead out of itself.
+    # A manifest from another user cannot refer to files outside its folder.
     manifest = tmp_path / "cast" / "job.json"
     manifest.write_text(manifest.read_text().replace(casts.pieces[0].name, "../../out"))
     with fails(promin.InputError, "job.manifest.damaged"):

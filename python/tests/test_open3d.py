@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The adapter for Open3D, by the shapes and answers that its documentation and tests have; beside Open3D itself where
-it is installed."""
+"""Tests of the adapter for Open3D. They use the shapes and answers of Open3D's documentation and tests, and Open3D
+itself if it is installed."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_occupancy_is_exact_on_rays_through_edges_and_corners() -> None:
 
 
 def make_ball(radius: float, count: int = 20) -> tuple[np.ndarray, np.ndarray]:  # type: ignore[type-arg]
-    """A sphere of meridians and parallels, as many as Open3D's create_sphere has."""
+    """Returns a sphere of meridians and parallels, with as many as Open3D's create_sphere has."""
     heights, turns = np.arange(1, count) * np.pi / count, np.arange(2 * count) * np.pi / count
     around = np.stack([np.cos(turns), np.sin(turns), np.zeros_like(turns)], axis=-1)
     rings = np.sin(heights)[:, None, None] * around + np.cos(heights)[:, None, None] * (0, 0, 1)
@@ -108,7 +108,7 @@ def test_sphere_wrong_occupancy() -> None:
 
 
 def make_cube() -> RaycastingScene:
-    """From 0 to 1."""
+    """Distances from 0 to 1."""
     scene = RaycastingScene()
     scene.add_triangles(*make_box((0.5, 0.5, 0.5), 1.0))
     return scene
@@ -119,7 +119,7 @@ def make_lots(count: int) -> np.ndarray:  # type: ignore[type-arg]
 
 
 def test_count_lots_of_intersections() -> None:
-    # Each begins inside.
+    # Each ray starts inside the cube.
     assert (give(make_cube().count_intersections(make_lots(1234567))) == 1).all()
 
 
@@ -131,7 +131,7 @@ def test_list_lots_of_intersections() -> None:
 
 @pytest.mark.long
 def test_cast_lots_of_rays() -> None:
-    # None meets the plane of a triangle at z = 0, and each meets one of the cube but for two that begin on it.
+    # No ray hits the triangle's plane at z = 0. Each ray hits a triangle of the cube, except two rays that start on it.
     rays = make_lots(7654321)
     assert (give(make_scene().cast_rays(rays)["geometry_ids"]) != 0).all()
     begins_inside = (rays[:, :3] < 1).all(axis=1)
@@ -146,7 +146,7 @@ THEIRS = Path(os.environ.get("PROMIN_OPEN3D_TESTS", "/nonexistent"), "test_rayca
 
 @pytest.mark.long
 def test_theirs() -> None:
-    """Open3D's own file, with only the class replaced; what asks for closest points is skipped."""
+    """Runs Open3D's own test file with only the class replaced. Tests that need closest points are skipped."""
     pytest.importorskip("open3d")
     if not THEIRS.exists():
         pytest.skip("PROMIN_OPEN3D_TESTS names no folder with Open3D's test_raycasting_scene.py")
@@ -161,7 +161,7 @@ def test_pinhole_rays() -> None:
     rays = give(RaycastingScene.create_rays_pinhole(90, [0, 0, 0], [0, 0, 4], [0, 1, 0], 8, 6))
     assert rays.shape == (6, 8, 6) and rays.dtype == np.float32
     assert (rays[..., :3] == (0, 0, 4)).all() and np.allclose(rays[..., 5], -1)
-    # Seen along -Z with +Y up, the first pixel is at the left and the top.
+    # The camera looks along -Z and +Y is up, so the first pixel is at the upper left.
     assert np.allclose(rays[0, 0, 3:], (-3.5 / 4, 2.5 / 4, -1))
     again = give(
         RaycastingScene.create_rays_lookat(
@@ -195,7 +195,8 @@ def test_hits_agree_with_open3d() -> None:
     assert same.mean() > 0.9999
     hit = same & np.isfinite(expected["t_hit"].numpy())
     assert hit.sum() > 10000
-    # K of t between the two: their distance along the ray as one across the triangle, in u S (docs/glossary.md).
+    # K of t for the difference of the two hits: the distance along the ray, converted to a distance across the
+    # triangle, in units of u S (docs/glossary.md).
     triangles = corners[expected["primitive_ids"].numpy()[hit]].astype(np.float64)
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     scale = np.linalg.norm(rays[hit, :3] - (low + high) / 2, axis=1) + np.linalg.norm(high - low, axis=1) / 2

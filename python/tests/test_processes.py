@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Threads, signals, forks and memory."""
+"""Tests of threads, signals, forks and memory."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_cast_lets_other_threads_run() -> None:
 
 
 def interrupt_soon(delay_s: float) -> list[float]:
-    """Sends this process Ctrl-C after the delay; the list tells when."""
+    """Sends Ctrl-C to this process after the delay. The list contains the time."""
     sent: list[float] = []
 
     def send() -> None:
@@ -80,7 +80,7 @@ def test_ctrl_c_ends_a_cast_and_a_picture_within_half_a_second() -> None:
     caster = promin.Caster(scene)
     small, many = make_rays(100), np.tile(make_rays(200000, spread=1.0), (40, 1))
     before = caster.cast(small).tobytes()
-    caster.cast(many[:200000])  # compiles
+    caster.cast(many[:200000])  # This call compiles the kernels.
     renderer = promin.Renderer(scene)
     renderer.render(size=(64, 64))
     for work in (lambda: caster.cast(many), lambda: renderer.render(size=(2000, 2000), spp=64)):
@@ -126,7 +126,7 @@ def test_progress_may_ask_for_lights_while_they_are_replaced() -> None:
     picture.start()
     picture.join(60)
     update.join(60)
-    # Else each has waited for the other, until the picture was done.
+    # Otherwise the two threads have waited for each other until the picture was done.
     assert was_cancelled.is_set()
     assert renderer.lights == [promin.Light()]
 
@@ -190,7 +190,7 @@ def hold_memory(rounds: int) -> None:
 
 
 def hold_memory_apart(rounds: int) -> None:
-    """In a process of its own, which holds nothing of other tests."""
+    """Runs `hold_memory` in a process of its own, which holds no memory of other tests."""
     child = multiprocessing.get_context("spawn").Process(target=hold_memory, args=(rounds,))
     child.start()
     child.join()

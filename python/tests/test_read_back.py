@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""What Frame.save has written is read back: alpha of any format, all AOVs of an EXR."""
+"""Tests that files of Frame.save can be read again: alpha from any format, all AOVs from an EXR."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ AOVS = ("alpha", "cryptomatte", "depth", "error", "material", "normal", "object"
 
 @pytest.fixture(scope="module")
 def frame(scenes: Path) -> promin.Frame:
-    # The box has edges aslant, so some pixels are covered in part.
+    # The box has oblique edges, so it covers some pixels partly.
     return promin.render(scenes / "box.gltf", size=(48, 32), roll=10, aovs=AOVS)
 
 
@@ -39,7 +39,7 @@ def test_alpha_comes_back_with_colours_beside_it(frame: promin.Frame, ending: st
     partly = (alpha > 0.3) & (alpha < 0.9)
     assert partly.sum() > 10 and np.abs(back["alpha"] - alpha).max() <= 0.5 / 255 + 1e-6
     if ending == "webp":
-        return  # its colours are not kept exactly
+        return  # This format does not store colours exactly.
     straight = np.zeros_like(frame.rgb)
     straight[partly] = frame.rgb[partly] / alpha[partly][:, None]
     shown = promin.Frame(rgb=straight, aovs={}, metadata={}, display=frame.display).srgb()

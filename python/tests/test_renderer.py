@@ -25,7 +25,7 @@ from promin import _promin
     [
         ("showcase.gltf", {"size": (96, 64)}, ["--size", 96, 64]),
         ("metallic_roughness.gltf", {"size": (64, 48), "spp": 2}, ["--size", 64, 48, "--spp", 2]),
-        # The kernels of glass compile longest.
+        # Kernels with glass take longest to compile.
         pytest.param(
             "glass.gltf", {"crop": (600, 300, 640, 330)}, ["--crop", 600, 300, 640, 330], marks=pytest.mark.long
         ),
@@ -191,7 +191,7 @@ def test_the_pipeline_is_that_of_the_first_picture(box: promin.Scene, monkeypatc
     promin.Renderer(box, view=promin.View(debug_view="uv", shadows=False))
     light = {"debug_view": "full", "has_shadows": True}
     flat = {"debug_view": "uv", "has_shadows": False}
-    # A time limit begins with one sample a pixel.
+    # A picture with a time limit starts with one sample per pixel.
     assert told == [(False, light), (True, light), (False, light), (True, light), (False, flat)]
 
 
@@ -317,7 +317,7 @@ def test_few_expected_samples_take_other_kernels_and_give_the_same_bits(box: pro
     for wrong in (-1, 1.5, 2**64, "many"):
         with pytest.raises(promin.UsageError, match="expected_samples is .*; give a whole number of 0 or more"):
             promin.Renderer(box, expected_samples=wrong)  # type: ignore[arg-type]
-    # Kernels that have been compiled lie in a cache of the driver's.
+    # Each test process gets a folder of its own for the driver's cache of compiled kernels.
     code = """if True:
         import sys, promin
         scene = promin.Scene()

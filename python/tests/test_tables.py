@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Defaults, choices and options in Python's docstrings and types agree with the library's tables."""
+"""Tests that defaults, choices and options in Python's docstrings and types agree with the library's tables."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def quoted(text: str) -> list[str]:
 
 
 def told_fields(kind: type) -> dict[str, str]:
-    """What is written below each field of a dataclass and of those that it extends."""
+    """Returns the docstrings below the fields of a dataclass and of its base classes, by the names of the fields."""
     (node,) = ast.parse(inspect.getsource(kind)).body
     assert isinstance(node, ast.ClassDef)
     told = {} if kind.__base__ in (None, object) else told_fields(kind.__base__)
@@ -38,7 +38,7 @@ def told_fields(kind: type) -> dict[str, str]:
 
 
 def told_argument(function: Callable[..., object], name: str) -> str:
-    """The sentence of a docstring that begins with an argument's name."""
+    """Returns the sentence of a docstring that begins with an argument's name."""
     text = " ".join((function.__doc__ or "").split())
     found = re.search(rf"\b{name}: (.*?)[.;](?: |$)", text)
     assert found, f"{function.__qualname__} says nothing of {name}"

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The adapter for trimesh: trimesh's own ray tests with only the class replaced, and cases of our own.
+"""Tests of the adapter for trimesh: trimesh's own ray tests with only the class replaced, and tests of this project.
 
-Theirs are read from the folder `tests` of trimesh's source distribution, which PROMIN_TRIMESH_TESTS names
-(`pip download --no-deps --no-binary trimesh trimesh`). It comes without their models: made meshes stand in."""
+trimesh's tests are read from the folder `tests` of its source distribution, which PROMIN_TRIMESH_TESTS names (`pip
+download --no-deps --no-binary trimesh trimesh`). The distribution has no models, so generated meshes replace them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SKIPPED = {
 
 
 def get_mesh(name: str, **_: Any) -> Any:
-    """What stands in for a model of theirs."""
+    """Returns a mesh that replaces a model of trimesh's tests."""
     made = {
         "unit_sphere.stl": trimesh.creation.icosphere,
         "unit_cube.stl": trimesh.creation.box,
@@ -49,7 +49,8 @@ def get_mesh(name: str, **_: Any) -> Any:
 
 
 def make_notched_cube() -> Any:
-    """Seven of the eight cubes of 20 around the origin; missing is the one of positive coordinates."""
+    """Returns seven of the eight cubes with edge 20 around the origin. The cube with positive coordinates is
+    missing."""
     corners: list[Any] = []
     filled = {(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)} - {(1, 1, 1)}
     vertices, faces = make_box((0.5, 0.5, 0.5), 1.0)
@@ -65,8 +66,8 @@ def make_notched_cube() -> Any:
 
 @pytest.fixture
 def theirs(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Loads a file of theirs in whose world promin's class is trimesh's."""
-    # What they share, in the words that they use of it.
+    """Loads a test file of trimesh in which promin's class replaces trimesh's class."""
+    # A module that replaces the helper module of trimesh's tests.
     generic = types.ModuleType("generic")
     generic.__dict__.update(
         np=np, trimesh=trimesh, get_mesh=get_mesh, random=np.random.default_rng(0).random, time=time
@@ -79,7 +80,7 @@ def theirs(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(trimesh.ray, "ray_pyembree", embree, raising=False)
     monkeypatch.setattr(trimesh.ray.ray_triangle, "RayMeshIntersector", RayMeshIntersector)
     monkeypatch.setattr(trimesh.ray, "has_embree", True)
-    # What meshes are made with by themselves.
+    # The class that new meshes use by default.
     monkeypatch.setattr(trimesh.base, "RayMeshIntersector", RayMeshIntersector, raising=False)
 
     def load(file: str) -> types.ModuleType:
@@ -112,7 +113,7 @@ def test_theirs(file: str, name: str, theirs: Any) -> None:
 
 
 class Mesh:
-    """What the adapter needs of a mesh."""
+    """The members of a mesh that the adapter uses."""
 
     def __init__(self, vertices: Any, faces: Any) -> None:
         self.vertices, self.faces = vertices, faces

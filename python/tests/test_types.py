@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The package is typed whole: mypy --strict, stubtest, and the native module's stub."""
+"""Tests that the whole package has types: mypy --strict, stubtest, and a comparison of the native module with its
+stub."""
 
 from __future__ import annotations
 
@@ -34,11 +35,11 @@ def test_mypy_strict(tmp_path: Path) -> None:
     run(tmp_path, "-m", "mypy", "--strict", use)
 
 
-@pytest.mark.long  # It reads NumPy's types without a cache.
+@pytest.mark.long  # This test is long, because mypy reads NumPy's types without a cache.
 def test_stubtest(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
     allowed = Path(__file__).with_name("stubtest_allowlist.txt")
-    # What is allowed for one version of NumPy is not there in another.
+    # Some entries of the list apply only to some versions of NumPy, so unused entries are allowed.
     run(tmp_path, "-m", "mypy.stubtest", "promin", "--allowlist", allowed, "--ignore-unused-allowlist")
 
 

@@ -6,14 +6,15 @@
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;
 
-// The factor from t in units of the traced direction to t in units of the given direction. It is a power of two.
+// Returns the factor from t in units of the traced direction to t in units of the given direction. The factor is a
+// power of two.
 float units_of(RayRecord request) { return power_of_two_inverse(max_abs(request.direction_tmax.xyz)); }
 
 HitRecord record_of(RayRecord request, Ray ray, Hit hit) {
   uint steps = min(step_counts.x, 0xFFFFu) | (min(step_counts.y, 0xFFFFu) << 16);
   HitRecord miss = HitRecord(uvec4(floatBitsToUint(INFINITY), NO_ORDER, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   if (hit.primitive == NO_PRIMITIVE) return miss;
-  // An any-hit ray gets no position.
+  // The record of an any-hit ray has no position.
   if (ALL_ASK_FOR_ANY != 0u) return HitRecord(uvec4(0u, hit.order, 0u, 0u), uvec4(0u, 0u, 0u, steps));
   precise float t = hit.t * units_of(request);
   if (!(t > max(request.origin_tmin.w, 0.0) && t < request.direction_tmax.w)) return miss;
@@ -33,7 +34,7 @@ void main() {
     requests[i] = load_ray(indices[i]);
     packet[i] = make_ray(requests[i].origin_tmin.xyz, requests[i].direction_tmax.xyz, requests[i].origin_tmin.w,
                          requests[i].direction_tmax.w);
-    // Beyond this distance t has no finite value in the given units.
+    // A larger t would not be finite in units of the given direction.
     float farthest = LARGEST_FLOAT * power_of_two_inverse(units_of(requests[i]));
     packet[i].tmax = packet[i].tmax < farthest ? packet[i].tmax : farthest;
   }
@@ -41,7 +42,7 @@ void main() {
   trace_packet(ALL_ASK_FOR_ANY != 0u);
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     HitRecord record = record_of(requests[i], packet[i], found[i]);
-    // A CPU driver stores word by word and lane by lane.
+    // A CPU driver executes stores word by word and lane by lane, so any-hit rays store only what is needed.
     if (ALL_ASK_FOR_ANY != 0u && !has(FEATURE_STEP_COUNTS)) {
       hits[indices[i]].a.xy = record.a.xy;
     } else {

@@ -26,7 +26,7 @@
 const uint LANES = BLOCK_SIZE * BLOCK_SIZE;
 layout(local_size_x = LANES) in;
 
-// Converts a list entry to the form that the host reads.
+// Converts an entry of the list to the form that the host reads.
 void finish(uint place, Ray ray, float unit) {
   HitRecord record = hits[place];
   vec2 weights = uintBitsToFloat(record.a.zw);
@@ -40,7 +40,7 @@ void main() {
   uint first = first_ray() + PACKET_SIZE * (group_number() * LANES + gl_LocalInvocationIndex);
   if (first >= end_ray()) return;
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
-    // A lane with fewer rays than the packet repeats the last ray, which then takes no part.
+    // A lane with fewer rays than the packet repeats the last ray, whose results are then ignored.
     bool is_ray = first + i < end_ray();
     uint index = is_ray ? first + i : end_ray() - 1u;
     RayRecord request = load_ray(index);
@@ -49,7 +49,7 @@ void main() {
     units[i] = power_of_two_inverse(max_abs(request.direction_tmax.xyz));
     given_tmins[i] = max(request.origin_tmin.w, 0.0);
     given_tmaxs[i] = request.direction_tmax.w;
-    // Beyond this distance t has no finite value in the given units.
+    // A larger t would not be finite in units of the given direction.
     precise float farthest = LARGEST_FLOAT * power_of_two_inverse(units[i]);
     packet[i].tmax = is_ray ? (packet[i].tmax < farthest ? packet[i].tmax : farthest) : -1.0;
     crossing_counts[i] = 0u;

@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels, sample points and primary rays.
 
-// The lanes of a block lie in Morton order, so that neighbours in a subgroup of any width are neighbours in the
-// picture.
+// Returns a lane's pixel in the block. Lanes are in Morton order, so that neighbours in a subgroup of any size are
+// neighbours in the picture.
 uvec2 pixel_in_block(uint lane) {
   uint x = (lane & 1u) | ((lane >> 1) & 2u) | ((lane >> 2) & 4u);
   uint y = ((lane >> 1) & 1u) | ((lane >> 2) & 2u) | ((lane >> 3) & 4u);
   return uvec2(x, y);
 }
 
-// The direction is D = V - O with V on the viewport at distance 1 along `look`. t is therefore in viewport distances,
-// and points beyond the near plane have t > near. D is not normalised.
+// Returns the ray through a place in a pixel. Its direction is D = V - O, where V lies on the viewport at distance 1
+// along `look`. Therefore t is in units of the viewport's distance, and points beyond the near plane have t > near. D
+// is not normalised.
 Ray ray_through(uvec2 pixel, vec2 place) {
   precise vec2 from_center = (vec2(pixel) - CAMERA.film_center.xy) + place;
   precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;

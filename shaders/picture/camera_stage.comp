@@ -32,7 +32,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "shade/environment.glsl"
 #include "shade/shading.glsl"
 #include "shade/light_way.glsl"
-// A lane adds once to each of its pixels' sums.
+// A lane adds only once to each sum of its pixels, so no earlier addition of this lane must be loaded.
 #define load_sum(record) load_record(record)
 #include "picture/path.glsl"
 #include "picture/tree.glsl"
@@ -41,7 +41,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "shared/loop_check.glsl"
 #include "picture/pixel_packet.glsl"
 
-// Stores the id that the sample shows; on the film of a list it is the only one.
+// Stores the id of the object that the sample shows. On the film of a list it is the only id.
 void put_sample_id(uint pixel, uint order) {
   if (has(FEATURE_LISTED_SAMPLES)) {
     pixels[pixel].w = order;
@@ -52,11 +52,11 @@ void put_sample_id(uint pixel, uint order) {
   pixels[(before + place / 4u) * window_pixel_count() + pixel][place % 4u] = order;
 }
 
-// Depths and ids have no average, so the middle sample stands for the pixel. With an odd number of samples it is the
-// centre.
+// Returns whether the sample is the middle one. Depths and ids have no average, so the middle sample represents the
+// pixel. If the number of samples is odd, it lies at the pixel's centre.
 bool is_middle_sample() { return has(FEATURE_AOVS) && sample_at_hand() == samples_per_pixel() / 2u; }
 
-// Writes what the sample shows to the pixel's records.
+// Writes the result of the sample to the pixel's records.
 void put_record(Path path, Hit hit) {
   uint order = hit.primitive == NO_PRIMITIVE ? NO_ORDER : hit.order;
   if (has(FEATURE_SAMPLE_IDS)) put_sample_id(path.pixel, order);
@@ -64,10 +64,10 @@ void put_record(Path path, Hit hit) {
   if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 
-// Debug views show no light, but their AOVs need shading points.
+// True if shading points are computed. Debug views show no light, but their AOVs need shading points.
 const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | uint(DEBUG_VIEW == DEBUG_VIEW_NONE);
 
-// The texture coordinates of a hit, of the first set; 0 where the surface shows no texture.
+// Returns the texture coordinates of a hit in set 0; 0 if the surface has no texture.
 vec2 texture_coordinates(Hit hit) {
   uvec4 corners = load_surface(hit.primitive).corners_material;
   if (!has(FEATURE_TEXTURES) || (corners.w & SURFACE_HAS_UVS) == 0u) return vec2(0.0);
@@ -76,7 +76,8 @@ vec2 texture_coordinates(Hit hit) {
   return sum;
 }
 
-// The bits of the normal, as wound or outward, and of the distance from the ray's origin, which is infinite on a miss.
+// Returns the bits of two values: the normal of the hit (outward on solids, by the winding on triangles), and the
+// distance from the ray's origin, which is infinite on a miss.
 uvec4 normal_and_depth(Ray ray, Hit hit) {
   if (hit.primitive == NO_PRIMITIVE) return floatBitsToUint(vec4(0.0, 0.0, 0.0, INFINITY));
   SurfacePoint surface = surface_point(ray, load_primitive(hit.primitive), hit);
@@ -132,8 +133,8 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   return light;
 }
 
-// One pixel after the other. Each is copied out of the packet and back, because CPU drivers are slow with arrays at
-// variable indices, and drivers do not unroll loops with inner loops, such as those of textures.
+// Shades the pixels one after the other. Each pixel is copied out of the packet and back, because CPU drivers are slow
+// with arrays at variable indices. Drivers do not unroll loops that contain loops, such as those of textures.
 void arrive() {
   uint at = 0u;
   do {
@@ -163,7 +164,7 @@ void arrive() {
   } while (at < PACKET_SIZE);
 }
 
-// Computes one light source's contributions, and a packet of the shadow rays that they need.
+// Computes the contributions of one light source, and the packet of the shadow rays for it.
 void aim_at_source(LightRecord light) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     contributions[i] = vec3(0.0);
@@ -172,8 +173,8 @@ void aim_at_source(LightRecord light) {
     blockers[i].primitive = NO_PRIMITIVE;
     forget_passed(i);
     if (!is_lit[i]) continue;
-    // Points and rays are copied, here and elsewhere, because glslang 12 fails over packets made of points made of
-    // packets.
+    // Points and rays are copied here and elsewhere, because glslang 12 fails if packets of points are passed that
+    // contain packets.
     ShadingPoint point = points[i];
     LightSample sampled = sample_light(light, point.position);
     contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
@@ -187,7 +188,7 @@ void aim_at_source(LightRecord light) {
 // Continues a shadow ray behind a surface that blends. Returns whether it continues.
 bool goes_through_layer(uint i, uint layers) {
   Hit hit = found[i];
-  // Rays that have arrived or are blocked take no further part.
+  // Rays that have reached the light or are blocked are not traced any more.
   packet[i].tmin = INFINITY;
   if (hit.primitive == NO_PRIMITIVE) return false;
   blockers[i] = hit;
@@ -200,7 +201,7 @@ bool goes_through_layer(uint i, uint layers) {
   return true;
 }
 
-// Unrolled by hand, because drivers do not unroll such loops (see arrive).
+// The loop over the pixels is unrolled by hand, because drivers do not unroll such loops (see arrive).
 bool go_through_layers(uint layers) {
   bool is_any_left = goes_through_layer(0u, layers);
   if (PACKET_SIZE > 1u && goes_through_layer(1u, layers)) is_any_left = true;
@@ -230,7 +231,7 @@ void add_contributions(uint source) {
   }
 }
 
-// Adds a path to the stream, to its turn -1. Returns its number.
+// Adds a path to the stream for the turn before the first one. Returns the path's number.
 uint put_path(Path path) {
   begin_stream();
   uint number = atomicAdd(stream.turn.z, 1u);
@@ -251,7 +252,7 @@ uint put_path(Path path) {
   return number;
 }
 
-// Adds the path that continues at a surface of glass, and lets another of its rays wait.
+// Adds the path that continues at a surface of glass, and stores its other rays as waiting.
 void leave_glass(Path path, ShadingPoint point) {
   Children children;
   part_path(path, point, false, children);
@@ -267,13 +268,13 @@ void leave_glass(Path path, ShadingPoint point) {
   store_glass(number, path, store_children(number, 0u, children, point, false), false);
 }
 
-// The camera ray of a pixel of the film.
+// Returns the camera ray of a pixel of the film.
 Ray ray_of(uint index) {
   if (has(FEATURE_LISTED_SAMPLES)) return listed_ray(index);
   return camera_ray(uvec2(index % window_size().x, index / window_size().x));
 }
 
-// Adds the radiance of a pixel to the parts of its light.
+// Adds the radiance of a pixel to the AOVs of the parts of its light.
 void add_parts(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_surface, float coverage) {
   if (!is_on_surface) {
     add_beyond(path, light);
@@ -316,7 +317,7 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on
   }
 }
 
-// One pixel after the other if each takes much work, as in arrive.
+// Processes one pixel after the other if each needs much work, like arrive().
 void leave_one_by_one() {
   uint at = 0u;
   do {
@@ -353,9 +354,9 @@ void leave() {
   }
 }
 
-// The first turn traces camera rays, each other turn shadow rays to one light source. A single copy of the traversal
-// serves both, which halves the code to compile. CPU drivers execute the whole body of a loop in each of its turns.
-// Shading is therefore in the loop around that of the turns, where it is executed twice and not once per source.
+// The first turn traces camera rays. Each later turn traces shadow rays to one light source. Both use the same copy of
+// the traversal, which halves the code to compile. CPU drivers execute the whole body of a loop in each of its turns.
+// Shading is therefore in the loop around the loop of turns, where it is executed twice and not once per source.
 void trace_pixels() {
   uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
   uint source = 0u;
@@ -366,7 +367,7 @@ void trace_pixels() {
     do {
       if (aims) aim_at_source(load_light(VIEW.first_index.y + source));
       aims = false;
-      // The nearest of surfaces that blend comes first.
+      // If surfaces blend, shadow rays also need the nearest hit.
       trace_packet(!is_first_turn && PASSES == 0u);
       passes_backs = false;
       sight_width = 0.0;

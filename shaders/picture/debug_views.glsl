@@ -6,7 +6,7 @@
 
 const uint DEBUG_VIEW = (MORE_FEATURES >> DEBUG_VIEW_SHIFT) & DEBUG_VIEW_MASK;
 
-// Returns the colour for a hash of 15 bits, which is never black.
+// Returns the colour for a hash of 15 bits. The colour is never black.
 vec3 color_of_hash(uint hash) {
   vec3 parts = vec3((uvec3(hash) >> uvec3(0u, 5u, 10u)) & 31u);
   precise vec3 color = 0.03 + parts * 0.03;
@@ -43,8 +43,8 @@ vec3 depth_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   return vec3(brightness);
 }
 
-// A heat map from black over violet, red and orange to white. The five colours are a quarter of the perceived lightness
-// (L*) apart.
+// Returns a colour of the heat map, which runs from black through violet, red and orange to white. The perceived
+// lightness (L*) of the five colours increases in equal steps of a quarter.
 vec3 steps_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   const vec3 colors[5] =
       vec3[](vec3(0.0), vec3(0.1, 0.0, 0.317), vec3(0.7, 0.04, 0.09), vec3(1.0, 0.375, 0.03), vec3(1.0));

@@ -31,7 +31,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "shade/lights.glsl"
 #include "shade/environment.glsl"
 #include "shade/shading.glsl"
-// A lane may add twice to a part in a turn, and texels would not show it the first addition.
+// Sums are loaded from the storage buffer: a lane may add twice to a part in a turn, and texels would not contain the
+// first addition.
 #define load_sum(record) uintBitsToFloat(pixels[record])
 #include "picture/path.glsl"
 #include "picture/tree.glsl"
@@ -66,7 +67,7 @@ vec3 add_contributions(uint path, vec3 seen) {
   return seen;
 }
 
-// Stores the unblocked contribution of a light source of this turn, and requests its shadow ray.
+// Stores the unblocked contribution of a light source of this turn, and requests the source's shadow ray.
 void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
   LightSample sampled = sample_light(light, point.position);
@@ -82,7 +83,7 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
       pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(is_behind ? 1.0 : 0.0);
       store_vector(record_of_path(path) + (is_behind ? RECORD_SHADOW_BEHIND : RECORD_SHADOW_ORIGIN), ray.origin);
     } else {
-      // All start at the same point.
+      // All shadow rays of the path start at the same point.
       store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
     }
     asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
@@ -91,7 +92,7 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   words[ask_of_source(path, source)] = asked;
 }
 
-// Does so for all sources of this turn.
+// Requests the shadow rays of all sources of this turn.
 void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
   uint sources = sources_at(turn);
   uint source = 0u;
@@ -101,11 +102,12 @@ void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
       ++source;
     }
   } while (source < sources);
-  // The last turn of a bounce may have fewer sources; answers of the turn before must not count as requests.
+  // The last turn of a bounce may have fewer sources. The remaining requests are cleared, so that answers of the turn
+  // before do not count as requests.
   for (; source < sources_of_turn; ++source) words[ask_of_source(path, source)] = ASK_NOTHING;
 }
 
-// Adds all light sources to the radiance if nothing casts shadows.
+// Adds all light sources to the radiance, if no object casts shadows.
 vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
   uint source = 0u;
   do {
@@ -123,13 +125,13 @@ vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
   return seen;
 }
 
-// Returns the origin (LOG_*) of the path's ray.
+// Returns the kind (LOG_*) of the path's ray.
 uint kind_of_ray(Path path) {
   if (has(FEATURE_GLASS)) return path.kind;
   return has(FEATURE_BLENDING) && path.passed_t >= 0.0 ? LOG_THROUGH : LOG_REFLECTION;
 }
 
-// The current path's values of store_passed and store_glass, set by prepare_sight.
+// The values of store_passed and store_glass for the current path. Set by prepare_sight.
 uint path_progress;
 uvec4 path_glass;
 
@@ -148,15 +150,15 @@ uint ask_ray(uint number, Path path) {
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
 
-// Requests the path's mirror ray, or else the turn after the shadow rays that it waits for.
+// Requests the path's mirror ray. If there is none, requests the turn after the shadow rays for which the path waits.
 uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
   if (!leads_on(point, bounces_of(path)) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
   ++mirror_ray_count;
   return ask_ray(number, path);
 }
 
-// With FEATURE_GLASS, at the end of a ray: requests the last of the waiting rays, or else as ask_mirror. The path has
-// the number of rays and the radiance so far.
+// With FEATURE_GLASS, to be called at the end of a ray: requests the last of the waiting rays. If no ray waits, does
+// the same as ask_mirror. `path` has the number of rays and the radiance so far.
 uint ask_waiting(uint number, Path path, bool has_seen) {
   uint waiting = path_glass.w & ((1u << KIND_SHIFT) - 1u);
   if (waiting == 0u) {
@@ -201,8 +203,8 @@ uint ask_beyond(uint number, inout Path path, ShadingPoint point, bool touches) 
   return ask_ray(number, path);
 }
 
-// With FEATURE_GLASS, returns the request of a path whose ray has missed while others wait: these start with a bounce,
-// so until then it requests the same ray again.
+// With FEATURE_GLASS, returns the request of a path whose ray has missed while other rays wait. Waiting rays start with
+// a bounce, so until then the path requests the same ray again.
 uint ask_after_miss(uint number, Path path, Ray ray) {
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   for (uint source = 0u; source < sources_of_turn; ++source) words[ask_of_source(number, source)] = ASK_NOTHING;
@@ -229,7 +231,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   uint bounces = bounces_of(path);
   if (hit.primitive == NO_PRIMITIVE) {
     bool has_waiting = has(FEATURE_GLASS) && (path_glass.w & ((1u << KIND_SHIFT) - 1u)) != 0u;
-    // While others wait, the same ray may be traced several times.
+    // While other rays wait, the same ray may be traced several times.
     if (has_waiting && !begins_bounce(turn + 1u)) return ask_after_miss(number, path, ray);
     begin_path_log(ray, hit, bounces, path.weight, kind_of_ray(path));
     bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
@@ -277,7 +279,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     if (has(FEATURE_GLASS)) return ask_beyond(number, path, point, hit.t <= skipped_until);
     return ask_mirror(number, path, point);
   }
-  // The same ray again.
+  // The weight is stored again, because the same ray is traced again.
   store_vector(record_of_weight(number, turn + 1u), weight_at_start);
   return ask(LIST_OF_PATHS, bin_of(ray.origin, ray.direction));
 }
@@ -339,7 +341,7 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   words[ask_of_path(number)] = asked;
 }
 
-// Sets how the path's ray sees, apart from its origin and direction.
+// Sets the properties of the path's ray, except its origin and direction.
 void prepare_sight(uint number) {
   passes_backs = true;
   if (has(FEATURE_HOLES)) {

@@ -11,7 +11,7 @@ uint record_of_part(uint pixel, uint part) {
 uint record_of_unlit(uint pixel) {
   uint before = (has(FEATURE_AOVS) ? AOV_RECORDS : 1u) + (has(FEATURE_LIGHT_AOVS) ? PART_RECORDS : 0u) +
                 (has(FEATURE_SAMPLE_RANGES) ? RANGE_RECORDS : 0u);
-  // Separate from the sum, because glslang 12 writes an invalid module for a constant with &&.
+  // This condition is separate from the sum, because glslang 12 writes an invalid module for a constant with &&.
   if (has(FEATURE_SAMPLE_IDS) && !has(FEATURE_LISTED_SAMPLES)) before += SAMPLE_IDS / 4u;
   return before * window_pixel_count() + pixel;
 }
@@ -23,13 +23,13 @@ void add_to_part(uint pixel, uint part, vec3 light) {
   pixels[record].xyz = floatBitsToUint(sum);
 }
 
-// Adds the radiance that a path's ray sees on a miss.
+// Adds the radiance that a path's ray receives on a miss.
 void add_beyond(Path path, vec3 beyond) {
   if (!has(FEATURE_LIGHT_AOVS)) return;
   uint record = record_of_part(path.pixel, path.part);
   vec4 part = load_sum(record);
   precise vec3 sum = part.xyz + path.weight * beyond;
-  // Only surfaces that blend have changed its weight, equally for all colours.
+  // Only surfaces that blend have changed the path's weight. They change all colours equally.
   precise float share = part.w + (path.part == PART_BACKGROUND ? path.weight.x : 0.0);
   pixels[record] = floatBitsToUint(vec4(sum, share));
 }
@@ -39,29 +39,30 @@ void add_own_parts(Path path, ShadingPoint point, vec3 own, float coverage) {
   if (path.part != PART_BACKGROUND) return;
   vec3 emitted = emitted_light(point);
   precise vec3 weight = coverage * path.weight;
-  // Not negative, because sums of non-negative numbers are not smaller than either.
+  // The difference is not negative, because a sum of non-negative numbers is not smaller than either of them.
   precise vec3 emission = weight * emitted;
   precise vec3 indirect = weight * (own - emitted);
   add_to_part(path.pixel, PART_EMISSION, emission);
   add_to_part(path.pixel, PART_INDIRECT, indirect);
 }
 
-// Adds the radiance of a point to the part of the ray that has hit it; for a camera ray only the light from lights.
+// Adds the radiance of a point to the part to which the ray that hit it belongs. For a camera ray it adds only the
+// light of light sources.
 void add_seen_part(uint pixel, uint part, vec3 weight, vec3 own, vec3 seen) {
   bool is_of_camera = part == PART_BACKGROUND;
   precise vec3 light = weight * (is_of_camera ? seen - own : seen);
   add_to_part(pixel, is_of_camera ? PART_DIRECT : part, light);
 }
 
-// With FEATURE_UNLIT_SHARE adds colours that are displayed unchanged to the pixel's unlit light.
+// With FEATURE_UNLIT_SHARE, adds colours that are displayed unchanged to the pixel's unlit light.
 void add_to_unlit(uint pixel, vec3 weight, vec3 seen) {
   uint record = record_of_unlit(pixel);
-  // Computed as in the whole sum, so that both are equal if nothing else is visible.
+  // The computation is the same as for the whole sum, so that both are equal if nothing else is visible.
   precise vec4 sum = load_sum(record) + vec4(weight * seen, weight.x);
   pixels[record] = floatBitsToUint(sum);
 }
 
-// Adds the radiance of a point that the camera sees, if the point is unlit.
+// Adds the radiance of a visible point if the point is unlit.
 void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
   if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
   precise vec3 weight = coverage * path.weight;
@@ -75,10 +76,11 @@ void add_backdrop(Path path, vec3 seen) {
   add_to_unlit(path.pixel, mix(vec3(0.0), path.weight, is_shown), mix(vec3(0.0), seen, is_shown));
 }
 
-// Whether the stream has rays of several parts; else all of them are mirror rays.
+// True if rays of the stream belong to several parts. If not, all of them are mirror rays.
 const uint STREAM_HAS_PARTS = FEATURE_BIT(FEATURE_LIGHT_AOVS) & KEEPS_PROGRESS;
 
-// In w of PART_SEEN: the part of the current point, and from this bit on that of the path's ray.
+// Shift in w of PART_SEEN: the lower bits are the part of the current point; the bits from this one on are the part of
+// the path's ray.
 const uint PART_OF_RAY_SHIFT = 8u;
 
 void store_part_of_ray(Path path) {
@@ -87,7 +89,7 @@ void store_part_of_ray(Path path) {
   pixels[record].w = (pixels[record].w & ((1u << PART_OF_RAY_SHIFT) - 1u)) | path.part << PART_OF_RAY_SHIFT;
 }
 
-// Stores the data of the current point for when its light is known, which may take several turns.
+// Stores the data of the current point until its light is known, which may take several turns.
 void store_seen_part(Path path, vec3 own) {
   if (STREAM_HAS_PARTS == 0u) return;
   pixels[record_of_part(path.pixel, PART_SEEN)] =

@@ -21,7 +21,7 @@ void main() {
   begin_stream();
   uint last_turn = turn - 1u;
   uint place = group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-  // The next turn's bins are empty.
+  // Clears the bins of the next turn.
   uint lanes = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x;
   for (uint i = place; i < STREAM_LISTS * STREAM_BINS; i += lanes) words[counts_of_bins(LIST_OF_PATHS) + i] = 0u;
   if (place >= paths_of_turn(last_turn)) return;

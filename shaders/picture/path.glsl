@@ -10,22 +10,22 @@ struct Path {
   vec3 weight;     // product of mirror weights so far
   vec3 radiance;   // sum so far
   uint pixel;
-  float roughness;  // the largest of the surfaces on its way, or NO_ENVIRONMENT
-  float cone_width;   // of the cone that its pixel sees, with FEATURE_TEXTURES,
-  float cone_spread;  // and how much it grows at a distance of 1
-  // With FEATURE_BLENDING:
-  uint bounces;  // so far
-  uint layers;   // surfaces that it passed through so far
-  float passed_t;  // where its next ray has come from behind a surface: t and order of that, or -1
+  float roughness;  // largest roughness of the surfaces so far, or NO_ENVIRONMENT
+  float cone_width;   // width of the pixel's cone, with FEATURE_TEXTURES
+  float cone_spread;  // growth of this width per distance
+  // The following members need FEATURE_BLENDING:
+  uint bounces;  // number of bounces so far
+  uint layers;   // number of surfaces passed through so far
+  float passed_t;  // if the next ray continues behind a surface: t and order of the surface; otherwise -1
   uint passed_order;
-  // With FEATURE_GLASS:
-  uvec2 media;  // that its next ray is in
-  uint rays;    // of its sample so far, without the camera's
-  float skip;   // along its next ray, how far it skips faces of an object (packet.glsl), of this hash
+  // The following members need FEATURE_GLASS:
+  uvec2 media;  // media that contain the next ray
+  uint rays;    // rays of the sample so far, without the camera ray
+  float skip;   // t up to which the next ray skips faces of an object (packet.glsl), and the object's hash
   uint skipped;
-  uint kind;    // LOG_*, of its next ray
-  // With FEATURE_LIGHT_AOVS:
-  uint part;  // PART_* that gets the light of its next ray; PART_BACKGROUND for the camera's ray
+  uint kind;    // LOG_* of the next ray
+  // The following member needs FEATURE_LIGHT_AOVS:
+  uint part;  // PART_* that receives the light of the next ray; PART_BACKGROUND for the camera ray
 };
 
 // Assigns the path's next ray to a part of the picture, unless it already has one.
@@ -33,12 +33,13 @@ void enter_part(inout Path path, uint part) {
   if (has(FEATURE_LIGHT_AOVS) && path.part == PART_BACKGROUND) path.part = part;
 }
 
-// Whether each path has its own number of bounces, which may differ from that of the turn.
+// True if each path stores its own number of bounces, which may differ from the number of the turn.
 const uint KEEPS_PROGRESS = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 
 #include "picture/light_parts.glsl"
 
-// Applies the medium's absorption on the way to a hit, from the surface that the ray passed before.
+// Multiplies the path's weight by the medium's absorption on the way to a hit, measured from the surface that the ray
+// passed before.
 void absorb(inout Path path, Ray ray, Hit hit) {
   if (!has(FEATURE_GLASS)) return;
   precise float way = (hit.t - max(path.passed_t, 0.0)) * length3(ray.direction);
@@ -61,7 +62,7 @@ void add_radiance(inout Path path, vec3 seen, float coverage) {
   path.radiance = sum;
 }
 
-// Returns the opacity of the point; if it is not 1, the ray continues behind it.
+// Returns the opacity of the point. If it is not 1, the ray continues behind the point.
 float coverage_of(Path path, ShadingPoint point) {
   if (!has(FEATURE_BLENDING) || (flags_of(point.material) & MATERIAL_BLENDS) == 0u) return 1.0;
   float alpha = clamp(point.material.cover.x, 0.0, 1.0);
@@ -69,7 +70,8 @@ float coverage_of(Path path, ShadingPoint point) {
   return path.layers < MOST_LAYERS && max_abs(behind) >= LEAST_SHARE_BEHIND ? alpha : 1.0;
 }
 
-// Turns the path into the continuation of its ray behind the hit. Its direction is as traced, not of unit length.
+// Turns the path into the continuation of its ray behind the hit. Its direction is the traced one, which is not of unit
+// length.
 void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
   precise vec3 weight = (1.0 - coverage) * path.weight;
   path.weight = weight;
@@ -81,16 +83,16 @@ void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
   ++path.layers;
 }
 
-// Returns whether the path continues with a mirror ray at the point, its bounce of this number.
+// Returns whether the path continues with a mirror ray at the point. `bounce` is the number of this bounce.
 bool leads_on(ShadingPoint point, uint bounce) {
   return has(FEATURE_MIRRORS) && bounce < most_bounces() && max_abs(mirror_weight(point)) > 0.0;
 }
 
-// Turns the path into its mirror ray, except for its weight.
+// Turns the path into its mirror ray, but does not change its weight.
 void turn_back(inout Path path, ShadingPoint point) {
   path.origin = lift_off(point.position, point.geometric_normal, point.lift);
   if (has(FEATURE_TEXTURES)) {
-    // Curvature widens the cone, also after a focus.
+    // Curvature widens the cone, also behind a focus.
     precise float facing = max(-dot3(mirror_normal(point), path.direction), 1.0 / 64.0);
     precise float spread = path.cone_spread + 2.0 * point.curvature * path.cone_width / facing;
     path.cone_spread = spread;
@@ -114,7 +116,7 @@ bool bounce(inout Path path, ShadingPoint point) {
   return true;
 }
 
-// Stores in the stream the data of a path that may pass through surfaces.
+// Stores the data of a path that may pass through surfaces in the stream.
 void store_passed(uint number, Path path) {
   if (KEEPS_PROGRESS == 0u) return;
   pixels[record_of_weight(number, 0u)].w = floatBitsToUint(path.passed_t);
@@ -134,13 +136,14 @@ void extend_range(uint pixel, vec3 sampled) {
   bool is_first = sample_at_hand() == 0u;
   vec3 lo = is_first ? vec3(INFINITY) : load_sum(least).xyz;
   vec3 hi = is_first ? vec3(-INFINITY) : load_sum(largest).xyz;
-  // Most samples lie within the range.
+  // Most samples lie within the range, so the comparison saves stores.
   if (is_first || any(lessThan(sampled, lo))) pixels[least].xyz = floatBitsToUint(min(lo, sampled));
   if (is_first || any(greaterThan(sampled, hi))) pixels[largest].xyz = floatBitsToUint(max(hi, sampled));
 }
 
-// Adds the path's radiance to its pixel, as one sample; the first begins the sum. CPU drivers execute the stores of a
-// branch even if no lane takes it, so a branch that clears the sums for the first sample would slow down every sample.
+// Adds the path's radiance to its pixel as one sample. The first sample begins the sum. CPU drivers execute the stores
+// of a branch even if no lane takes it, so a branch that clears the sums for the first sample would slow down every
+// sample.
 void finish_path(Path path) {
   precise vec3 sum = path.radiance;
   if (!has(FEATURE_LISTED_SAMPLES) && sample_at_hand() > 0u) sum += load_sum(path.pixel).xyz;

@@ -6,20 +6,21 @@ uvec3 ray_count = uvec3(0u);
 
 // The arrays below have an entry for each pixel of the packet.
 bool is_inside[PACKET_SIZE];
-bool is_lit[PACKET_SIZE];  // the pixel shows a surface
+bool is_lit[PACKET_SIZE];  // whether the pixel shows a surface
 Path paths[PACKET_SIZE];
 ShadingPoint points[PACKET_SIZE];
-vec3 seen[PACKET_SIZE];  // from the hit, so far
-vec3 own_lights[PACKET_SIZE];  // with FEATURE_LIGHT_AOVS, of that what no source brings
+vec3 seen[PACKET_SIZE];  // radiance from the hit so far
+vec3 own_lights[PACKET_SIZE];  // with FEATURE_LIGHT_AOVS: the part of it that no source contributes
 vec3 contributions[PACKET_SIZE];
-// For shadow rays, if rays pass through surfaces:
+// The following arrays are for shadow rays that can pass through surfaces:
 LightWay ways[PACKET_SIZE];
-Hit blockers[PACKET_SIZE];  // what they have met last
+Hit blockers[PACKET_SIZE];  // the last hit of each ray
 uint pass_count = 0u;
 uint refraction_count = 0u;
 uint hit_count = 0u;
 
-// Prepares the pixels of the packet that lie in the window, with their camera rays. Returns false if none does.
+// Prepares the pixels of the packet that lie in the window, and their camera rays. Returns false if no pixel lies in
+// the window.
 bool begin_packet() {
   uint place = PACKET_SIZE * (group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex);
   uint block = first_block() + place / (BLOCK_SIZE * BLOCK_SIZE);
@@ -30,7 +31,7 @@ bool begin_packet() {
     is_inside[i] = block < end_block() && all(lessThan(pixel, window_size()));
     uint index = pixel.y * window_size().x + pixel.x;
     if (has(FEATURE_LISTED_SAMPLES)) {
-      // Lanes beyond the last block stay on the film.
+      // The index of lanes beyond the last block is limited to pixels of the film.
       index = min(first_block() * (BLOCK_SIZE * BLOCK_SIZE) + place + i, window_pixel_count() - 1u);
       is_inside[i] = block < end_block() && pixels[index].z != NO_LISTED_SAMPLE;
       packet[i] = listed_ray(index);

@@ -13,7 +13,7 @@ layout(local_size_x = STREAM_LANES) in;
 #include "picture/stream.glsl"
 #include "picture/stream_records.glsl"
 
-// Returns the workgroups for this number of lanes, in rows (engine/trace/kernels/group_rows.h).
+// Returns the number of workgroups for this number of lanes, arranged in rows (engine/trace/kernels/group_rows.h).
 uvec4 groups_of(uint lanes) {
   uint groups = (lanes + BLOCK_SIZE * BLOCK_SIZE - 1u) / (BLOCK_SIZE * BLOCK_SIZE);
   uint rows = min(groups, stream.place.w);

@@ -3,8 +3,8 @@
 // Rays with nearby origins and similar directions share a bin, and rays of neighbouring bins are roughly similar
 // (engine/rays/ray_order.h sorts rays of casts). Results do not depend on the bins.
 
-// For each coordinate two bits of the ray's origin, between -1 and 1 or beyond, and one bit of its direction; more bits
-// are not faster (docs/performance_log.md).
+// Returns the cell of a coordinate. A bin has for each coordinate two bits of the ray's origin, which lies between -1
+// and 1 or beyond, and one bit of its direction. More bits are not faster (docs/performance_log.md).
 uint cell_of(float x, uint levels) {
   precise float cell = (0.5 * x + 0.5) * float(1u << levels);
   return min(uint(cell > 0.0 ? min(cell, 64.0) : 0.0), (1u << levels) - 1u);

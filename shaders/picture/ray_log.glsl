@@ -10,8 +10,8 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer LoggedFilm {
   RayLog logs[];
 };
 
-RayLog path_log;    // entry of the ray that the path follows
-RayLog source_log;  // entry of the source at hand
+RayLog path_log;    // entry of the current ray of the path
+RayLog source_log;  // entry of the current source
 
 // Starts the log with the first ray of a sample.
 void begin_log() {
@@ -78,8 +78,8 @@ void end_path_log(vec3 radiance, float coverage) {
   append_log(path_log);
 }
 
-// The stream adds data to entries of an earlier dispatch: the last entry is the path's, and those before it are the
-// light sources of the last turn. `entry` counts from the end: 1 is the last.
+// Adds a shadow ray's result to an entry of an earlier dispatch. The last entry belongs to the path; the entries before
+// it are the light sources of the last turn. `entry` counts from the end: 1 is the last.
 void log_answer(uint entry, Ray ray, Hit blocker) {
   RayLog log = logs[log_count.x - entry];
   log_ray(log, ray, blocker);

@@ -1,42 +1,44 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The stream: the paths of a piece of a picture that a mirror leads on, and the rays that they ask for. It lies in the
-// film, behind the pixels. A turn makes lists of what has been asked for, sorted so that neighbours meet the same nodes
-// (place_rays.comp, list_rays.comp), traces the shadow rays (trace_shadow_rays.comp), then follows the paths
-// (follow_paths.comp): adds what the shadow rays let through, traces the mirror ray, shades what it has met and asks
-// for the rays of the next turn. All numbers of a path are its own, and its lane makes its sums in the order of bounces
-// and sources, so no bit depends on the order of lists.
+// The stream: the paths of a piece of a picture that continue at a mirror, and the rays that they request. It is stored
+// in the film, after the pixels. A turn first makes lists of the requested rays, sorted so that neighbours meet the
+// same nodes (place_rays.comp, list_rays.comp). It then traces the shadow rays (trace_shadow_rays.comp). At last it
+// follows the paths (follow_paths.comp): adds the light of the shadow rays, traces the mirror ray, shades its hit and
+// requests the rays of the next turn. Paths share no numbers, and the lane of a path adds its light in the order of
+// bounces and sources, so no bit depends on the order of the lists.
 //
-// Of each path there are 7 records, and one for each source of a turn:
-const uint RECORD_ORIGIN = 0u;     // xyz of its ray, w = pixel
-const uint RECORD_DIRECTION = 1u;  // xyz, unit; w = roughness of the path
-const uint RECORD_WEIGHTS = 2u;    // xyz = weight of what the ray sees; two records, by the parity of the ray's turn;
-                                   // of a ray that goes on: w = t of the surface that it passed, and that one's order
-const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the point that it has reached; w = width of its cone
-const uint RECORD_SEEN = 5u;       // xyz = light that this point sends, so far; w = spread of its cone
-const uint RECORD_SHADOW_ORIGIN = 6u;  // w = bounces so far, and from LAYERS_SHIFT on surfaces that it passed
+// Each path has 7 records, and one more for each source of a turn:
+const uint RECORD_ORIGIN = 0u;     // xyz = origin of the path's ray, w = pixel
+const uint RECORD_DIRECTION = 1u;  // xyz = direction of the ray, unit; w = roughness of the path
+const uint RECORD_WEIGHTS = 2u;    // xyz = weight of the ray's radiance; two records, selected by the parity of the
+                                   // ray's turn; if the ray continues behind a surface: w = t of the surface, in the
+                                   // other record its order
+const uint RECORD_RADIANCE = 4u;   // xyz = sum so far, without the current point; w = width of the path's cone
+const uint RECORD_SEEN = 5u;       // xyz = radiance of the current point so far; w = spread of the path's cone
+const uint RECORD_SHADOW_ORIGIN = 6u;  // w = bounces so far; from LAYERS_SHIFT on, surfaces passed
 const uint LAYERS_SHIFT = 16u;
-const uint RECORD_CONTRIBUTION = 0u;  // of a source: xyz = what it adds where nothing is between; where rays pass
-                                      // through surfaces, after the shadow ray what arrives of it
-// With FEATURE_DIFFUSE_TRANSMISSION a path has one more, and w of RECORD_CONTRIBUTION is 1 where the shadow ray begins there:
-const uint RECORD_SHADOW_BEHIND = 7u;  // xyz = origin of the shadow rays to what lies behind the surface
-// With FEATURE_GLASS there are behind these, and of each ray that waits 4 more (tree.glsl):
-const uint RECORD_MEDIA = 0u;         // x, y = the media that its ray is in; z = rays so far, and above HAS_SEEN_SHIFT
-                                      // whether there is something in RECORD_SEEN; w = rays that wait, and the ray's kind
-const uint RECORD_SHADOW_MEDIA = 1u;  // x, y = the media that its shadow rays begin in; z, w = skip and skipped of a Path
+const uint RECORD_CONTRIBUTION = 0u;  // for each source: xyz = its unblocked contribution; if rays pass through
+                                      // surfaces, after the shadow ray the contribution that arrives
+// With FEATURE_DIFFUSE_TRANSMISSION a path has one more record. w of RECORD_CONTRIBUTION is 1 if the shadow ray starts
+// there:
+const uint RECORD_SHADOW_BEHIND = 7u;  // xyz = origin of shadow rays that start behind the surface
+// With FEATURE_GLASS there are further records behind these, and 4 for each ray that waits (tree.glsl):
+const uint RECORD_MEDIA = 0u;         // x, y = media that contain the ray; z = rays so far; bit HAS_SEEN_SHIFT:
+                                      // RECORD_SEEN is in use; w = waiting rays, and the kind of the ray
+const uint RECORD_SHADOW_MEDIA = 1u;  // x, y = media in which shadow rays start; z, w = skip and skipped of a Path
 const uint WAITING_OBJECT_SHIFT = 15u;
-const uint WAITING_IS_TRANSMITTED = 0x4000u;  // of PART_TRANSMISSION, else of PART_REFLECTION
+const uint WAITING_IS_TRANSMITTED = 0x4000u;  // the ray belongs to PART_TRANSMISSION, otherwise to PART_REFLECTION
 const uint WAITING_BOUNCES_MASK = 0x3FFFu;
 const uint HAS_SEEN_SHIFT = 16u;
 const uint KIND_SHIFT = 16u;
 
-// Then come words, in this order: the asks of each path, one word for its own ray and one for each source; the list of
-// the paths of even turns, and that of odd turns; the list of shadow rays; and the bins of paths and of shadow rays:
-// the number of rays in each bin, then where each bin begins in the list. An ask is a bin and, above it, the ray's
-// number in that bin; or one of these:
-const uint ASK_NOTHING = 0xFFFFFFFFu;  // a path that has ended, a source without a shadow ray, or one that is not blocked
-const uint ASK_BLOCKED = 0xFFFFFFFEu;  // the answer to a shadow ray that is
-// The last bin is of paths that have no ray, but wait for shadow rays.
+// The records are followed by words in this order: the requests of each path, one word for its own ray and one for each
+// source; the list of the paths of even turns; the list of the paths of odd turns; the list of shadow rays; and the
+// bins of paths and of shadow rays. For each bin there is first the number of its rays, then the position in the list
+// where it begins. A request is a bin and, in the bits above, the number of the ray in the bin, or one of these values:
+const uint ASK_NOTHING = 0xFFFFFFFFu;  // a path that has ended, a source without a shadow ray, or an unblocked one
+const uint ASK_BLOCKED = 0xFFFFFFFEu;  // the answer to a shadow ray that is blocked
+// The last bin contains paths that have no ray but wait for shadow rays.
 const uint BIN_WITHOUT_RAY = STREAM_BINS - 1u;
 
 layout(std430, set = 0, binding = BINDING_FILM) buffer StreamWords {
@@ -44,8 +46,8 @@ layout(std430, set = 0, binding = BINDING_FILM) buffer StreamWords {
   uint words[];
 };
 
-// The head of the stream as it was when the invocation began: begin_stream() comes first. Lavapipe loads what it holds
-// lane by lane and as often as it is named.
+// The head of the stream at the beginning of the invocation. Each invocation calls begin_stream() first. The values are
+// copied, because lavapipe loads values of a buffer lane by lane and at each use.
 uint first_record;
 uint most_paths;
 uint sources_of_turn;
@@ -79,13 +81,13 @@ uint ask_of_path(uint path) { return first_ask() + (1u + sources_of_turn) * path
 uint ask_of_source(uint path, uint source) { return ask_of_path(path) + 1u + source; }
 uint path_list(uint which) { return ask_of_path(most_paths) + (which & 1u) * most_paths; }
 uint shadow_list() { return path_list(0u) + 2u * most_paths; }
-// `kind` is one of these.
+// The argument `kind` of ask() is one of these values.
 const uint LIST_OF_PATHS = 0u;
 const uint LIST_OF_SHADOW_RAYS = 1u;
 uint counts_of_bins(uint kind) { return shadow_list() + sources_of_turn * most_paths + kind * STREAM_BINS; }
 uint places_of_bins(uint kind) { return counts_of_bins(STREAM_LISTS + kind); }
 
-// Asks for a ray of a bin.
+// Requests a ray in a bin. Returns the request.
 uint ask(uint kind, uint bin) {
   return bin | (atomicAdd(words[counts_of_bins(kind) + bin], 1u) << STREAM_BIN_BITS);
 }

@@ -33,8 +33,8 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #include "shared/group_rows.glsl"
 #include "shared/loop_check.glsl"
 
-// Returns the hit that blocks the ray, or the last surface that it has passed through. `record` is that of the source's
-// contribution.
+// Returns the hit that blocks the ray, or the last surface that the ray has passed through. `record` is the record of
+// the source's contribution.
 Hit go_through_layers(uint record, uvec2 media) {
   LightWay way = light_way(media);
   Hit last = Hit(INFINITY, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);

@@ -4,8 +4,8 @@
 // comes before the refracted one, which waits in the stream until the path has ended. The order of a pixel's sum
 // therefore depends only on the tree, at most one ray waits for each bounce, and no path exceeds its space.
 
-// Returns whether a ray is worth tracing. For other rays the environment that they would see is added, for Phong
-// materials nothing.
+// Returns whether a ray is worth tracing. If it is not, adds the environment that the ray would see; for Phong
+// materials nothing is added.
 bool is_followed(inout Path parent, ShadingPoint point, Path child) {
   bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
   if (parent.rays < most_tree_rays() && child.bounces <= most_bounces() &&
@@ -22,20 +22,20 @@ bool is_followed(inout Path parent, ShadingPoint point, Path child) {
   return false;
 }
 
-// The smallest cosine beyond a face at which a ray starts before it.
+// The smallest cosine beyond a face for which a ray starts before the face.
 const float LEAST_COSINE_BEYOND = 0.125;
 
-// Turns the path into the ray that passes through the point's surface. It starts before the surface and skips the face,
-// and so hits objects that touch it: the liquid in a glass, or the table under it. If the hit is such a face itself, or
-// the ray runs along the surface, it starts behind it. `touches`: the hit lies in the range in which the path's last
-// ray skipped faces.
+// Turns the path into the ray that passes through the point's surface. The ray starts before the surface and skips the
+// face, so it hits objects that touch the face: the liquid in a glass, or the table under it. If the hit is such a face
+// itself, or the ray runs along the surface, the ray starts behind it. `touches` is true if the hit lies in the range
+// in which the path's last ray skipped faces.
 void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   precise vec3 weight = path.weight * point.glass.through;
   path.weight = weight;
   float cosine = -dot3(point.glass.direction, point.geometric_normal);
   bool begins_before = !touches && cosine >= LEAST_COSINE_BEYOND;
   path.origin = lift_off(point.position, begins_before ? point.geometric_normal : -point.geometric_normal, point.lift);
-  // The distance of the point from its face is at most its lift, and so is that of the ray's origin.
+  // The distance of the point from its face is at most its lift. The same holds for the ray's origin.
   precise float skip = 2.0 * point.lift / cosine;
   path.skip = begins_before ? skip : 0.0;
   path.skipped = point.glass.object;
@@ -55,12 +55,12 @@ void go_beyond(inout Path path, ShadingPoint point, bool touches) {
   path.passed_order = 0u;
 }
 
-// Sets the face as it refracts light of this color.
+// Sets the face with the index of refraction for light of this colour.
 void make_colored_face(Path path, ShadingPoint point, uint color, out Face face) {
   make_face(glass_number(point.material), false, (point.glass.object & SKIPS_EXIT) != 0u, path.media, color, face);
 }
 
-// Returns the colours of light through the face, as bits, if the face separates them; else 0.
+// Returns the colours of light through the face, as bits, if the face separates them; otherwise 0.
 uint parted_colors(Path path, ShadingPoint point) {
   if (!has(FEATURE_DISPERSION)) return 0u;
   if (count_colors(path.weight) < 2u || point.glass.bend == 1.0) return 0u;
@@ -73,8 +73,8 @@ uint parted_colors(Path path, ShadingPoint point) {
   return is_parted ? uint(weight.x > 0.0) | uint(weight.y > 0.0) << 1 | uint(weight.z > 0.0) << 2 : 0u;
 }
 
-// Turns the path into the ray of one color that passes through the point's surface, or that is reflected totally while
-// others are not.
+// Turns the path into the ray of one colour that passes through the point's surface. If this colour is reflected
+// totally while others are not, the ray is the reflected one.
 void send_color(inout Path path, ShadingPoint point, bool touches, uint color) {
   precise vec3 kept = point.glass.through * vec3(color == RED, color == GREEN, color == BLUE);
   Face face;
@@ -97,18 +97,18 @@ void send_color(inout Path path, ShadingPoint point, bool touches, uint color) {
   }
 }
 
-// The children of a path that are traced: its mirror ray, and the ray beyond the surface, or one ray of each color in
-// its place.
+// The rays of a path that are traced after a surface: its mirror ray, and the ray beyond the surface or, in its place,
+// one ray of each colour.
 struct Children {
   bool is_mirrored;
   bool is_refracted;
-  uint colors;   // bits by their numbers
-  Path through;  // the refracted ray, or the path that its colors come from
+  uint colors;   // bits of the colours, by their numbers
+  Path through;  // the refracted ray, or the path from which the rays of colours are made
 };
 
 uint count_refracted(Children children) { return children.is_refracted ? 1u : uint(bitCount(children.colors)); }
 
-// Splits a path at a surface: it becomes the first of its children, or stays unchanged without children.
+// Splits a path at a surface. The path becomes the first of its children. Without children it does not change.
 void part_path(inout Path path, ShadingPoint point, bool touches, out Children children) {
   Path parent = path;
   Path next = path;
@@ -145,14 +145,14 @@ void part_path(inout Path path, ShadingPoint point, bool touches, out Children c
   children.through = through;
 }
 
-// Stores the data of the path. `has_seen`: the light of its current point has not been added yet.
+// Stores the data of the path. `has_seen` is true if the light of its current point has not been added yet.
 void store_glass(uint number, Path path, uint waiting, bool has_seen) {
   pixels[record_of_glass(number) + RECORD_MEDIA] =
       uvec4(path.media, path.rays | (has_seen ? 1u << HAS_SEEN_SHIFT : 0u), waiting | path.kind << KIND_SHIFT);
   pixels[record_of_glass(number) + RECORD_SHADOW_MEDIA].zw = uvec2(floatBitsToUint(path.skip), path.skipped);
 }
 
-// Stores a ray that the path follows when all rays before it have ended.
+// Stores a ray that the path follows after all rays before it have ended.
 void store_waiting(uint number, uint place, Path path) {
   uint record = record_of_waiting(number, place);
   pixels[record] = uvec4(floatBitsToUint(path.origin), floatBitsToUint(path.cone_width));
@@ -163,15 +163,15 @@ void store_waiting(uint number, uint place, Path path) {
   pixels[record + 3u] = uvec4(path.media, progress, floatBitsToUint(path.skip));
 }
 
-// Stores the children that wait for the first one; the last stored is followed first. `waiting` is the number that
-// already wait. Returns the new number.
+// Stores the children that wait for the first one. The child that is stored last is followed first. `waiting` is the
+// number of rays that already wait. Returns the new number.
 uint store_children(uint number, uint waiting, Children children, ShadingPoint point, bool touches) {
   if (children.is_mirrored && children.is_refracted) {
     store_waiting(number, waiting, children.through);
     ++waiting;
   }
   if (!has(FEATURE_DISPERSION)) return waiting;
-  // Without a mirror ray the first color is the path itself.
+  // Without a mirror ray, the ray of the first colour is the path itself.
   uint colors = children.is_mirrored ? children.colors : children.colors & (children.colors - 1u);
   for (uint left = colors; left != 0u;) {
     uint color = uint(findMSB(left));

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Highlights that are stretched along a grain (KHR_materials_anisotropy; docs/model.md, "Metallic-roughness").
 
-// Sets the two alphas of a point with a grain, and the roughness and normal at which it sees the environment.
+// Sets the two alphas of a point with anisotropic highlights, and the roughness and the normal with which it reflects
+// the environment.
 void stretch(inout ShadingPoint point, vec3 direction) {
   Anisotropy grain = point.anisotropy;
   grain.bent_normal = point.normal;
@@ -16,7 +17,7 @@ void stretch(inout ShadingPoint point, vec3 direction) {
   precise float mean = 0.5 * (along * along + across * across);
   material.c = vec4(sqrt(sqrt(mean)), material.c.yzw);
   point.material = material;
-  // Normals across the grain turn towards the eye (the extension's notes on image-based lighting).
+  // The normal is rotated across the grain towards the eye (the extension's notes on image-based lighting).
   vec3 turn = cross3(point.normal, grain.along);
   precise vec3 turned = -direction + dot3(direction, turn) * turn;
   precise float bend = 1.0 - grain.strength * (1.0 - roughness);
@@ -27,8 +28,8 @@ void stretch(inout ShadingPoint point, vec3 direction) {
   point.anisotropy = grain;
 }
 
-// As facet_scale, for a positive cosine to the light. The difference of half vector and normal keeps digits that the
-// cosine loses.
+// Returns the same as facet_scale for a surface with a grain, for a positive cosine to the light. The difference of
+// half vector and normal keeps digits that the cosine loses.
 float anisotropic_scale(vec3 normal, Anisotropy grain, vec3 h, vec3 to_eye, vec3 to_light, float cosine) {
   vec3 across = cross3(normal, grain.along);
   vec2 a = grain.alphas;

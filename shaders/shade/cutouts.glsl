@@ -8,7 +8,7 @@ MaterialRecord material_of(SurfaceRecord surface) {
   return load_material(VIEW.first_index.x + (surface.corners_material.w & SURFACE_MATERIAL_MASK));
 }
 
-// Textures and vertices can only reduce alpha.
+// Returns whether the material is absent everywhere. Textures and vertices can only reduce alpha.
 bool is_all_hole(MaterialRecord material) {
   return (flags_of(material) & MATERIAL_HAS_HOLES) != 0u && material.cover.x < material.cover.y;
 }
@@ -28,7 +28,7 @@ bool may_have_holes(uint index) {
   return has_holes(material_of(surface), surface);
 }
 
-// Returns the alpha of the material times those of the vertices and the texture.
+// Returns the alpha of the material, multiplied by the alphas of the vertices and of the texture.
 float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3 weights, float facing,
                float cone_width) {
   precise float alpha = material.cover.x;
@@ -47,7 +47,7 @@ bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool
   SurfaceRecord surface = load_surface(index);
   MaterialRecord material = material_of(surface);
   if (PASSES != 0u && is_on_open_edge && is_seen_through(material)) return true;
-  // The same as in shading.
+  // This cosine is computed in the same way as in shading.
   float facing = dot3(triangle_normal(p), direction);
   if (has(FEATURE_ONE_SIDED) && passes_backs && facing > 0.0 && (flags_of(material) & MATERIAL_IS_ONE_SIDED) != 0u) {
     return true;
@@ -72,8 +72,8 @@ float coverage_of_hit(Hit hit, vec3 direction) {
   return clamp(alpha_at(material, p, surface, weights, 1.0, 0.0), 0.0, 1.0);
 }
 
-// Returns the part of a source's light that remains behind a hit. `arriving` is the part that arrives at it, and
-// `layers` the number of surfaces that the shadow ray has already passed.
+// Returns the fraction of a source's light that remains behind a hit. `arriving` is the fraction that arrives at the
+// hit, and `layers` the number of surfaces that the shadow ray has already passed.
 float share_behind(Hit hit, vec3 direction, float arriving, uint layers) {
   float coverage = layers < MOST_LAYERS ? coverage_of_hit(hit, direction) : 1.0;
   precise float left = arriving * (1.0 - coverage);

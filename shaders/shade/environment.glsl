@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment of the scene (docs/model.md, "Environment"): a sky, or uniform ambient light.
 
-// The roughness of rays that were never deflected by a surface with an environment: they see the background.
+// The roughness of a ray that no surface has reflected or refracted. Such a ray sees the background and not the
+// environment.
 const float NO_ENVIRONMENT = -1.0;
 
-// If all features are compiled in, a scene may have no sky. Its levels then have side 0, and values fetched from them
-// are discarded, because no branch may depend on a uniform.
+// If all features are compiled in, a scene may have no sky. Its levels then have the side 0, and values fetched from
+// them are discarded, because no branch may depend on a uniform.
 bvec3 has_no_sky() { return bvec3(VIEW.first_lookup.z == 0u); }
 
-// One of the prefiltered levels (engine/environment/pack_sky.h): its first entry, and its side in texels.
+// A prefiltered level of the sky (engine/environment/pack_sky.h): the index of its first entry, and its side in texels.
 struct SkyLevel {
   uint first;
   uint side;
@@ -20,7 +21,7 @@ uint side_of_sky_level(uint shift) {
   return max(side >> shift, min(side, LEAST_SKY_SIDE));
 }
 
-// Returns the position of a direction of any length on the map (engine/environment/octahedron.h), 0...1.
+// Returns the position in the map (engine/environment/octahedron.h), 0...1, of a direction of any length.
 vec2 octahedral_place(vec3 direction) {
   precise float size = abs(direction.x) + abs(direction.y) + abs(direction.z);
   precise vec2 seen = direction.xz / size;
@@ -30,7 +31,7 @@ vec2 octahedral_place(vec3 direction) {
   return place;
 }
 
-// The interpolation between the two texels of an entry.
+// Interpolates between the two texels of an entry.
 vec3 mix_sky_entry(uint index, float across) {
   uvec4 words = FETCHES_TEXELS == 0u ? surfaces[index].corners_material : texelFetch(shading_texels, int(index));
   vec2 first = unpackHalf2x16(words.x);
@@ -43,7 +44,7 @@ vec3 mix_sky_entry(uint index, float across) {
 }
 
 vec3 look_up_sky_level(SkyLevel level, vec2 place) {
-  // The border's texels come first, so that the middle of texel 0 is at 1.
+  // Texels of the border come first, so the middle of texel 0 is at 1.
   precise vec2 texel = place * float(level.side) + 0.5;
   precise vec2 corner = floor(texel);
   precise vec2 offset = texel - corner;
@@ -54,10 +55,10 @@ vec3 look_up_sky_level(SkyLevel level, vec2 place) {
   return mixed;
 }
 
-// The mean radiance about a direction of any length, over a lobe of this roughness.
+// Returns the mean radiance around a direction of any length, over a lobe of this roughness.
 vec3 environment_radiance(vec3 direction, float roughness) {
   if (!has(FEATURE_SKY)) return VIEW.ambient.xyz;
-  // The last level that is not rougher, and the next.
+  // Finds the last level that is not rougher, and the next level.
   SkyLevel sharper = SkyLevel(0u, 0u);
   SkyLevel rougher = SkyLevel(0u, 0u);
   float sharper_roughness = 0.0;
@@ -85,8 +86,8 @@ vec3 environment_radiance(vec3 direction, float roughness) {
   return mix(radiance, VIEW.ambient.xyz, has_no_sky());
 }
 
-// Returns the light of all directions divided by pi, weighted by the cosine to the unit normal. It is clamped to 0,
-// because the few coefficients ring around a sun.
+// Returns the light of all directions, weighted by the cosine to the unit normal and divided by pi. The result is
+// clamped to 0, because the few coefficients oscillate around a sun.
 vec3 ambient_at(vec3 normal) {
   if (!has(FEATURE_SKY)) return VIEW.ambient.xyz;
   precise float xy = normal.x * normal.y;
@@ -116,13 +117,13 @@ float height_on_backdrop(vec3 origin, vec3 direction) {
   precise float by_direction = dot3(direction, rise) / along;
   precise float by_origin = dot3(origin - CAMERA.eye.xyz, rise);
   float up = CAMERA.backdrop_rise.w != 0.0 ? by_origin : by_direction;
-  // A sample on a row's upper edge may round to above it.
+  // Rounding may move a sample at the upper edge of a row above the edge.
   precise float row = floor((0.5 - up) * rows + 1.0 / 1024.0);
   precise float height = (clamp(row, 0.0, rows - 1.0) + 0.5) / rows;
   return height;
 }
 
-// The backdrop as the camera sees it.
+// Returns the backdrop as the camera sees it.
 vec3 backdrop_behind(vec3 origin, vec3 direction) {
   vec3 top = VIEW.backdrop_top.xyz;
   precise vec3 color = top + height_on_backdrop(origin, direction) * (VIEW.backdrop_bottom.xyz - top);
@@ -131,8 +132,8 @@ vec3 backdrop_behind(vec3 origin, vec3 direction) {
 
 bool is_backdrop_shown() { return VIEW.background.w == SHOWS_BACKDROP; }
 
-// Returns the radiance of a ray that leaves the scene without any deflection. `is_of_camera`: without mirrors or glass
-// in between.
+// Returns the radiance of a ray that leaves the scene without being reflected or refracted. `is_of_camera` is true if
+// it left the camera without mirrors or glass in between.
 vec3 radiance_behind(vec3 origin, vec3 direction, bool is_of_camera) {
   vec3 radiance = VIEW.background.xyz;
   if (has(FEATURE_SHOWN_SKY)) {
@@ -145,8 +146,8 @@ vec3 radiance_behind(vec3 origin, vec3 direction, bool is_of_camera) {
   return radiance;
 }
 
-// Returns the radiance of a ray that leaves the scene after mirrors or glass. `roughness` is the largest on its way, or
-// NO_ENVIRONMENT.
+// Returns the radiance of a ray that leaves the scene after mirrors or glass. `roughness` is the largest roughness on
+// its way, or NO_ENVIRONMENT.
 vec3 radiance_beyond(vec3 origin, vec3 direction, float roughness) {
   if (!SEES_ENVIRONMENT || roughness == NO_ENVIRONMENT) return radiance_behind(origin, direction, false);
   return environment_radiance(direction, roughness);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflection and refraction at faces of glass, and at mirrors that depend on the angle (docs/model.md, "Glass").
 
-// Sets the material's glass, without its texture.
+// Sets the glass of the material without its texture.
 void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media, uint object) {
   Glass glass = Glass(vec3(0.0), vec3(0.0), direction, media, 1.0, NO_ENVIRONMENT, 0.0, object);
   uint number = glass_number(point.material);
@@ -10,7 +10,7 @@ void put_bare_glass(inout ShadingPoint point, vec3 direction, uvec2 media, uint 
   point.glass = glass;
 }
 
-// Refracts the ray about this normal. Returns false on total reflection.
+// Refracts the ray at a surface with this normal. Returns false on total reflection.
 bool refract_about(vec3 normal, vec3 direction, Face face, out vec3 refracted) {
   float cosine = min(-dot3(normal, direction), 1.0);
   float k = cosine2_beyond(face, cosine);
@@ -20,10 +20,10 @@ bool refract_about(vec3 normal, vec3 direction, Face face, out vec3 refracted) {
   return k > 0.0;
 }
 
-// Refracts the ray about the point's normal, or about the surface's own if an interpolated normal would keep the ray on
-// this side. Returns false on total reflection.
+// Refracts the ray at a surface with the point's normal. If an interpolated normal would keep the ray on this side,
+// uses the surface's own normal. Returns false on total reflection.
 bool refract_at(ShadingPoint point, vec3 direction, Face face, out vec3 refracted) {
-  // An interpolated normal may be turned away from the eye.
+  // An interpolated normal may point away from the eye.
   vec3 normal = dot3(point.normal, direction) < 0.0 ? point.normal : point.geometric_normal;
   bool goes_on = refract_about(normal, direction, face, refracted);
   if (goes_on && dot3(refracted, point.geometric_normal) >= 0.0) {
@@ -32,13 +32,13 @@ bool refract_at(ShadingPoint point, vec3 direction, Face face, out vec3 refracte
   return goes_on;
 }
 
-// Computes the refracted ray, and the parts that a Phong material reflects and transmits. `hangs_on_angle`: by Fresnel,
-// and `reflected` is then the reflected part.
+// Computes the refracted ray, and the fractions of light that a Phong material reflects and transmits. `hangs_on_angle`
+// is true if Fresnel's formulas determine them; `reflected` is then the reflected fraction.
 void meet_phong(inout ShadingPoint point, GlassRecord record, bool lets_through, bool is_total, float reflected) {
   Glass glass = point.glass;
   bool hangs_on_angle = has(FEATURE_FRESNEL) && (record.bits.x & GLASS_IS_FRESNEL) != 0u;
   precise vec3 mirror = (hangs_on_angle ? reflected : 1.0) * glass.mirror;
-  // On total reflection the mirror gets the weight of the transmitted light.
+  // On total reflection, the mirror ray also gets the weight of the transmitted light.
   if (lets_through && !hangs_on_angle && is_total) mirror += record.transmission.xyz;
   precise vec3 through = (hangs_on_angle ? 1.0 - reflected : 1.0) * record.transmission.xyz;
   glass.mirror = mirror;
@@ -66,11 +66,11 @@ void meet_metallic_roughness(inout ShadingPoint point, GlassRecord record, bool 
   point.glass = glass;
 }
 
-// Returns the cosine at which a lobe is seen: that on the face's thinner side.
+// Sets the face of the point. Returns the cosine of the angle on the face's thinner side, which a lobe uses.
 float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint color, bool leaves) {
   float seen = -dot3(point.normal, direction);
   Glass glass = point.glass;
-  // By now with what a texture shows.
+  // At this place the mirror's weight includes the values of textures.
   glass.mirror = point.material.d.xyz;
   point.glass = glass;
   uint number = glass_number(point.material);
@@ -111,8 +111,8 @@ float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint colo
   return face.from <= face.to ? cosine : beyond;
 }
 
-// Sets the transmitted part of a metallic-roughness material: the light that is not reflected, tinted by the base
-// colour, half of it at each face of a volume. A coat and a sheen lie above it.
+// Sets the transmitted fraction for a metallic-roughness material: the light that is not reflected, multiplied by the
+// base colour (at each of the two faces of a volume by its square root). A coat and a sheen lie above it.
 void let_through(inout ShadingPoint point) {
   uint number = glass_number(point.material);
   if (model_of(point) != MATERIAL_METALLIC_ROUGHNESS || number == 0u) return;

@@ -11,8 +11,8 @@ bool is_clear(MaterialRecord material) {
   return (load_glass(glass_number(material)).bits.x & GLASS_IS_CLEAR) != 0u;
 }
 
-// The media that contain a ray, as the numbers of their glasses in 16 bits each. The last one entered comes first, in
-// the lower half of x. With more than four media the first one entered is dropped.
+// The media that contain a ray, as the numbers of their glasses in 16 bits each. The medium that was entered last comes
+// first, in the lower half of x. If there are more than four media, the one that was entered first is dropped.
 const uint NO_MEDIUM = 0u;
 uint last_entered(uvec2 media) { return media.x & 0xFFFFu; }
 uvec2 enter(uvec2 media, uint medium) { return uvec2(media.x << 16 | medium, media.y << 16 | media.x >> 16); }
@@ -21,7 +21,7 @@ bool is_within(uvec2 media, uint medium) {
   uvec2 upper = media >> 16;
   return any(equal(lower, uvec2(medium))) || any(equal(upper, uvec2(medium)));
 }
-// Returns the media without the last entry of this medium.
+// Returns the media without the last occurrence of this medium.
 uvec2 leave(uvec2 media, uint medium) {
   uvec2 lower = media & 0xFFFFu;
   uvec2 upper = media >> 16;
@@ -32,14 +32,14 @@ uvec2 leave(uvec2 media, uint medium) {
   return media;
 }
 
-// The colours of light that dispersion separates. Light that is not separated is bent like green.
+// The colours of light that dispersion separates. Light that is not separated is refracted like green.
 const uint RED = 0u;
 const uint GREEN = 1u;
 const uint BLUE = 2u;
 
 uint count_colors(vec3 weight) { return uint(weight.x > 0.0) + uint(weight.y > 0.0) + uint(weight.z > 0.0); }
 
-// Returns the color as which light of this weight is bent: its own if it has only one.
+// Returns the colour whose index of refraction applies to light of this weight: its own colour if it has only one.
 uint color_of(vec3 weight) {
   if (!has(FEATURE_DISPERSION) || count_colors(weight) != 1u) return GREEN;
   return weight.x > 0.0 ? RED : (weight.y > 0.0 ? GREEN : BLUE);
@@ -53,26 +53,27 @@ float index_of(uint medium, uint color) {
   return index;
 }
 
-// Returns the part of the light that remains after this distance in a medium (Beer and Lambert).
+// Returns the fraction of the light that remains after this distance in a medium (Beer and Lambert).
 vec3 left_after(uint medium, float way) {
   if (medium == NO_MEDIUM) return vec3(1.0);
   vec3 absorption = load_glass(medium).absorption.xyz;
   precise vec3 exponent = -absorption * way;
-  // Without absorption any distance transmits everything, even an infinite one.
+  // If the absorption is 0, the result is 1 for every distance, even an infinite one.
   return vec3(absorption.x > 0.0 ? power_of_two(exponent.x) : 1.0, absorption.y > 0.0 ? power_of_two(exponent.y) : 1.0,
               absorption.z > 0.0 ? power_of_two(exponent.z) : 1.0);
 }
 
-// A face between two media: the indices of refraction on the ray's side and beyond, and the media beyond.
+// A face between two media: the indices of refraction on the ray's side and on the other side, and the media on the
+// other side.
 struct Face {
   float from;
   float to;
   uvec2 beyond;
 };
 
-// Where solids overlap, the one entered last counts; faces of the others inside it do not bend rays (Schmidt and Budge,
-// "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2)). A solid that is left without having been entered
-// contains the camera, or belongs to a mesh that is not closed.
+// Makes the face of a medium. Where solids overlap, the solid that was entered last counts; faces of other solids
+// inside it do not bend rays (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2)). If a ray
+// leaves a solid that it has not entered, the solid contains the camera or is a mesh that is not closed.
 void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, uint color, out Face face) {
   float outside = index_of(last_entered(media), color);
   float inside = index_of(medium, color);
@@ -94,15 +95,15 @@ void make_face(uint medium, bool is_thin, bool leaves, uvec2 media, uint color, 
   }
 }
 
-// Returns 1 - (sine beyond)^2 for a ray that hits the face at an angle of this cosine; not positive on total
-// reflection.
+// Returns the squared cosine beyond the face, 1 - sine^2, for a ray that hits the face at an angle with this cosine. It
+// is not positive on total reflection.
 float cosine2_beyond(Face face, float cosine) {
   precise float ratio = face.from / face.to;
   precise float k = 1.0 - ratio * ratio * ((1.0 - cosine) * (1.0 + cosine));
   return k;
 }
 
-// Schlick's weight, of the cosine on the thinner side.
+// Returns Schlick's weight for the cosine on the thinner side.
 float schlick_weight(float cosine) {
   precise float p = clamp(1.0 - cosine, 0.0, 1.0);
   precise float p2 = p * p;
@@ -110,7 +111,7 @@ float schlick_weight(float cosine) {
   return p5;
 }
 
-// Returns Fresnel's reflectance of a dielectric for unpolarised light, from the cosines on both sides.
+// Returns Fresnel's reflectance of a dielectric for unpolarised light. The arguments are the cosines on both sides.
 float fresnel_reflectance(Face face, float cosine, float cosine_beyond) {
   precise float s_from = face.from * cosine;
   precise float s_to = face.to * cosine_beyond;
@@ -122,7 +123,8 @@ float fresnel_reflectance(Face face, float cosine, float cosine_beyond) {
   return mean;
 }
 
-// The factor of a reflectance at normal incidence that the record of a glass leaves open: ((n2 - n1) / (n2 + n1))^2.
+// Returns the factor of the reflectance at normal incidence that depends on the surrounding medium and is not in the
+// record of a glass: ((n2 - n1) / (n2 + n1))^2.
 float normal_reflectance(Face face) {
   precise float slope = (face.to - face.from) / (face.to + face.from);
   precise float square = slope * slope;

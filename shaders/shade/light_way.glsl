@@ -4,10 +4,10 @@
 // "Glass"), the nearest surface first, so that the product does not depend on the tree.
 
 struct LightWay {
-  vec3 arriving;  // the share of the source's light that is left so far
-  // With FEATURE_GLASS:
-  uvec2 media;  // that the ray is in
-  float t;      // where it has come to
+  vec3 arriving;  // the fraction of the source's light that remains so far
+  // The following members need FEATURE_GLASS:
+  uvec2 media;  // the media that contain the ray
+  float t;      // the t that the ray has reached
 };
 
 LightWay light_way(uvec2 media) { return LightWay(vec3(1.0), media, 0.0); }
@@ -20,7 +20,7 @@ void absorb_until(inout LightWay way, Ray ray, float t) {
   way.t = t;
 }
 
-// Returns the texel of the finest level; 1 if there is no texture.
+// Returns the texel of the texture's finest level at a hit; 1 if there is no texture.
 vec4 texel_at_hit(uint slot, Hit hit, Primitive p, SurfaceRecord surface) {
   uvec4 corners = surface.corners_material;
   if (!has(FEATURE_TEXTURES) || slot == 0u || (corners.w & SURFACE_HAS_UVS) == 0u) return vec4(1.0);
@@ -38,8 +38,8 @@ vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord mat
   return min(tint, vec3(1.0));
 }
 
-// Returns the part of the light that a face transmits, and the media behind it. Straight rays treat each face as if
-// they came from its thinner side, so that there is no total reflection.
+// Returns the fraction of the light that a face transmits, and the media behind it. Shadow rays run straight, so each
+// face is treated as if the ray came from its thinner side; there is then no total reflection.
 vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord material, inout uvec2 media) {
   Primitive p = load_primitive(hit.primitive);
   GlassRecord record = load_glass(glass_number(material));
@@ -69,7 +69,7 @@ vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord mater
   return left;
 }
 
-// Continues behind a hit; `layers` is the number of hits before it. Returns whether any light remains.
+// Continues a shadow ray behind a hit. `layers` is the number of hits before it. Returns whether any light remains.
 bool goes_on_behind(inout LightWay way, Ray ray, Hit hit, uint layers) {
   if (!has(FEATURE_GLASS)) {
     way.arriving = vec3(share_behind(hit, ray.direction, way.arriving.x, layers));
@@ -86,7 +86,7 @@ bool goes_on_behind(inout LightWay way, Ray ray, Hit hit, uint layers) {
   return max_abs(way.arriving) > 0.0;
 }
 
-// Applies the distance from the last surface to the light source.
+// Applies the absorption between the last surface and the light source.
 void end_way(inout LightWay way, Ray ray) {
   if (has(FEATURE_GLASS) && ray.tmax < INFINITY && max_abs(way.arriving) > 0.0) absorb_until(way, ray, ray.tmax);
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights as seen from a surface point. Each kind of promin/kinds/lights.def has a function sample_*.
 
-// A light source as seen from a surface point. The direction of the shadow ray reaches a source with a position at t =
-// 1, and its tmax is 1. A source at infinity has tmax INFINITY and a direction of any length. `strength` is a factor of
+// A light source as seen from a surface point. If the source has a position, the shadow ray reaches it at t = 1, and
+// the ray's tmax is 1. A source at infinity has tmax INFINITY and a direction of any length. `strength` is a factor of
 // the source's powers.
 struct LightSample {
   vec3 direction;
@@ -22,12 +22,12 @@ LightSample sample_light(LightRecord light, vec3 position) {
     return sample_##PREFIX(light, position);                                          \
   }
 #include "promin/kinds/lights.def"
-  // The pipeline was specialised to none of this kind, so the light adds nothing.
+  // The pipeline was compiled without lights of this kind, so the light adds nothing.
   return LightSample(vec3(0.0), 0.0, 0.0);
 }
 
-// Returns the ray from `origin` to a light source. Its direction depends only on the source's position, or for a source
-// at infinity on nothing.
+// Returns the ray from `origin` to a light source. For a source at infinity the direction is the same for all
+// origins.
 Ray shadow_ray(vec3 origin, LightRecord light) {
   LightSample sampled = sample_light(light, origin);
   precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;

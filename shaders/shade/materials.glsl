@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The interface of materials. Each model of promin/kinds/materials.def has these functions, with its prefix after the
 // name; `direction` is the unit direction of the ray that has hit the point:
-//   own_light         what the point sends without any source: emitted, ambient and from the environment; with
-//                     `follows_mirror` without the part that the mirror ray brings
-//   emitted_light     the part of that which is emitted
-//   contribution      what a source of strength 1 adds where nothing is between
-//   mirror_weight     the weight of what the mirror ray brings; 0: none is traced
-//   albedo_color      its base colour
-//   mirror_normal     the unit normal about which it is mirrored
-//   mirror_roughness  the roughness at which a mirror ray that meets nothing sees the environment, or NO_ENVIRONMENT
+//   own_light         the point's light without any source: emitted, ambient and from the environment; with
+//                     `follows_mirror` without the part that the mirror ray adds
+//   emitted_light     the emitted part of own_light
+//   contribution      the light that a source of strength 1 adds if it is not blocked
+//   mirror_weight     the weight of the mirror ray's radiance; if it is 0, no mirror ray is traced
+//   albedo_color      the base colour of the point
+//   mirror_normal     the unit normal for the direction of the mirror ray
+//   mirror_roughness  the roughness at which a mirror ray that hits nothing sees the environment, or NO_ENVIRONMENT
 
 #include "shade/materials/phong.glsl"
 #include "shade/materials/metallic_roughness.glsl"

@@ -2,35 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shading (docs/model.md, "Light") of a point that a ray hit.
 
-// A clear coat as the eye sees it (KHR_materials_clearcoat): its reflection replaces the part `weight` of the light
+// A clear coat as the eye sees it (KHR_materials_clearcoat). Its reflection replaces the fraction `weight` of the light
 // from below.
 struct Coat {
   float weight;
   float roughness;
-  float share;  // of light from all around, what it would reflect if it covered all
-  vec3 normal;  // without the normals of the material below
+  float share;  // fraction of the light from all directions that a coat of weight 1 reflects
+  vec3 normal;  // the coat's own normal, without the normals of the material below
 };
 
 // A sheen as the eye sees it (KHR_materials_sheen).
 struct Sheen {
   vec3 color;
   float roughness;
-  float share;  // of light from all around, what it sends were its colour 1; what is above 1 is not sent
+  float share;  // fraction of the light from all directions that a sheen of colour 1 reflects; a value above 1 counts
+                // as 1
 };
 
-// Reflection and transmission of a ray at glass (tree.glsl), with FEATURE_GLASS or FEATURE_FRESNEL.
+// Reflection and transmission of a ray at glass (tree.glsl). Needs FEATURE_GLASS or FEATURE_FRESNEL.
 struct Glass {
   vec3 mirror;       // Phong's weight of the mirror ray
-  vec3 through;      // weight of what is seen beyond; 0: nothing
-  vec3 direction;    // unit, of the ray beyond
-  uvec2 beyond;      // the media that it is in
-  float bend;        // ratio of the indices of refraction, on this side over beyond
-  float roughness;   // at which it sees the environment, or NO_ENVIRONMENT
-  float share;       // of light that is not reflected, how much goes through
-  uint object;       // its hash, with SKIPS_EXIT where the ray leaves it
+  vec3 through;      // weight of the ray beyond the surface; 0 without one
+  vec3 direction;    // unit direction of the ray beyond the surface
+  uvec2 beyond;      // the media that contain this ray
+  float bend;        // index of refraction on this side divided by the index beyond
+  float roughness;   // roughness with which this ray sees the environment, or NO_ENVIRONMENT
+  float share;       // fraction of the light that is not reflected and passes through
+  uint object;       // hash of the object, with SKIPS_EXIT if the ray leaves it
 };
 
-// A thin film (KHR_materials_iridescence).
+// A thin film on a surface (KHR_materials_iridescence).
 struct ThinFilm {
   vec4 layer;  // x = share; y = index of refraction; z = thickness in nanometres; w = how much less it is where its
                // texture is 0
@@ -40,35 +41,35 @@ struct ThinFilm {
 // An anisotropic highlight (KHR_materials_anisotropy).
 struct Anisotropy {
   float strength;
-  vec2 alphas;  // along the grain and across it; 0: the point has no grain
-  vec3 along;   // unit, across the normal
+  vec2 alphas;  // alphas along the grain and across it; 0 if the point has no grain
+  vec3 along;   // unit direction of the grain, perpendicular to the normal
   vec3 bent_normal;
 };
 
 // The data of a hit that the light loop and the mirror ray need.
 struct ShadingPoint {
   vec3 position;
-  vec3 geometric_normal;  // unit; faces the incoming ray
+  vec3 geometric_normal;  // unit, faces the incoming ray
   vec3 normal;            // the interpolated normal or the geometric one; faces the incoming ray
   float lift;
   vec3 shadow_position;  // origin of shadow rays, before the lift
   vec3 color;            // vertex colour
   MaterialRecord material;
   vec2 lobe_shares;  // with FEATURE_METALLIC_ROUGHNESS
-  float occlusion;   // with FEATURE_TEXTURES: what is left of the environment's light
-  float curvature;   // with FEATURE_TEXTURES: how fast the normal turns along the surface
+  float occlusion;   // with FEATURE_TEXTURES: the fraction of the environment's light that arrives
+  float curvature;   // with FEATURE_TEXTURES: change of the normal per length along the surface
   Coat coat;         // with FEATURE_COATS
   Sheen sheen;       // with FEATURE_SHEENS
   Glass glass;       // with FEATURE_GLASS or FEATURE_FRESNEL
-  vec4 scattering;   // with FEATURE_DIFFUSE_TRANSMISSION: xyz = colour of the light that is scattered to the other side;
-                     // w = its share of all scattered light
+  vec4 scattering;   // with FEATURE_DIFFUSE_TRANSMISSION: xyz = colour of the light that is scattered to the other
+                     // side; w = its fraction of all scattered light
   ThinFilm thin_film;   // with FEATURE_IRIDESCENCE
   Anisotropy anisotropy;  // with FEATURE_ANISOTROPY
 };
 
 #include "shade/glass.glsl"
 
-// Whether some faces split light depending on the angle.
+// True if the reflection and transmission of some faces depend on the angle.
 const bool HAS_FACES = (FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_FRESNEL)) != 0u;
 
 #include "shade/materials.glsl"
@@ -81,15 +82,16 @@ ExtensionRecord extension_of(MaterialRecord material) {
   return load_extension(VIEW.first_lookup.w + slot_number(material.d.x) - 1u);
 }
 
-// Lifts the point onto the curved surface that the vertex normals suggest, so that its own coarse polygon does not
-// shadow what is shaded as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
+// Lifts the point onto the curved surface that the vertex normals suggest, so that the coarse polygon does not shadow
+// points that shading treats as lit (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II ch. 4).
 vec3 lift_to_curve(vec3 position, vec3 corner, vec3 normal) {
   precise float height = min(0.0, dot3(position - corner, normal));
   precise vec3 projected = position - height * normal;
   return projected;
 }
 
-// Returns the change of the normals along the triangle's edges per distance; positive if it is convex.
+// Returns the change of the normals along the triangle's edges, divided by the distance. It is positive for a convex
+// surface.
 float curvature_of(Primitive p, vec3 n0, vec3 n1, vec3 n2) {
   precise vec3 e0 = corner1(p) - corner0(p);
   precise vec3 e1 = corner2(p) - corner1(p);
@@ -105,8 +107,8 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   vec3 n0 = load_vertex(VIEW.first_index.z + corners.x);
   vec3 n1 = load_vertex(VIEW.first_index.z + corners.y);
   vec3 n2 = load_vertex(VIEW.first_index.z + corners.z);
-  // The side of the geometric normal decides which way the interpolated normal faces, so the sign of the latter stays
-  // as wound.
+  // The side of the geometric normal determines on which side the interpolated normal is used. The sign of the
+  // interpolated normal follows the winding.
   float side = is_flipped ? -1.0 : 1.0;
   precise vec3 interpolated = (weights.x * n0 + weights.y * n1 + weights.z * n2) * side;
   vec3 normal = normalize3(interpolated);
@@ -122,14 +124,15 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   }
 }
 
-// The tangent across the normal. On the back of a surface all three axes turn.
+// Returns the tangent's component perpendicular to the normal. On the back of a surface all three axes are reversed.
 vec3 axis_across(vec3 normal, vec4 tangent, float side) {
   precise vec3 t = tangent.xyz * side;
   precise vec3 along = t - dot3(t, normal) * normal;
   return normalize3(along);
 }
 
-// The normal, turned by a texture of normals: `tangent` and its bitangent span the plane that the texture is painted on.
+// Returns the normal, rotated by the texel of a normal texture. `tangent` and its bitangent span the plane of the
+// texture.
 vec3 turned_normal(vec3 normal, vec3 texel, float scale, vec4 tangent, float side, vec3 direction) {
   precise vec2 scaled = (2.0 * texel.xy - 1.0) * scale;
   precise float z = 2.0 * texel.z - 1.0;
@@ -138,13 +141,13 @@ vec3 turned_normal(vec3 normal, vec3 texel, float scale, vec4 tangent, float sid
   precise vec3 sum = scaled.x * axis + scaled.y * across + z * normal;
   vec3 turned = normalize3(sum);
   if (max_abs(axis) == 0.0 || max_abs(turned) == 0.0) return normal;
-  // A normal that points away from the eye is bent back until it is perpendicular to the view.
+  // A normal that points away from the eye is rotated until it is perpendicular to the view.
   precise float cosine = -dot3(turned, direction);
   precise vec3 bent = turned - (LEAST_COSINE - cosine) * direction;
   return cosine < LEAST_COSINE ? normalize3(bent) : turned;
 }
 
-// The tangent of the triangle's own texture coordinates, where the mesh has none for its vertices.
+// Returns the tangent of the triangle's own texture coordinates. It is used if the mesh has no tangents.
 vec4 tangent_of(Primitive p, vec2 a, vec2 b, vec2 c) {
   precise vec3 e1 = corner1(p) - corner0(p);
   precise vec3 e2 = corner2(p) - corner0(p);
@@ -153,11 +156,11 @@ vec4 tangent_of(Primitive p, vec2 a, vec2 b, vec2 c) {
   precise float area = d1.x * d2.y - d1.y * d2.x;
   float sign_of_area = area < 0.0 ? -1.0 : 1.0;
   precise vec3 tangent = sign_of_area * (d2.y * e1 - d1.y * e2);
-  // Images have their first row at v = 0, so the bitangent goes up as v goes down.
+  // Images have their first row at v = 0, so the bitangent points in the direction of decreasing v.
   return vec4(normalize3(tangent), -sign_of_area);
 }
 
-// Returns interpolated tangents if the mesh has some, else the triangle's own.
+// Returns the interpolated tangents of the mesh if there are any, otherwise the triangle's own tangent.
 vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint slot) {
   if ((corners.w & SURFACE_HAS_TANGENTS) != 0u) {
     precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
@@ -169,7 +172,7 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
   return is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
 }
 
-// `number` is that of the slot with the normals; `texel` is its value.
+// Returns the normal from a normal texture. `number` is the number of its slot, and `texel` its value.
 vec3 textured_normal(vec3 normal, uint number, vec3 texel, float scale, Primitive p, uvec4 corners, vec3 weights,
                      CornerUvs uvs, bool is_flipped, vec3 direction) {
   if (number == 0u) return normal;
@@ -177,7 +180,7 @@ vec3 textured_normal(vec3 normal, uint number, vec3 texel, float scale, Primitiv
                        direction);
 }
 
-// KHR_materials_specular: the dielectric's reflectance at normal and at grazing incidence.
+// Returns the dielectric's reflectance at normal and at grazing incidence (KHR_materials_specular).
 vec4 textured_reflectance(ExtensionRecord record) {
   precise vec3 at_normal = record.reflectance.xyz * shown[SPECULAR_COLOR_SLOT].xyz;
   precise float factor = record.reflectance.w * shown[SPECULAR_SLOT].w;
@@ -195,7 +198,7 @@ void put_slot_numbers_of(ExtensionRecord record) {
   slot_numbers[SPECULAR_COLOR_SLOT] = record.slots.w;
 }
 
-// The places of these slots depend on the features.
+// The places of the following slots depend on the features.
 void put_slot_numbers_of_rare(ExtensionRecord record) {
   if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
     slot_numbers[SCATTERING_SLOT] = record.rare_slots.x;
@@ -208,7 +211,7 @@ void put_slot_numbers_of_rare(ExtensionRecord record) {
   if (has(FEATURE_ANISOTROPY)) slot_numbers[ANISOTROPY_SLOT] = record.anisotropy_slot.x;
 }
 
-// The strength and direction of an anisotropic highlight, where texture coordinates give a tangent.
+// Sets the strength and the direction of an anisotropic highlight, if texture coordinates give a tangent.
 void put_anisotropy(inout ShadingPoint point, ExtensionRecord record, Primitive p, uvec4 corners, vec3 weights,
                CornerUvs uvs, bool is_flipped) {
   uint number = record.anisotropy_slot.x;
@@ -233,7 +236,7 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
                     bool is_flipped, vec3 direction, float cone_width) {
   CornerUvs uvs = load_corner_uvs(corners.xyz);
   TexturePlace place = texture_place(p, uvs, weights, dot3(wound_normal, direction), cone_width);
-  // Nested members are not written individually, because glslang crashes on that.
+  // Whole structs are copied, because glslang crashes if nested members are written individually.
   MaterialRecord material = point.material;
   bool is_phong = has(FEATURE_PHONG) && model_of(point) == MATERIAL_PHONG;
   bool is_metallic_roughness = has(FEATURE_METALLIC_ROUGHNESS) && model_of(point) == MATERIAL_METALLIC_ROUGHNESS;
@@ -325,7 +328,7 @@ void apply_textures(inout ShadingPoint point, Primitive p, uvec4 corners, vec3 w
   point.material = material;
 }
 
-// Sets the material's coat and sheen without their textures; the coat's weight is its factor.
+// Sets the material's coat and sheen without their textures. The coat's weight is then its factor.
 void put_bare_layers(inout ShadingPoint point) {
   Coat coat = Coat(0.0, 0.0, 0.0, point.normal);
   Sheen sheen = Sheen(vec3(0.0), 0.0, 0.0);
@@ -340,7 +343,7 @@ void put_bare_layers(inout ShadingPoint point) {
   point.sheen = sheen;
 }
 
-// Sets rare properties of materials, without textures.
+// Sets the rare properties of the material without their textures.
 void put_bare_rarities(inout ShadingPoint point) {
   vec4 scattering = vec4(0.0);
   ThinFilm film = ThinFilm(vec4(0.0), vec3(0.0));
@@ -354,7 +357,7 @@ void put_bare_rarities(inout ShadingPoint point) {
   if (has(FEATURE_ANISOTROPY)) point.anisotropy = Anisotropy(0.0, vec2(0.0), vec3(0.0), vec3(0.0));
 }
 
-// Returns the coat as the eye sees it: with Schlick's factor for an index of refraction of 1.5.
+// Returns the coat as the eye sees it, with Schlick's factor for an index of refraction of 1.5.
 Coat seen_coat(Coat coat, vec3 direction) {
   float cosine = clamp(-dot3(coat.normal, direction), 0.0, 1.0);
   precise float p = 1.0 - cosine;
@@ -369,10 +372,11 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
 
 #include "shade/faces.glsl"
 
-// `direction` is the ray's unit direction; `cone_width` is the width of its pixel's cone at the hit; `media` are the
-// media that contain the ray, which is refracted as this color of light. The point is an out parameter and not
-// returned: for a call whose result is assigned, glslang 12 to 15 propagate `precise` from the struct's eighth member
-// to the eighth member of every argument, and crash if one of these has fewer (propagateNoContraction.cpp).
+// Makes the shading point of a hit. `direction` is the ray's unit direction, `cone_width` the width of its pixel's cone
+// at the hit, `media` the media that contain the ray, and `color` the colour of light with which it is refracted. The
+// point is an out parameter and not returned: for a call whose result is assigned, glslang 12 to 15 propagate `precise`
+// from the struct's eighth member to the eighth member of every argument, and crash if one of these has fewer
+// (propagateNoContraction.cpp).
 void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, uint color,
                         out ShadingPoint point) {
   Primitive p = load_primitive(hit.primitive);
@@ -427,7 +431,7 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec
 vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light, LightSample sampled) {
   vec3 to_light = normalize3(sampled.direction);
   precise float cosine = dot3(point.normal, to_light);
-  // A coat has its own normal.
+  // A coat has its own normal, so it may be lit if the material is not.
   bool is_lit = has(FEATURE_COATS) ? cosine > 0.0 || dot3(point.coat.normal, to_light) > 0.0 : cosine > 0.0;
   if (has(FEATURE_DIFFUSE_TRANSMISSION) && scatters_through(point)) is_lit = true;
   if (!(is_lit && sampled.strength > 0.0)) return vec3(0.0);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buffer of shading: surfaces, materials, lights and vertices.
 
-// These are views of one buffer, because four storage buffers per stage are all that Vulkan guarantees. Each view
-// starts at a multiple of its own stride (VIEW.first_index).
+// These blocks are views of one buffer, because Vulkan guarantees only four storage buffers per stage. Each view starts
+// at a multiple of its own stride (VIEW.first_index).
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Surfaces { SurfaceRecord surfaces[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, set = 0, binding = BINDING_SHADING) readonly buffer Extensions { ExtensionRecord extensions[]; };
@@ -38,7 +38,7 @@ ExtensionRecord load_extension(uint index) {
                          texelFetch(shading_texels, int(first + 8u)), texelFetch(shading_texels, int(first + 9u)));
 }
 
-// `number` counts from 1 on.
+// Returns the record of a glass. `number` counts from 1.
 GlassRecord load_glass(uint number) {
   uint index = VIEW.first_glass.x + max(number, 1u) - 1u;
   if (FETCHES_TEXELS == 0u) return glasses[index];
@@ -61,7 +61,7 @@ vec4 load_vertex4(uint index) {
 
 vec3 load_vertex(uint index) { return load_vertex4(index).xyz; }
 
-// Interpolated between a triangle's corners.
+// Returns the vertex colour, interpolated between a triangle's corners.
 vec4 load_vertex_color(uvec3 corners, vec3 weights) {
   precise vec4 color = weights.x * load_vertex4(VIEW.first_index.w + corners.x) +
                        weights.y * load_vertex4(VIEW.first_index.w + corners.y) +
@@ -69,8 +69,9 @@ vec4 load_vertex_color(uvec3 corners, vec3 weights) {
   return color;
 }
 
-// Two numbers of the roughness and the angle of this cosine, by a table whose first texel is given
-// (engine/device_scene/lobe_table.h). A texel has the four entries of a cell, each in a word, x in its lower half.
+// Returns two numbers for a roughness and an angle with this cosine. They come from a table that starts at texel
+// `table` (engine/device_scene/lobe_table.h). A texel has the four entries of a cell. Each entry is a word with x in
+// its lower half.
 vec2 load_shares(uint table, float cosine, float roughness) {
   precise float x = float(LOBE_TABLE_SIDE - 1u) * sqrt(clamp(cosine, 0.0, 1.0));
   precise float y = float(LOBE_TABLE_SIDE - 1u) * clamp(roughness, 0.0, 1.0);
@@ -87,11 +88,12 @@ vec2 load_shares(uint table, float cosine, float roughness) {
   return result;
 }
 
-// Returns how a lobe of this roughness reflects light from all directions to an eye at the angle of this cosine: x =
-// E1, the part reflected with a reflectance of 1, and y = B, the part that Schlick's factor adds.
+// Returns the shares of a lobe of this roughness: how it reflects light from all directions to an eye at an angle with
+// this cosine. x = E1, the fraction reflected with a reflectance of 1; y = B, the fraction that Schlick's factor adds.
 vec2 load_lobe_shares(float cosine, float roughness) { return load_shares(VIEW.first_lookup.x, cosine, roughness); }
 
-// The share of light from all around that a sheen of colour 1 sends to the eye; its table follows that of lobes.
+// Returns the fraction of light from all directions that a sheen of colour 1 reflects to the eye. The table of sheens
+// follows the table of lobes.
 float load_sheen_share(float cosine, float roughness) {
   uint table = VIEW.first_lookup.x + (LOBE_TABLE_SIDE - 1u) * (LOBE_TABLE_SIDE - 1u);
   precise float share = LARGEST_SHEEN_SHARE * load_shares(table, cosine, roughness).x;

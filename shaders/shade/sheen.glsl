@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The sheen of cloth (KHR_materials_sheen; docs/model.md, "Metallic-roughness"): fibres that stand about the normal, and
-// show where they are seen or lit from the side.
+// The sheen of cloth (KHR_materials_sheen; docs/model.md, "Metallic-roughness"): fibres that stand on the surface, and
+// are visible if they are seen or lit from the side.
 
 const float LEAST_SHEEN_ROUGHNESS = 0.07;
 const float LOG2_E = 1.44269504;
@@ -11,8 +11,8 @@ float sheen_alpha(float roughness) {
   return alpha;
 }
 
-// The logarithm of Lambda below an inclination of 60 degrees to the horizon: a curve that Estevez and Kulla fitted
-// ("Production Friendly Microfacet Sheen BRDF", SIGGRAPH 2017 course notes, section 3).
+// Returns the logarithm of Lambda for inclinations below 60 degrees to the horizon. It is a curve that Estevez and
+// Kulla fitted ("Production Friendly Microfacet Sheen BRDF", SIGGRAPH 2017 course notes, section 3).
 float fitted_lambda(float x, float alpha) {
   precise float t = (1.0 - alpha) * (1.0 - alpha);
   precise float a = 21.5473 + t * (25.3245 - 21.5473);
@@ -24,7 +24,7 @@ float fitted_lambda(float x, float alpha) {
   return fitted;
 }
 
-// Returns the ratio of hidden to visible fibres, seen at the angle of this cosine.
+// Returns the ratio of hidden to visible fibres at an angle with this cosine.
 float sheen_lambda(float cosine, float alpha) {
   precise float from_normal = 1.0 - cosine;
   precise float logarithm = cosine < 0.5 ? fitted_lambda(cosine, alpha)
@@ -33,8 +33,9 @@ float sheen_lambda(float cosine, float alpha) {
   return power_of_two(exponent);
 }
 
-// The radiance that a sheen of colour 1 sends to the eye of a source with an irradiance of 1 across its way. h is the
-// half vector. The sine of its angle comes from |h - normal|, which keeps the digits that 1 - (N.H)^2 loses.
+// Returns the radiance that a sheen of colour 1 sends to the eye if a source causes an irradiance of 1 perpendicular to
+// its direction. h is the half vector. The sine of its angle is computed from |h - normal|, which keeps the digits that
+// 1 - (N.H)^2 loses.
 float sheen_of_source(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosine) {
   float alpha = sheen_alpha(roughness);
   float v = max(dot3(normal, to_eye), LEAST_COSINE);

@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The textures of a material at a point.
 
-// Whether materials may have layers above them, or other rare properties (ExtensionRecord).
+// True if materials may have layers above them, or other rare properties (ExtensionRecord).
 const bool HAS_LAYERS = (FEATURE_BIT(FEATURE_COATS) | FEATURE_BIT(FEATURE_SHEENS)) != 0u;
 const uint RARE_FEATURES = FEATURE_BIT(FEATURE_SPECULAR_TEXTURES) | FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION) |
                            FEATURE_BIT(FEATURE_IRIDESCENCE) | FEATURE_BIT(FEATURE_ANISOTROPY);
 const bool HAS_EXTENSIONS = HAS_LAYERS || RARE_FEATURES != 0u;
 
-// The textures that may be looked up at a point, each with its own place. Rare ones come last.
+// The textures that a point may need, each with its own place in the arrays below. Rare textures come last.
 const uint BASE_SLOT = 0u;  // colour and alpha
 const uint EMISSIVE_SLOT = 1u;
-const uint SURFACE_SLOT = 2u;  // metal and roughness, or Phong's specular colour
+const uint SURFACE_SLOT = 2u;  // metal and roughness, or the specular colour of Phong
 const uint OCCLUSION_SLOT = 3u;
 const uint NORMAL_SLOT = 4u;
 const uint COAT_SLOT = 5u;
@@ -31,8 +31,8 @@ const uint IRIDESCENCE_THICKNESS_SLOT = IRIDESCENCE_SLOT + 1u;
 const uint ANISOTROPY_SLOT = IRIDESCENCE_SLOT + 2u * FEATURE_BIT(FEATURE_IRIDESCENCE);
 const uint SLOT_COUNT = ANISOTROPY_SLOT + FEATURE_BIT(FEATURE_ANISOTROPY);
 
-uint slot_numbers[MOST_SLOTS];  // 0 where there is no texture; by who calls look_up_slots
-vec4 shown[MOST_SLOTS];         // by look_up_slots
+uint slot_numbers[MOST_SLOTS];  // number of each slot, 0 without a texture; the caller of look_up_slots sets it
+vec4 shown[MOST_SLOTS];         // value of each slot; look_up_slots sets it
 
 uint next_slot_number() {
   uint number = 0u;
@@ -40,13 +40,13 @@ uint next_slot_number() {
   return number;
 }
 
-// Fills `shown`, with 1 for missing textures, and clears `slot_numbers`. It looks up one level after the other in a
-// single place of the code, because CPU drivers execute for all lanes what any of them may need, and most materials
-// lack most textures. Slots with the same number are looked up once.
+// Fills `shown` with the values of the slots, or 1 for missing textures, and clears `slot_numbers`. It looks up one
+// level after the other at a single place of the code. CPU drivers execute for all lanes what any of them may need, and
+// most materials lack most textures. Slots with the same number are looked up once.
 void look_up_slots(TexturePlace place) {
   [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) shown[i] = vec4(1.0);
   uint number = next_slot_number();
-  uint levels_seen = 0u;  // of the slot at hand
+  uint levels_seen = 0u;  // levels of the current slot that were looked up
   vec4 first = vec4(0.0);
   do {
     if (number != 0u) {

@@ -14,7 +14,7 @@ uint load_image_word(uint index) {
   return texelFetch(image_texels, int(index)).x;
 }
 
-// Returns a slot; numbers start at 1.
+// Returns the record of a slot. Numbers of slots start at 1.
 TextureSlotRecord load_slot(uint number) {
   uint index = VIEW.first_texture.z + number - 1u;
   if (FETCHES_TEXELS == 0u) return slots[index];
@@ -27,7 +27,7 @@ uint flags_of(TextureSlotRecord slot) { return floatBitsToUint(slot.to_u.w); }
 uint wrap_of(TextureSlotRecord slot, uint shift) { return (flags_of(slot) >> shift) & TEXTURE_WRAP_MASK; }
 bool has_flag(TextureSlotRecord slot, uint flag) { return (flags_of(slot) & flag) != 0u; }
 
-// Returns log2 of a positive number with an error of at most 1e-3, a thousandth of a level.
+// Returns log2 of a positive number with an error of at most 1e-3, which is a thousandth of a level.
 float log2_about(float x) {
   uint bits = floatBitsToUint(x);
   precise float m = uintBitsToFloat((bits & 0x007FFFFFu) | 0x3F800000u);
@@ -47,7 +47,7 @@ vec3 decode_srgb(vec3 code) {
               code.z <= 0.04045 ? line.z : curve.z);
 }
 
-// Returns the coordinate wrapped to 0...1.
+// Returns the coordinate, wrapped to 0...1.
 float wrap(float x, uint mode) {
   precise float repeated = x - floor(x);
   precise float twice = x - 2.0 * floor(0.5 * x);
@@ -55,7 +55,7 @@ float wrap(float x, uint mode) {
   return mode == WRAP_REPEAT ? repeated : (mode == WRAP_MIRRORED ? mirrored : clamp(x, 0.0, 1.0));
 }
 
-// Returns the texel index for one that lies at most one beyond the edge.
+// Returns the index of a texel inside the image for an index that is at most one beyond the edge.
 uint wrap_texel(int i, uint count, uint mode) {
   int last = int(count) - 1;
   int other_side = i < 0 ? last : (i > last ? 0 : i);
@@ -76,8 +76,8 @@ vec4 load_texel(TextureSlotRecord slot, Level level, ivec2 place) {
   return numbers;
 }
 
-// Returns the bilinear interpolation of the four texels around `uv`. Without `is_linear` the texel that contains `uv`
-// gets all of the weight.
+// Returns the bilinear interpolation of the four texels around `uv`. Without `is_linear` it returns the texel that
+// contains `uv`.
 vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) {
   Level level = Level(slot.image.x + load_image_word(slot.image.x + number), max(slot.image.yz >> number, uvec2(1u)));
   vec2 wrapped = vec2(wrap(uv.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT)), wrap(uv.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT)));
@@ -95,10 +95,10 @@ vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) 
   return result;
 }
 
-// The texture coordinates of a surface point for lookups.
+// The texture coordinates of a surface point, for looking up textures.
 struct TexturePlace {
-  vec4 uvs;           // of both sets
-  vec2 log_coverage;  // of each: log2 of the area of coordinates that a pixel covers
+  vec4 uvs;           // coordinates of both sets
+  vec2 log_coverage;  // for each set, log2 of the area of coordinates that a pixel covers
 };
 
 // Both sets of texture coordinates at a triangle's corners.
@@ -113,7 +113,8 @@ CornerUvs load_corner_uvs(uvec3 corners) {
                    load_vertex4(VIEW.first_texture.x + corners.z));
 }
 
-// Returns the area in texture coordinates divided by that of the triangle, for coordinates at its corners.
+// Returns the area of the triangle in texture coordinates, divided by its area in space. The arguments are the
+// coordinates at its corners.
 float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
   precise vec2 ab = b - a;
   precise vec2 ac = c - a;
@@ -122,14 +123,15 @@ float coordinates_per_area(vec2 a, vec2 b, vec2 c, float area) {
   return ratio;
 }
 
-// Returns the place for a point of a triangle: `facing` is the cosine between its normal and the ray, `cone_width` the
+// Returns the place for a point of a triangle. `facing` is the cosine between its normal and the ray, `cone_width` the
 // width of the ray's cone.
 TexturePlace texture_place(Primitive p, CornerUvs corners, vec3 weights, float facing, float cone_width) {
   precise vec4 uvs = weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
   precise vec3 e1 = corner1(p) - corner0(p);
   precise vec3 e2 = corner2(p) - corner0(p);
   float area = length3(cross3(e1, e2));
-  // At an angle the cone covers an ellipse; the mean of its axes' logarithms is used.
+  // If the ray hits the surface at an angle, the cone covers an ellipse. The code uses the mean of the logarithms of
+  // its axes.
   precise float footprint = max(cone_width * cone_width, SMALLEST_NORMAL) / max(abs(facing), 1.0 / 64.0);
   precise vec2 coverage = footprint * vec2(coordinates_per_area(corners.a.xy, corners.b.xy, corners.c.xy, area),
                                            coordinates_per_area(corners.a.zw, corners.b.zw, corners.c.zw, area));
@@ -141,12 +143,12 @@ TexturePlace texture_place(Primitive p, CornerUvs corners, vec3 weights, float f
 struct LevelChoice {
   uint first;
   uint end;
-  float part;  // of what the second adds to the first
+  float part;  // weight of the second level
   bool is_linear;
 };
 
-// If levels are interpolated and a pixel has four samples or more, each sample uses one level; their mean is that of
-// both.
+// If levels are interpolated and a pixel has at least four samples, each sample uses only one level. The mean of the
+// samples is then that of both levels.
 LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   precise float scale = abs(slot.to_u.x * slot.to_v.y - slot.to_u.y * slot.to_v.x);
   precise float texels = max(scale * float(slot.image.y) * float(slot.image.z), SMALLEST_NORMAL);
@@ -164,7 +166,7 @@ LevelChoice choose_levels(TextureSlotRecord slot, float log_coverage) {
   return LevelChoice(uint(first), uint(first) + (takes_one || first >= last ? 1u : 2u), part, is_linear);
 }
 
-// A lookup of a slot at a place.
+// The lookup of a slot's texture at a place.
 struct Lookup {
   TextureSlotRecord slot;
   vec2 uv;
@@ -180,13 +182,13 @@ Lookup lookup_of(uint number, TexturePlace place) {
   return Lookup(slot, uv, choose_levels(slot, is_second ? place.log_coverage.y : place.log_coverage.x));
 }
 
-// Returns the mix of the first levels with the one just looked up.
+// Returns the mix of the earlier levels with the level that was just looked up.
 vec4 mix_level(Lookup lookup, uint level, vec4 first, vec4 seen) {
   precise vec4 between = first + lookup.levels.part * (seen - first);
   return level == lookup.levels.first ? seen : between;
 }
 
-// Returns the value of a slot at a place. Its number is not 0.
+// Returns the value of a slot at a place. The number of the slot is not 0.
 vec4 look_up(uint number, TexturePlace place) {
   Lookup lookup = lookup_of(number, place);
   vec4 result = vec4(0.0);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The reflectance of a surface under a thin film (KHR_materials_iridescence, "Thin film reflectance"; Belcour and Barla,
-// "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", SIGGRAPH 2017). Thicknesses and
-// path differences are in nanometres.
+// The reflectance of a surface under a thin film (KHR_materials_iridescence, "Thin film reflectance"; Belcour and
+// Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", SIGGRAPH 2017).
+// Thicknesses and path differences are in nanometres.
 
-const float LEAST_FILM_COSINE = 0.015625;  // films are seen at no smaller angle to the surface
-const float SMOOTH_THICKNESS = 0.03;       // a thinner film is less and less a film
-const float LONGEST_DIFFERENCE = 1e5;      // no interference is seen beyond
+const float LEAST_FILM_COSINE = 0.015625;  // the smallest cosine at which a film is seen
+const float SMOOTH_THICKNESS = 0.03;       // in micrometres; a film thinner than this fades out
+const float LONGEST_DIFFERENCE = 1e5;      // the largest path difference with visible interference
 const float LARGEST_BASE_REFLECTANCE = 0.9999;
 const float LEAST_ROUND_TRIP = 1e-5;
 
@@ -15,7 +15,8 @@ precise float fifth_power(float x) {
   return x2 * x2 * x;
 }
 
-// cos(2 pi x) to 3 u for 0 <= x < 2^22. The reduction to |x| <= 1/4 is exact; the rest is Taylor's series.
+// Returns cos(2 pi x) with an error of at most 3 u for 0 <= x < 2^22. The reduction to |x| <= 1/4 is exact; the rest is
+// Taylor's series.
 float cosine_of_turns(float turns) {
   precise float part = abs(turns - floor(turns + 0.5));
   bool is_far = part > 0.25;
@@ -29,8 +30,8 @@ float cosine_of_turns(float turns) {
   return is_far ? -series : series;
 }
 
-// Returns the colour of waves with this path difference in linear Rec. 709, by the eye's sensitivities x, y and z.
-// These are Gaussians over frequency; x has two. Each wave has its sign.
+// Returns the colour, in linear Rec. 709, of waves with this path difference. It is computed from the eye's
+// sensitivities x, y and z, which are Gaussians over frequency; x has two. Each wave has its sign.
 vec3 color_of_waves(float path_difference, vec3 signs) {
   float difference = min(path_difference, LONGEST_DIFFERENCE);
   precise float square = difference * difference;
@@ -47,7 +48,8 @@ vec3 color_of_waves(float path_difference, vec3 signs) {
   return color;
 }
 
-// Returns the reflectance of film and base at the angle of this cosine; `f0` is the base's at normal incidence in air.
+// Returns the reflectance of film and base at an angle with this cosine. `f0` is the reflectance of the base at normal
+// incidence in air.
 vec3 film_reflectance(vec3 f0, float ior, float thickness, float cosine) {
   precise float t = min(thickness / SMOOTH_THICKNESS, 1.0);
   precise float film_ior = 1.0 + (ior - 1.0) * (t * t * (3.0 - 2.0 * t));
@@ -67,7 +69,8 @@ vec3 film_reflectance(vec3 f0, float ior, float thickness, float cosine) {
   precise vec3 body = t121 * t121 * r23 / (1.0 - round_trip);
   precise vec3 first = (body - t121) * amplitude;
   precise float difference = 2.0 * film_ior * thickness * inside;
-  // A wave's phase shifts by half a wavelength if it hits the film from inside, and if the base is denser.
+  // The phase of a wave shifts by half a wavelength if the wave is reflected inside the film at its surface, and if the
+  // base is denser than the film.
   vec3 signs = vec3(base_ior.x < film_ior ? 1.0 : -1.0, base_ior.y < film_ior ? 1.0 : -1.0,
                     base_ior.z < film_ior ? 1.0 : -1.0);
   precise vec3 sum = r12 + body + 2.0 * first * color_of_waves(difference, signs) +
@@ -75,7 +78,7 @@ vec3 film_reflectance(vec3 f0, float ior, float thickness, float cosine) {
   return clamp(sum, vec3(0.0), vec3(1.0));
 }
 
-// Returns the reflectance at normal incidence for which Schlick's factor gives the film's reflectance at this cosine.
+// Returns the reflectance at normal incidence for which Schlick's formula gives the film's reflectance at this cosine.
 vec3 reflectance_under_film(ThinFilm film, vec3 f0, float f90, float cosine) {
   float seen = clamp(cosine, LEAST_FILM_COSINE, 1.0);
   vec3 reflected = film_reflectance(f0, film.layer.y, film.layer.z, seen);

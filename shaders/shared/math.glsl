@@ -19,10 +19,11 @@ precise float length3(vec3 v) { return sqrt(dot3(v, v)); }
 
 float max_abs(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// 2^-e for x in [2^e, 2^(e+1)), so that multiplying by it is exact. For normal x below 2^127.
+// Returns 2^-e for x in [2^e, 2^(e+1)), so that multiplying by it is exact. x must be normal and below 2^127.
 float power_of_two_inverse(float x) { return uintBitsToFloat((254u << 23) - (floatBitsToUint(x) & 0x7F800000u)); }
 
-// v / |v| for any v between overflow and underflow; relative error <= 3 u. A zero vector stays zero.
+// Returns v / |v| for any v for which |v|^2 neither overflows nor underflows, with a relative error <= 3 u. A zero
+// vector stays zero.
 precise vec3 normalize3(vec3 v) {
   float size = max_abs(v);
   if (!(size > 0.0)) return vec3(0.0);
@@ -30,7 +31,8 @@ precise vec3 normalize3(vec3 v) {
   return scaled * (1.0 / length3(scaled));
 }
 
-// 2^z for z < 128, accurate to a few u; 0 instead of subnormal results. By a Taylor series on |f| <= 0.5.
+// Returns 2^z for z < 128, accurate to a few u; 0 in place of subnormal results. It uses a Taylor series for |f| <=
+// 0.5.
 precise float power_of_two(float z) {
   if (!(z > -126.0)) return 0.0;
   precise float n = floor(z + 0.5);
@@ -42,9 +44,9 @@ precise float power_of_two(float z) {
   return e * uintBitsToFloat(uint(int(n) + 127) << 23);
 }
 
-// x^y for x in (0, 1] and y >= 0. GLSL's pow is exp2(y * log2(x)) with a log2 that may err by 2^-21 absolute, which is
-// 0.3 % of a highlight with exponent 10^4; here the relative error of the logarithm is a few u, so that the result is
-// accurate to a few u * |y log2 x|. log2 by the series of atanh, |s| <= 0.172.
+// Returns x^y for x in (0, 1] and y >= 0. GLSL's pow is exp2(y * log2(x)), where log2 may have an absolute error of
+// 2^-21, which is 0.3 % of a highlight with exponent 10^4. Here the relative error of the logarithm is a few u, so the
+// result is accurate to a few u * |y log2 x|. The logarithm is computed with the series of atanh, |s| <= 0.172.
 precise float power(float x, float y) {
   uint bits = floatBitsToUint(x);
   int exponent = int(bits >> 23) - 127;
@@ -67,8 +69,8 @@ float times_sign_of(float x, float other) {
 }
 
 // greater() and lesser() return the second number if either is a NaN. NaNs result from 0 * infinity in scenes beyond
-// 10^18; the interval is then bounded by tmin or the hit so far. GLSL's max and min take three instructions each on
-// lavapipe, these take one.
+// 10^18. The interval is then bounded by tmin or by the hit so far. GLSL's max and min take three instructions each on
+// lavapipe; these functions take one.
 vec4 greater(vec4 a, vec4 b) {
   precise vec4 result =
       vec4(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z, a.w > b.w ? a.w : b.w);

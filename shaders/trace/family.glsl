@@ -9,9 +9,9 @@ const uint FAMILY_NODE_SHIFT = 8u;
 const uint FAMILY_OTHERS_SHIFT = 6u;
 const uint FAMILY_THIRD_SHIFT = 4u;
 const uint FAMILY_SECOND_SHIFT = 2u;  // the first place is in the lowest bits
-const uint FAMILY_PLACE_MASK = 3u;    // of a place, and of how many others there are
+const uint FAMILY_PLACE_MASK = 3u;    // mask of a place, and of the number of other children
 const uint FAMILY_NODE_MASK = MAX_NODES << FAMILY_NODE_SHIFT;
-const uint FAMILY_CHILDREN_MASK = (1u << NODE_WIDTH) - 1u;  // where ALL_ASK_FOR_ANY
+const uint FAMILY_CHILDREN_MASK = (1u << NODE_WIDTH) - 1u;  // mask of the children if ALL_ASK_FOR_ANY
 const uint NO_FAMILY = 0xFFFFFFFFu;
 
 uint node_of_family(uint family) { return family >> FAMILY_NODE_SHIFT; }
@@ -31,7 +31,7 @@ uint next_of_family(uint family, uvec4 children) {
   return component_of(children, family & FAMILY_PLACE_MASK);
 }
 
-// Returns a family without its next child; NO_FAMILY after the last.
+// Returns a family without its next child. After the last child it returns NO_FAMILY.
 uint without_next(uint family) {
   if (ALL_ASK_FOR_ANY != 0u) {
     uint left = family & (family - 1u);
@@ -58,8 +58,9 @@ uvec4 key_where(bvec4 condition, uvec4 keys) {
                condition.w ? keys.w : NOT_MET);
 }
 
-// The children that are hit: for each the bits of the first ray's entry distance, or NOT_MET. The bits sort like the
-// distances, because none is negative. With ALL_ASK_FOR_ANY, x has a bit for each child.
+// The children that are hit. For each child there are the bits of the first ray's entry distance, or NOT_MET. The bits
+// have the same order as the distances, because no distance is negative. With ALL_ASK_FOR_ANY, x has a bit for each
+// child.
 const uvec4 NONE_MET = uvec4(ALL_ASK_FOR_ANY != 0u ? 0u : NOT_MET);
 
 uvec4 add_met(uvec4 met, bvec4 are_met, vec4 entries) {
@@ -69,11 +70,11 @@ uvec4 add_met(uvec4 met, bvec4 are_met, vec4 entries) {
   if (are_met.z) mask |= 4u;
   if (are_met.w) mask |= 8u;
   uvec4 first = min(met, key_where(are_met, floatBitsToUint(entries)));
-  // No branch, because glslang 12 fails on some.
+  // The code has no branch, because glslang 12 fails on some branches.
   return ALL_ASK_FOR_ANY != 0u ? uvec4(mask) : first;
 }
 
-// Returns the family of those of the first `count` children that are hit.
+// Returns the family of the children that are hit among the first `count`.
 uint family_of(uint node, uint count, uvec4 met) {
   if (ALL_ASK_FOR_ANY != 0u) {
     uint mask = met.x & ((1u << count) - 1u);

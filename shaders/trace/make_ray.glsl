@@ -2,19 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Creates a ray from an origin and a direction, with all data that traversal needs.
 
-// The tolerance of the box test, as a multiple of the distance that intersections may span. Every accepted hit lies
-// within 8 u S of its primitive (docs/accuracy.md, BK), and the rounding of the box test moves a plane by 6 u S.
-// Divisions with Vulkan's accuracy of 2.5 ulp and not 0.5 add 4 u S to each, and 8 u S to the t of the hit so far that
-// limits boxes. A box that is grown by 32 u S therefore never hides a hit, whatever the tree.
+// The tolerance of the box test, relative to the length over which intersections are computed. Every accepted hit lies
+// within 8 u S of its primitive (docs/accuracy.md, BK), and the rounding of the box test moves a plane by 6 u S. Vulkan
+// allows divisions an error of 2.5 ulp in place of 0.5 ulp, which adds 4 u S to each, and 8 u S to the t of the hit so
+// far that limits boxes. A box that is enlarged by 32 u S therefore never hides a hit in any tree.
 const float BOX_PADDING = 32.0 * UNIT_ROUNDOFF;
-// Adding the padding to the origin rounds; this is twice the largest rounding error. Far from the world's origin that
-// error could consume the whole padding, which lost 5 % of rays at edges and corners at 1e3 and 1e5 (hard case 28).
+// The tolerance for the rounding of the padded origin; it is twice the largest rounding error. Far from the world's
+// origin this error could be as large as the whole padding, and 5 % of the rays at edges and corners at 1e3 and 1e5
+// were lost (hard case 28).
 const float ORIGIN_PADDING = 2.0 * UNIT_ROUNDOFF;
-// The smallest component of a direction in the box test. With it nothing overflows in scenes of 10^15, and a ray along
-// a box's side still comes no closer to its plane than the padding.
+// The smallest component of a direction in the box test. With this limit nothing overflows in scenes of 10^15, and a
+// ray along a box's side still comes no closer to its plane than the padding.
 const float SMALLEST_SLOPE = 8.67361737988403547e-19;  // 2^-60
 
-// Returns whether all components are finite. It tests the bits, because a compiler may assume that there are no NaNs.
+// Returns whether all components are finite. The function tests the bits, because a compiler may assume that there are
+// no NaNs.
 bool is_finite(vec3 v) {
   uvec3 exponents = floatBitsToUint(v) & 0x7F800000u;
   return all(notEqual(exponents, uvec3(0x7F800000u)));
@@ -24,7 +26,7 @@ bool is_nan(float x) { return (floatBitsToUint(x) & 0x7FFFFFFFu) > 0x7F800000u; 
 
 vec3 signs_of(vec3 v) { return vec3(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0, v.z < 0.0 ? -1.0 : 1.0); }
 
-// Sets the two origins of the box test from the origin and the direction.
+// Sets the two origins of the box test from the ray's origin and direction.
 void pad_origin(inout Ray ray) {
   precise float reach = max_abs(ray.origin - VIEW.tree_bounds.xyz) + VIEW.tree_bounds.w;
   precise vec3 padding =
@@ -35,12 +37,13 @@ void pad_origin(inout Ray ray) {
   ray.far_origin = far_origin;
 }
 
-// From 5e5 radii of the tree away the padding is as large as the tree, so that every box would be hit. Mirror or shadow
-// rays from a large floor may start there. Rays from beyond this many radii are therefore moved nearer to the tree.
+// At a distance of 5e5 radii of the tree, the padding is as large as the tree, so a ray would hit every box. Mirror or
+// shadow rays from a large floor may start there. The origin of a ray that starts beyond this number of radii is
+// therefore moved nearer to the tree.
 const float FAR_AWAY = 1024.0;
-// They must also start beyond this many times the tree's own distance from the world's origin. The rounding error of
-// the new origin is relative to that distance, which S does not include: rays that were moved from 1e3 radii hit a tree
-// at 1e5 with an error of 430 u S (hard case 55). From this distance on the error is a quarter of u S.
+// Such a ray must also start beyond this multiple of the tree's own distance from the world's origin. The rounding
+// error of the new origin is relative to that distance, which S does not include: rays that were moved from 1e3 radii
+// hit a tree at 1e5 with an error of 430 u S (hard case 55). From this distance on the error is a quarter of u S.
 const float FAR_FROM_ORIGIN = 8.0;
 
 float distance_to_tree(Ray ray) {
@@ -53,16 +56,18 @@ bool is_far_away(Ray ray) {
   return distance_to_tree(ray) > near;
 }
 
-// Returns the distance, in the ray's t, by which the origin is moved, or 0. It leaves 4 radii and a thousandth of the
-// distance, and has 12 bits, so that its product with half of the direction's bits is exact.
+// Returns the distance, in units of the ray's t, by which the origin is moved; 0 if it is not moved. The new distance
+// is 4 radii plus a thousandth of the old distance. The result has 12 bits, so its product with half of the direction's
+// bits is exact.
 float shift_to_tree(Ray ray) {
   if (!is_far_away(ray)) return 0.0;
   precise float shift = 0.999 * (distance_to_tree(ray) - 4.0 * VIEW.tree_bounds.w) / max_abs(ray.direction);
   return uintBitsToFloat(floatBitsToUint(shift) & 0xFFFFF000u);
 }
 
-// Returns the same ray with the shifted origin; its interval does not change. Close to the tree, where the origin
-// cancels, it deviates from the ray by at most a few u times the remaining distance.
+// Returns the same ray with the shifted origin; its interval does not change. Close to the tree, where the large
+// coordinates of the origin cancel, the new ray deviates from the old one by at most a few u times the remaining
+// distance.
 Ray moved_along(Ray ray, float shift) {
   vec3 upper = uintBitsToFloat(floatBitsToUint(ray.direction) & 0xFFFFF000u);
   precise vec3 origin = (ray.origin + shift * upper) + shift * (ray.direction - upper);
@@ -72,19 +77,19 @@ Ray moved_along(Ray ray, float shift) {
 }
 
 // Returns the t that a crossing of a moved ray must exceed so that t + shift, rounded to nearest even, exceeds tmin.
-// The computation is exact near the tree, where tmin is between half and twice the shift. A negative result counts as
-// 0.
+// The computation is exact near the tree, where tmin lies between half the shift and twice the shift. A negative result
+// counts as 0.
 float shifted_tmin(float tmin, float shift) {
   uint bits = floatBitsToUint(tmin);
   precise float half_step = uintBitsToFloat(bits & 0x7F800000u) * UNIT_ROUNDOFF;
   precise float rounds_to_tmin = (tmin - shift) + half_step;
   if (!(rounds_to_tmin > 0.0)) return 0.0;
-  // A tie is rounded to the even number.
+  // Ties are rounded to the even number.
   return (bits & 1u) == 0u ? rounds_to_tmin : uintBitsToFloat(floatBitsToUint(rounds_to_tmin) - 1u);
 }
 
-// `direction` may have any length from 2^-126 up to below 2^127; `tmin` and `tmax` are in its units. Other directions,
-// a NaN, tmin = +infinity and an origin beyond 10^38 give a ray that misses everything.
+// Makes a ray. `direction` may have any length from 2^-126 up to below 2^127. `tmin` and `tmax` are in units of the
+// direction. Other directions, a NaN, tmin = +infinity and an origin beyond 10^38 give a ray that misses everything.
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
   float size = max_abs(direction);
@@ -93,9 +98,9 @@ Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   float scale = is_valid ? power_of_two_inverse(size) : 1.0;
   ray.origin = is_valid ? origin : vec3(0.0);
   ray.direction = is_valid ? direction * scale : vec3(1.0, 0.0, 0.0);
-  // t * direction is preserved, so t grows by the factor by which the direction shrinks.
+  // The product t * direction does not change: t is multiplied by the factor by which the direction is divided.
   float unscale = power_of_two_inverse(scale);
-  // -0 counts as 0 too, because traversal sorts distances that are not negative by their bits.
+  // -0 counts as 0 too, because traversal compares the bits of distances that are not negative.
   precise float scaled_tmin = (tmin > 0.0 ? tmin : 0.0) * unscale;
   precise float scaled_tmax = tmax * unscale;
   ray.tmin = is_valid ? scaled_tmin : 1.0;

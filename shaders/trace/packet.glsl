@@ -6,31 +6,31 @@
 
 // The rays, set by the entry point. descend_from_nearby temporarily changes their origins.
 Ray packet[PACKET_SIZE];
-// The results: the nearest hit so far. trace_packet resets it, keep_nearest and glance_at_triangle set it.
+// The results of the rays: the nearest hit so far. trace_packet resets it; keep_nearest and glance_at_triangle set it.
 Hit found[PACKET_SIZE];
-// The largest t of a hit; negative for a ray that takes no part. Set by the same functions; descend_by_octants excludes
-// the rays of other octants.
+// The largest t of a hit; negative for a ray that is not traced. The same functions set it, and descend_by_octants
+// excludes the rays of other octants with it.
 float limits[PACKET_SIZE];
-// The distance by which the origin is moved along the ray; t in intersections is smaller by this. Set by
-// descend_from_nearby.
+// The distance by which the origin is moved along the ray. In intersections, t is smaller by this distance.
+// descend_from_nearby sets it.
 float shifts[PACKET_SIZE];
-// Inverse direction of one of the rays that take part; all have its signs. Set by the callers of descend.
+// The inverse direction of one of the traced rays. All traced rays have the same signs. The callers of descend set it.
 vec3 octant;
 
-// What the packet's rays hit and at which level of textures, set by the entry point. Shadow rays hit backs, and use the
-// finest level.
-bool passes_backs = false;  // with FEATURE_ONE_SIDED
-float sight_width = 0.0;    // of a ray's cone where it begins, with FEATURE_HOLES,
-float sight_spread = 0.0;   // and how much it grows at a distance of 1
-// If rays pass through surfaces (PASSES): everything nearer than this t has been passed and no longer counts, and at
-// this t everything whose order is not higher. Set by the entry point.
+// The visibility of surfaces for the packet's rays, set by the entry point. Shadow rays also hit the backs of surfaces,
+// and use the finest level of textures.
+bool passes_backs = false;  // with FEATURE_ONE_SIDED: whether rays ignore backs that are not shown
+float sight_width = 0.0;    // width of a ray's cone at its origin, with FEATURE_HOLES
+float sight_spread = 0.0;   // growth of this width per distance
+// State of rays that pass through surfaces (PASSES). Hits with a smaller t have been passed and do not count. Neither
+// do hits at this t whose order is not higher. The entry point sets it.
 const uint PASSES = FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS);
 float passed_t[PACKET_SIZE];
 uint passed_order[PACKET_SIZE];
 
-// With FEATURE_GLASS: a refracted ray starts slightly before the face that it passes through, so that it hits objects
-// that touch the face (tree.glsl). Up to this t it skips faces of that object that it crosses in the same direction.
-// The object is given by its hash (object_hash_of), with SKIPS_EXIT if the ray leaves it.
+// State with FEATURE_GLASS: a refracted ray starts slightly before the face that it passes through, so that it hits
+// objects that touch the face (tree.glsl). Up to this t it skips faces of the object that it crosses in the same
+// direction. The object is given by its hash (object_hash_of), with SKIPS_EXIT if the ray leaves it.
 const uint SKIPS_EXIT = 0x10000u;
 float skipped_until = -1.0;
 uint skipped_object = 0u;
@@ -38,29 +38,29 @@ bool is_skipped(float t, Primitive p, bool leaves) {
   return t <= skipped_until && (object_hash_of(p) | (leaves ? SKIPS_EXIT : 0u)) == skipped_object;
 }
 
-// Resets the ray to its start.
+// Resets the state of a ray to its start.
 void forget_passed(uint slot) {
   passed_t[slot] = -1.0;
   passed_order[slot] = 0u;
 }
 
-// Continues the ray behind its hit. It is the same ray, so that it hits everything else at the same t as before.
+// Continues the ray behind its hit. It stays the same ray, so it hits everything else at the same t as before.
 void pass(uint slot, float t, uint order) {
   passed_t[slot] = t;
   passed_order[slot] = order;
-  // Other surfaces at the same t have not been passed yet.
+  // Other surfaces at the same t have not been passed yet, so tmin is slightly smaller than t.
   packet[slot].tmin = t > 0.0 ? uintBitsToFloat(floatBitsToUint(t) - 1u) : 0.0;
 }
 
-// Returns whether a triangle is absent where a ray of this direction crosses it: at a hole in its texture, on its back
-// if that is not shown, or, for surfaces that are seen through, at an edge that belongs to a neighbour (cutouts.glsl;
-// the rays of cast.comp see only geometry).
+// Returns whether a triangle is absent for a ray of this direction. It is absent at a hole in its texture, and on its
+// back if the back is not shown. For surfaces that are seen through, it is also absent at an edge that belongs to a
+// neighbour (cutouts.glsl). Rays of cast.comp only see geometry.
 const uint MAY_BE_CUT_OUT =
     FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | PASSES;
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge);
 bool may_have_holes(uint index);
 
-// Counts of the invocation: x = node steps, y = primitive tests. The entry point sets them to zero.
+// Counts of the invocation: x = node steps, y = primitive tests. The entry point sets them to 0.
 uvec2 step_counts;
 
 void count_steps(uint nodes, uint tests) {
@@ -79,14 +79,14 @@ Ray ray_past(uint slot, Primitive p) {
   if (PASSES != 0u && order_of(p) <= passed_order[slot] && passed_t[slot] > 0.0) {
     ray.tmin = shifts[slot] > 0.0 ? shifted_tmin(passed_t[slot], shifts[slot]) : passed_t[slot];
   }
-  // The entry is skipped too.
+  // The solid's entry is skipped too.
   if (has(FEATURE_GLASS) && skipped_until > 0.0 && object_hash_of(p) == skipped_object) {
     ray.tmin = max(ray.tmin, shifts[slot] > 0.0 ? shifted_tmin(skipped_until, shifts[slot]) : skipped_until);
   }
   return ray;
 }
 
-// Returns a solid's crossing unless it is skipped. Nearer crossings of ray_past are exits.
+// Returns a solid's crossing, or NO_CROSSING if it is skipped. Nearer crossings of ray_past are exits.
 Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
   if (!has(FEATURE_GLASS)) return crossing;
   precise float t = crossing.t + shifts[slot];
@@ -94,7 +94,8 @@ Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
   return crossing;
 }
 
-// Keeps the crossing if it is nearer, or equally near with a lower number, so that the hit does not depend on the tree.
+// Stores the crossing if it is nearer than the hit so far, or equally near with a lower number. The hit therefore does
+// not depend on the tree.
 void keep_nearest(uint slot, Crossing crossing, uint primitive, uint order, bool asks_for_any) {
   precise float t = crossing.t + shifts[slot];
   if (PASSES != 0u) {

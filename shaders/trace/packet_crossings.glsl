@@ -6,9 +6,9 @@
 
 layout(constant_id = CONSTANT_LISTS_CROSSINGS) const uint LISTS_CROSSINGS = 0u;
 
-// Set by the entry point, which also resets the counts. For each ray: its number of crossings so far; the first record
-// and the size of its list; the factor from t here to t in units of the given direction; and the interval of such t in
-// which crossings count.
+// The following variables are set by the entry point, which also resets the counts. For each ray they are: the number
+// of crossings so far; the first record and the size of its list; the factor from t here to t in units of the given
+// direction; and the interval of this t in which crossings count.
 uint crossing_counts[PACKET_SIZE];
 uint first_places[PACKET_SIZE];
 uint rooms[PACKET_SIZE];
@@ -16,7 +16,8 @@ float units[PACKET_SIZE];
 float given_tmins[PACKET_SIZE];
 float given_tmaxs[PACKET_SIZE];
 
-// If the units are within this factor of the given ones, nothing overflows or underflows where a glance is certain.
+// If the units differ from the given ones by at most this factor, nothing overflows or underflows where a glance is
+// certain.
 const float PLAIN_UNITS = 1048576.0;  // 2^20
 
 void take_crossing(uint slot, Crossing crossing, uint primitive, uint order, uint leaves) {
@@ -48,8 +49,8 @@ void take_crossing(uint slot, Crossing crossing, uint primitive, uint order, uin
   }
 #include "promin/kinds/primitives.def"
 
-// Returns the rounding error of a product of numbers up to 2; exact if it is at least 2^-100 (Dekker, "A Floating-Point
-// Technique for Extending the Available Precision", 1971).
+// Returns the rounding error of a product of numbers up to 2. The result is exact if it is at least 2^-100 (Dekker, "A
+// Floating-Point Technique for Extending the Available Precision", 1971).
 float product_error(float a, float b, float product) {
   precise float split_a = 4097.0 * a;
   precise float a_high = split_a - (split_a - a);
@@ -63,8 +64,8 @@ float product_error(float a, float b, float product) {
 
 // Returns whether the area over an edge, to.x * from.y - to.y * from.x, is positive. The result is exact: if the two
 // products round to the same number, their rounding errors decide, and if the ray hits the edge, leads_up decides. All
-// triangles therefore see the corners of the mesh at the same positions in the plane, and a ray that moves across an
-// edge leaves one of its triangles as it enters the other. Without exactness there could be one crossing too many at a
+// triangles therefore agree about the positions of the mesh's corners in the plane. If a ray moves across an edge, it
+// leaves one triangle exactly when it enters the other. Without exactness there could be one crossing too many at a
 // corner between slivers.
 bool has_positive_area(vec2 from, vec2 to) {
   // Scaling by a power of two is exact and keeps the sign.
@@ -81,13 +82,13 @@ bool has_positive_area(vec2 from, vec2 to) {
 
 bool is_crossed(ShearedTriangle sheared) {
   bool side = has_positive_area(sheared.b, sheared.c);
-  // If all three corners coincide, each lies on the same side of the others.
+  // If all three corners coincide in the plane, each lies on the same side of the others.
   bool is_point = sheared.a == sheared.b && sheared.b == sheared.c;
   return has_positive_area(sheared.c, sheared.a) == side && has_positive_area(sheared.a, sheared.b) == side && !is_point;
 }
 
-// Returns the triangle for cross_triangle. The areas of a triangle that is seen edge-on may be too small for weights.
-// Any weights then suffice, because the point is moved back to the ray along the longest side.
+// Returns the triangle for cross_triangle. If the triangle is seen edge-on, its areas may be too small for weights. Any
+// weights are then good enough, because the point is moved back to the ray along the longest side.
 ShearedTriangle with_weights(ShearedTriangle sheared) {
   bool has_area = abs(sheared.determinant) >= SMALLEST_NORMAL;
   sheared.areas = has_area ? sheared.areas : vec3(1.0);
@@ -96,8 +97,8 @@ ShearedTriangle with_weights(ShearedTriangle sheared) {
   return sheared;
 }
 
-// Few of a packet's rays hit a triangle whose box they hit. The first test is whether each may hit it; then the hits
-// are computed one after the other.
+// Only few rays of a packet hit a triangle whose box they hit. The code first tests whether each ray may hit it, and
+// then computes the hits one after the other.
 void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
   ShearedTriangle sheared[PACKET_SIZE];
   bool may_be_crossed[PACKET_SIZE];
@@ -133,8 +134,8 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
   } while (may_another_be_crossed);
 }
 
-// Counts the crossings if a glance is certain for each ray. Returns whether it is not, so that the triangle needs a
-// second look by intersect_packet_with_triangle. A glance cannot write a list.
+// Counts the crossings if a glance is certain for every ray. Returns true if it is not certain; the triangle then needs
+// a second look by intersect_packet_with_triangle. A glance cannot write a list.
 bool glance_at_triangle(Primitive p, uint index) {
   bool needs_second_look = false;
   bool is_sure[PACKET_SIZE];

@@ -3,8 +3,8 @@
 // Intersects a packet with triangles. Kernels for comparisons provide a file of this name with these two functions
 // (tools/plain).
 
-// Few of a packet's rays hit a triangle whose box they hit. The first test is whether each may hit it; then the hits
-// are computed one after the other.
+// Only few rays of a packet hit a triangle whose box they hit. The code first tests whether each ray may hit it, and
+// then computes the hits one after the other.
 void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
   ShearedTriangle sheared[PACKET_SIZE];
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
@@ -34,7 +34,7 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
     if (MAY_BE_CUT_OUT != 0u) {
       precise float t = crossing.t + shift;
       bool may_be_kept = crossing.t > tmin && t <= limit;
-      // Relative to the ray's own origin.
+      // This t is relative to the ray's own origin.
       Crossing whole = Crossing(t, crossing.u, crossing.v, crossing.part);
       if (has(FEATURE_GLASS) && is_skipped(t, p, dot3(triangle_normal(p), direction) > 0.0)) crossing = NO_CROSSING;
       if (may_be_kept && is_cut_out(direction, p, index, whole, is_on_open_edge(of_next))) crossing = NO_CROSSING;
@@ -50,15 +50,15 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
   } while (may_another_be_met);
 }
 
-// Does the same with ALL_ASK_FOR_ANY, where a glance is certain for most rays. Returns whether it is not for some ray,
-// so that the triangle needs a second look by intersect_packet_with_triangle.
+// With ALL_ASK_FOR_ANY, tests the triangle by a glance, which is certain for most rays. Returns true if it is not
+// certain for a ray; the triangle then needs a second look by intersect_packet_with_triangle.
 bool glance_at_triangle(Primitive p, uint index) {
   bool needs_second_look = false;
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
     ShearedTriangle sheared = shear_triangle(packet[slot], p);
     Glance glance = glance_at(sheared, packet[slot].shear.z, packet[slot].tmin, limits[slot]);
     bool may_be_met = sheared.may_be_met && limits[slot] >= 0.0;
-    // The limit of a moved ray is not known to the last bit.
+    // The limit of a ray with a moved origin is not exact, so its glance is not certain.
     bool is_met = may_be_met && glance.is_met && shifts[slot] == 0.0;
     if (has(FEATURE_HOLES) && is_met && may_have_holes(index)) is_met = false;
     needs_second_look = needs_second_look || (may_be_met && !is_met && !glance.is_missed);

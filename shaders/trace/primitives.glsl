@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The primitives that promin/kinds/primitives.def lists, each with its file in primitives/.
 
-// A hit point, recomputed on its primitive.
+// A hit point, computed again from its primitive.
 struct SurfacePoint {
   vec3 position;
-  vec3 normal;  // geometric, unit: outward, or as wound
-  float lift;   // how far along the normal a secondary ray must start so that rounding cannot bring it back
+  vec3 normal;  // geometric unit normal: outward on solids, by the winding on triangles
+  float lift;   // length along the normal at which a secondary ray starts, so that rounding cannot put it on the other
+                // side
 };
 
 #include "trace/primitives/triangle.glsl"
@@ -24,6 +25,6 @@ SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
 #define PROMIN_TREE_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (has(FEATURE_##FEATURE) && (TREE_KIND_COUNT == 1u || kind_of(p) == NUMBER)) return PREFIX##_surface(ray, p, hit);
 #include "promin/kinds/primitives.def"
-  // The pipeline was specialised without this kind, so nothing of it can have been hit.
+  // The pipeline was compiled without this kind, so such a primitive cannot be hit.
   return SurfacePoint(vec3(0.0), vec3(0.0), 0.0);
 }

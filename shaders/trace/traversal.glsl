@@ -9,15 +9,17 @@
 // the branch, older versions of lavapipe overwrite variables of lanes that have left with results of later turns, whose
 // loads return 0 for them; variables changed inside a branch keep their values.
 
-// Whether the solids of a leaf wait until no lane can continue without them. If all primitives are solids, none waits.
+// True if the solids of a leaf wait until no lane can continue without them. If all primitives are solids, no solid
+// waits.
 const uint SOLIDS_WAIT = WAITS_WITH_SOLIDS * FEATURE_BIT(FEATURE_TRIANGLES) * uint(TREE_KIND_COUNT > 1u);
 
-// The remainder of the current leaf. Set by enter_leaf and by the functions that intersect its primitives.
+// The primitives of the current leaf that are left to test. enter_leaf and the functions that intersect primitives set
+// it.
 struct Leaf {
   uint next;
   uint end;
-  bool needs_second_look;  // the triangle just before `next`; where ALL_ASK_FOR_ANY
-  bool has_solids_next;    // `next` is one, and all behind it; where SOLIDS_WAIT
+  bool needs_second_look;  // whether the triangle just before `next` needs a second look; with ALL_ASK_FOR_ANY
+  bool has_solids_next;    // whether `next` and all primitives behind it are solids; with SOLIDS_WAIT
 };
 Leaf leaf;
 
@@ -27,20 +29,20 @@ bool waits() {
   return (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) || (SOLIDS_WAIT != 0u && leaf.has_solids_next);
 }
 
-// The position of the packet in the tree. Set by take_child and enter_family.
+// The position of the packet in the tree. take_child and enter_family set it.
 struct Descent {
-  uint family;  // of the node at hand
+  uint family;  // family of the current node
   uint stack_top;
 };
 Descent descent;
-uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one that is not kept
+uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one entry that is not kept
 
-// Special values in place of a child, with CHILD_IS_LEAF.
+// Special values in place of a child, with CHILD_IS_LEAF set.
 const uint DONE = 0xFFFFFFFFu;
-const uint IN_LEAF = 0xFFFFFFFEu;  // the one that was entered
+const uint IN_LEAF = 0xFFFFFFFEu;  // the lane is in the leaf that it has entered
 
-// Returns the next remaining child, or DONE. Without `takes` nothing changes. It has no branches, because CPU drivers
-// execute them for all lanes.
+// Returns the next remaining child, or DONE. Without `takes` nothing changes. The function has no branches, because CPU
+// drivers execute branches for all lanes.
 uint take_child(bool takes) {
   bool has_child = takes && descent.family != NO_FAMILY;
   uint node = has_child ? node_of_family(descent.family) : 0u;
@@ -53,8 +55,8 @@ uint take_child(bool takes) {
   return has_child ? child : DONE;
 }
 
-// The old family is always stored, even if it is not kept: LLVM turns a conditional store into a branch for each lane,
-// which processors cannot predict.
+// Stores the old family and enters a new one. The old family is always stored, even if it is not kept: LLVM makes a
+// conditional store a branch for each lane, which processors cannot predict.
 void enter_family(uint met) {
   bool enters = met != NO_FAMILY;
   stack[descent.stack_top] = descent.family;
@@ -62,7 +64,7 @@ void enter_family(uint met) {
   descent.family = enters ? met : descent.family;
 }
 
-// Makes a step from a node to the next child. Lanes that are not at a node take part without moving.
+// Takes a step from a node to the next child. Lanes that are not at a node also execute it, but do not move.
 uint step_together(uint current) {
   bool steps = is_inner(current);
   count_steps(steps ? 1u : 0u, 0u);
@@ -78,7 +80,7 @@ void enter_leaf(uint child) {
   count_steps(0u, leaf.end - leaf.next);
 }
 
-// Returns whether the next primitive has this kind. If the tree has no other kind, no fetch is needed.
+// Returns whether the next primitive has this kind. If the tree contains only this kind, nothing is fetched.
 bool is_next_in_leaf(uint kind) {
   return leaf.next < leaf.end && (TREE_KIND_COUNT == 1u || load_primitive_kind(leaf.next) == kind);
 }
@@ -121,8 +123,8 @@ void intersect_solids(bool asks_for_any) {
 #include "promin/kinds/primitives.def"
 }
 
-// Intersects the remainder of a leaf up to primitives that wait: a triangle that needs a second look, until no lane has
-// another triangle to glance at, and solids.
+// Intersects the remaining primitives of a leaf, up to primitives that wait. A triangle that needs a second look waits
+// until no lane has another triangle to glance at. Solids may wait too.
 void intersect_leaf(bool asks_for_any) {
   if (has(FEATURE_TRIANGLES)) intersect_triangles(asks_for_any);
   if (leaf.needs_second_look) return;
@@ -133,7 +135,7 @@ void intersect_leaf(bool asks_for_any) {
   }
 }
 
-// Intersects the unbounded primitives, which lie behind those of the tree.
+// Intersects the unbounded primitives, which follow the primitives of the tree.
 void intersect_unbounded(bool asks_for_any) {
   uint index = first_unbounded();
   do {
@@ -159,7 +161,7 @@ uint step_down(uint current) {
   return current;
 }
 
-// Moves to the next leaf and intersects it; with STEPS_TOGETHER, lanes that have not reached a leaf skip it. Returns
+// Moves to the next leaf and intersects it. With STEPS_TOGETHER, lanes that have not reached a leaf skip it. Returns
 // the next child, IN_LEAF if the lane waits, or DONE.
 uint go_through_leaf(uint current, bool asks_for_any) {
   if (STEPS_TOGETHER == 0u) {
@@ -186,7 +188,7 @@ void end_waiting(bool asks_for_any) {
   }
 }
 
-// Traces the rays of the packet that take part, all in one octant, through the tree.
+// Traces the active rays of the packet through the tree. All of them are in one octant.
 void descend(bool asks_for_any) {
   descent = Descent(NO_FAMILY, 0u);
   leaf.needs_second_look = false;
@@ -206,7 +208,7 @@ void descend(bool asks_for_any) {
   } while (has_waited);
 }
 
-// Traces one octant after the other: that of the first ray, then that of the first remaining ray.
+// Traces one octant after the other: first the octant of the first ray, then the octant of the first remaining ray.
 void descend_by_octants(bool asks_for_any) {
   float waiting[PACKET_SIZE];
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) waiting[slot] = limits[slot];
@@ -237,7 +239,7 @@ void descend_as_they_are(bool asks_for_any) {
   }
 }
 
-// Traces rays from far away with origins moved near the tree.
+// Traces rays that start far away, with origins moved near the tree.
 void descend_from_nearby(bool asks_for_any) {
   vec3 origins[PACKET_SIZE];
   float tmins[PACKET_SIZE];
@@ -247,7 +249,7 @@ void descend_from_nearby(bool asks_for_any) {
   }
   bool is_any_far = false;
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) is_any_far = is_any_far || is_far_away(packet[slot]);
-  // Each step leaves a thousandth of the distance.
+  // After each step, a thousandth of the distance remains.
   for (uint i = 0u; i < 4u && is_any_far; ++i) {
     is_any_far = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
@@ -268,8 +270,8 @@ void descend_from_nearby(bool asks_for_any) {
   }
 }
 
-// Fills `found` for the rays in `packet`: with the nearest hits, or with `asks_for_any` some hits. On a miss
-// `primitive` is NO_PRIMITIVE. With ALL_ASK_FOR_ANY only that and `order` are set.
+// Finds hits for the rays in `packet` and stores them in `found`: the nearest hits, or any hits with `asks_for_any`. On
+// a miss `primitive` is NO_PRIMITIVE. With ALL_ASK_FOR_ANY only `primitive` and `order` are set.
 void trace_packet(bool asks_for_any) {
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
     shifts[slot] = 0.0;

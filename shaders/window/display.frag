@@ -4,14 +4,14 @@
 // window has the same size, each pixel shows its own.
 #version 450
 
-// 1 for surfaces that take linear values and encode them themselves.
+// 1 for surfaces that receive linear values and encode them themselves.
 layout(constant_id = 0) const uint DECODES = 0u;
 
 layout(std430, set = 0, binding = 0) readonly buffer Encoded { uint encoded[]; };
 
 layout(push_constant) uniform Display {
-  uvec4 size;  // x, y = the film's in pixels
-  vec4 scale;  // x, y = pixels of the film for one of the window
+  uvec4 size;  // x, y = size of the film in pixels
+  vec4 scale;  // x, y = pixels of the film per pixel of the window
 } display;
 
 layout(location = 0) out vec4 color;

@@ -8,13 +8,13 @@
 
 layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 
-// The transform to the display: TONE_MAPPING_*.
+// The display transform: TONE_MAPPING_*.
 layout(constant_id = 0) const uint TONE_MAPPING = 0u;
 layout(constant_id = 2) const uint DITHERS = 0u;
-// Whether the film has FEATURE_UNLIT_SHARE.
+// True if the film has FEATURE_UNLIT_SHARE.
 layout(constant_id = 3) const uint HAS_UNLIT = 0u;
 
-// The buffer is that of film.glsl. Its head is that of the picture's last dispatch.
+// This is the buffer of film.glsl. Its head was written by the picture's last dispatch.
 layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
   FILM_HEAD(dispatch, film_stream, ray_counts, pass_counts)
   uvec4 pixels[];
@@ -24,7 +24,7 @@ layout(std430, set = 0, binding = BINDING_FILM) readonly buffer Film {
 #include "window/tone_mapping.glsl"
 #include "window/dither.glsl"
 layout(std430, set = 0, binding = 0) writeonly buffer Encoded { uint encoded[]; };
-// The factor of the exposure, which the window can change without another pipeline.
+// The factor of the exposure. The window can change it without another pipeline.
 layout(std430, set = 0, binding = 1) readonly buffer Exposure { float exposure_factor; };
 
 vec3 encode_srgb(vec3 linear) {
@@ -32,7 +32,8 @@ vec3 encode_srgb(vec3 linear) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }
 
-// Returns the displayed light of a pixel. `unlit` is the light of its unlit surfaces, which cover the part w.
+// Returns the displayed light of a pixel. `unlit` is the light of its unlit surfaces; w is the fraction of the pixel
+// that they cover.
 vec3 shown_light(vec3 radiance, vec4 unlit) {
   float exposure = exposure_factor;
   float lit = max(1.0 - unlit.w, 0.0);

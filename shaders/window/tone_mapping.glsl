@@ -6,11 +6,11 @@
 #define PROMIN_TONE_MAPPING(KIND, ENUMERATOR, NUMBER, NAME) const uint TONE_MAPPING_##KIND = NUMBER;
 #include "promin/kinds/tone_mappings.def"
 
-// Larger values are clamped to this: beyond it the curves are flat, and products cannot overflow.
+// Larger values are clamped to this, because the curves are flat beyond it and products could overflow.
 const float MOST_RADIANCE = 1e9;
 
-// Khronos PBR Neutral (https://github.com/KhronosGroup/ToneMapping): base colours lose the 0.04 that a surface
-// additionally reflects, and values brighter than 0.8 are compressed and desaturated.
+// Maps a colour with Khronos PBR Neutral (https://github.com/KhronosGroup/ToneMapping). Base colours are reduced by the
+// 0.04 that a surface additionally reflects. Values brighter than 0.8 are compressed and desaturated.
 vec3 map_neutral(vec3 c) {
   float least = min(c.x, min(c.y, c.z));
   c -= least < 0.08 ? least - 6.25 * least * least : 0.04;
@@ -21,18 +21,18 @@ vec3 map_neutral(vec3 c) {
   return c * (saturation * mapped / peak) + mapped * (1.0 - saturation);
 }
 
-// Narkowicz, "ACES Filmic Tone Mapping Curve".
+// Maps a colour with Narkowicz, "ACES Filmic Tone Mapping Curve".
 vec3 map_aces(vec3 c) { return c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14); }
 
 float luminance_of(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
-// Reinhard et al. 2002, equation 4, with a luminance of 4 shown as white.
+// Maps a colour with equation 4 of Reinhard et al. 2002. A luminance of 4 is displayed as white.
 vec3 map_reinhard(vec3 c) {
   float luminance = luminance_of(c);
   return c * ((1.0 + luminance / 16.0) / (1.0 + luminance));
 }
 
-// Sobotka's AgX in Wrensch's approximation ("Minimal AgX Implementation", 2023).
+// Maps a colour with Sobotka's AgX in Wrensch's approximation ("Minimal AgX Implementation", 2023).
 vec3 map_agx(vec3 c) {
   const mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051,
                           0.0784335999999992, 0.878468636469772, 0.0784336,

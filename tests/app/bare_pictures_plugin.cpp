@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// A plugin of the right interface that has lost its functions.
+// This plugin has the right interface number but none of the functions.
 #include "image/plugin/pictures.h"
 
 uint32_t promin_pictures_interface() {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// promin-bvh, and promin's option --bvh, as a user runs them.
+// These tests run promin-bvh, and promin with --bvh, as a user does.
 
 #include <chrono>
 #include <csignal>
@@ -42,7 +42,7 @@ class BvhCliTest : public CliTest {
     ASSERT_THAT(result.out + result.err, IsEmpty());
   }
 
-  /// A scene of triangles in disorder.
+  /// Writes a scene of triangles in random order.
   void write_triangles(const std::string& file, size_t count) const {
     std::mt19937 random(1);
     const auto uniform = [&] { return std::to_string(static_cast<double>(random()) * 0x1p-32); };
@@ -54,7 +54,7 @@ class BvhCliTest : public CliTest {
     write(file, text);
   }
 
-  /// Puts a byte into a file, with the checksum that it asks for then.
+  /// Puts a byte into a file, and updates the file's checksum.
   void forge(const std::string& file, size_t place, char byte) const {
     std::string bytes = read(file);
     bytes.at(place) = byte;
@@ -183,7 +183,7 @@ TEST_F(BvhCliTest, FilesThatCannotBeTrustedAreRefusedWithThree) {
 
 TEST_F(BvhCliTest, VerifyFindsABoxThatIsTooSmall) {
   build({"square.gltf", "-o", "a.pbvh"});
-  // The lower x of the first child's box, in the node after the header.
+  // This byte belongs to the lower x of the first child's box, in the node after the header.
   forge("a.pbvh", 128 + 16, 9);
   EXPECT_EQ(run_bvh({"info", "a.pbvh"}).exit_code, 0);
   expect_bvh_failure(
@@ -201,14 +201,14 @@ TEST_F(BvhCliTest, AFullDiskLeavesTheOldFile) {
   EXPECT_THAT(files(), ElementsAre("many.obj", "old.pbvh"));
 }
 
-/// At any time: the old file or the new one, whole.
+/// Whenever a program is killed, either the old file or the new one is there, whole.
 TEST_F(BvhCliTest, AKillLeavesAWholeFile) {
   write_triangles("many.obj", 20'000);
   build({"many.obj", "-o", "new.pbvh", "--builder", "median"});
   const std::string new_file = read("new.pbvh");
   build({"square.gltf", "-o", "old.pbvh"});
   const std::string old_file = read("old.pbvh");
-  // As long as a run takes.
+  // The next lines measure how long a run takes.
   const auto start = std::chrono::steady_clock::now();
   build({"many.obj", "-o", "new.pbvh", "--builder", "median"});
   const auto whole = std::chrono::steady_clock::now() - start;

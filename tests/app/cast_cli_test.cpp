@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// `promin cast` as a user runs it.
+// These tests run `promin cast` as a user does.
 
 #include <cmath>
 #include <csignal>
@@ -42,7 +42,7 @@ class CastTest : public CliTest {
   }
 };
 
-/// Of the square at z = 0 seen from z = 4: a hit, a miss beside it, one cut off by tmax.
+/// The rays go to the square at z = 0 from z = 4: a hit, a miss beside it, and one that ends at tmax before it.
 const std::vector<Ray> kRays = {{vec3(0.5F, 0.25F, 4), 0, vec3(0, 0, -2), kInfinity},
                                 {vec3(5, 0, 4), 0, vec3(0, 0, -2), kInfinity},
                                 {vec3(0.5F, 0.25F, 4), 0, vec3(0, 0, -2), 2}};
@@ -58,7 +58,7 @@ TEST_F(CastTest, AnswersRays) {
   EXPECT_EQ(hits[0].object, 0);
   EXPECT_EQ(hits[0].primitive, 0);
   EXPECT_NEAR(hits[0].u, 0.125F, 1e-6F);  // weight of the second corner, (1, -1)
-  EXPECT_NEAR(hits[0].v, 0.625F, 1e-6F);  // of the third, (1, 1)
+  EXPECT_NEAR(hits[0].v, 0.625F, 1e-6F);  // weight of the third corner, (1, 1)
   EXPECT_EQ(hits[0].normal, vec3(0, 0, 1));
   for (const Hit& miss : {hits[1], hits[2]}) {
     EXPECT_EQ(miss.t, kInfinity);
@@ -71,7 +71,7 @@ TEST_F(CastTest, AnswersRays) {
   EXPECT_THAT(files(), ElementsAre("hits.npy", "rays.npy"));
 }
 
-/// More identical faces than the turns after which a driver ends loops.
+/// The scene has more identical faces than the number of turns after which a driver ends loops.
 TEST_F(CastTest, AnyNumberOfIdenticalFacesIsTraced) {
   constexpr uint32_t kCount = 70'000;
   std::string text = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nf 4 5 6\n";
@@ -104,7 +104,7 @@ TEST_F(CastTest, AnyNumberOfIdenticalFacesIsTraced) {
 }
 
 TEST_F(CastTest, EachSphereIsAnObject) {
-  // Spheres of one material are objects of their own.
+  // Each sphere is an object of its own, although they share a material.
   write("three.nff", "f 1 1 1 1 0 0 0 0 s 0 0 0 1 s 5 0 0 1 f 1 0 0 1 0 0 0 0 f 1 0 0 1 0 0 0 0 s 10 0 0 1");
   std::vector<Ray> rays;
   for (const float x : {0.0F, 5.0F, 10.0F, 15.0F}) rays.push_back({vec3(x, 0, 4), 0, vec3(0, 0, -1), kInfinity});
@@ -151,7 +151,7 @@ TEST_F(CastTest, AnyTellsOnlyWhether) {
   }
 }
 
-/// Those of kRays and one along the other diagonal of the square, through both triangles' common edge.
+/// Returns the rays of kRays and one along the other diagonal of the square, through the common edge of both triangles.
 std::vector<Ray> rays_to_count() {
   std::vector<Ray> rays = kRays;
   rays.push_back({vec3(0, 0, 4), 0, vec3(0, 0, -2), kInfinity});
@@ -172,7 +172,8 @@ TEST_F(CastTest, CountTellsHowOften) {
 }
 
 TEST_F(CastTest, AllTellsEveryHit) {
-  // As in ObjectsHaveTheFilesNumbers; a ray through all three spheres, one beside them, one through the last.
+  // The scene is that of ObjectsHaveTheFilesNumbers. One ray goes through all three spheres, one beside them, one
+  // through the last.
   write("three.nff", "f 1 1 1 1 0 0 0 0 s 0 0 0 1 s 5 0 0 1 f 1 0 0 1 0 0 0 0 f 1 0 0 1 0 0 0 0 s 10 0 0 1");
   write_rays("rays.npy", {{vec3(-4, 0, 0), 0, vec3(2, 0, 0), kInfinity},
                           {vec3(-4, 3, 0), 0, vec3(1, 0, 0), kInfinity},
@@ -203,12 +204,12 @@ TEST_F(CastTest, NoRaysHaveNoCountsAndOneOffset) {
   EXPECT_THAT(read_array<uint64_t>("o.npy"), ElementsAre(0));
 }
 
-// Rays beyond a chunk, hits beyond a list, and any number of the driver's threads.
+// There are more rays than a chunk holds, more hits than a list holds, and any number of driver threads.
 TEST_F(CastTest, CountsAndListsOfManyRays) {
   std::vector<Ray> rays((size_t{1} << 20) + 1000, kRays[0]);
   for (size_t i = 0; i < rays.size(); ++i) rays[i].origin.x = i % 3 == 0 ? 2.0F : 0.25F;
   write_rays("rays.npy", rays);
-  // The triangle five times.
+  // The scene has the triangle five times.
   std::string obj = kTriangleObj;
   for (int i = 0; i < 4; ++i) obj += "f 1 2 3\n";
   write("five.obj", obj);
@@ -243,7 +244,7 @@ TEST_F(CastTest, NoRaysAreNoHits) {
 }
 
 TEST_F(CastTest, MoreRaysThanAChunkHolds) {
-  // A row of rays across the square's edge at x = 1; 2^20 a chunk.
+  // A row of rays crosses the square's edge at x = 1; a chunk has 2^20 rays.
   std::vector<Ray> rays((size_t{1} << 20) + 1000, kRays[0]);
   for (size_t i = 0; i < rays.size(); ++i) rays[i].origin.x = i % 3 == 0 ? 2.0F : 0.5F;
   write_rays("rays.npy", rays);
@@ -316,7 +317,7 @@ TEST_F(CastTest, AFullDiskLeavesBothOldFiles) {
   write_rays("rays.npy", std::vector<Ray>(4000, kRays[0]));
   write("hits.npy", "old hits");
   write("o.npy", "old offsets");
-  // There is room for the offsets, and not for the hits.
+  // The disk has room for the offsets, but not for the hits.
   fill_disk(100'000);
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.npy", "--all", "--offsets", "o.npy"}), 1,
                  "the output file cannot be written");

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// `promin cast --job`: answers to rays in pieces, whatever ends the work.
+// These tests run `promin cast --job`, which answers rays in pieces, and end the work in different ways.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class CastJobCliTest : public JobFixture {
     write_rays("rays.npy", make_rays(1000));
   }
 
-  /// Rays at the square and around it, some along its plane.
+  /// Returns rays at the square and around it, some along its plane.
   static std::vector<Ray> make_rays(size_t count) {
     std::vector<Ray> rays(count);
     for (size_t i = 0; i < count; ++i) {
@@ -155,12 +155,12 @@ TEST_F(CastJobCliTest, WrongUseIsRefused) {
   expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "output.ending \".npy\"");
 }
 
-// The piece at hand is not there, and those before it are.
+// The piece being written is not there; the pieces before it are.
 TEST_F(CastJobCliTest, AFullDiskLeavesWholePieces) {
   write_rays("rays.npy", make_rays(20000));
   expect_done(cast({"-o", "whole.npy"}));
   fill_disk(400'000);
-  // Mesa's cache is no concern of this test.
+  // The test does not use Mesa's cache.
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
   expect_failure(cast({"--job", "job", "--pieces", "1", "-o", "cut.npy"}), 1, "the output file cannot be written");
   EXPECT_TRUE(pieces().empty());

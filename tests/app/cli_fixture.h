@@ -23,7 +23,7 @@ namespace promin {
 
 using OptionValues = std::vector<std::string>;
 
-/// No camera, no light.
+/// A triangle without camera or light.
 inline constexpr const char* kTriangleObj = R"(o triangle
 v -1 -1 0
 v 1 -1 0
@@ -31,7 +31,8 @@ v 0 1 0
 f 1 2 3
 )";
 
-/// A unit square at z = 0 of Phong's model, whose kernels compile soonest, a point source and two cameras.
+/// A unit square at z = 0 with a material of Phong's model, whose kernels compile fastest, a point source and two
+/// cameras.
 inline constexpr const char* kSquareGltf =
     R"({
   "asset": {"version": "2.0"},
@@ -55,7 +56,8 @@ inline constexpr const char* kSquareGltf =
   "scene": 0
 })";
 
-/// The square of glTF's default material, under a part of the studio and shown with an exposure and a tone mapping.
+/// Returns the square with glTF's default material, lit by a part of the studio and shown with an exposure and a tone
+/// mapping.
 inline std::string make_default_gltf() {
   nlohmann::json gltf = nlohmann::json::parse(kSquareGltf);
   gltf["extensionsUsed"] = {"KHR_lights_punctual"};
@@ -64,8 +66,8 @@ inline std::string make_default_gltf() {
   return gltf.dump();
 }
 
-/// The square twice, side by side: lit on the left and on the right of an unlit colour, linear RGB of 0.5, 0.25 and
-/// 0.02.
+/// Returns two squares side by side: the left one is lit, the right one has an unlit colour, linear RGB of 0.5, 0.25
+/// and 0.02.
 inline std::string make_mixed_gltf() {
   nlohmann::json gltf = nlohmann::json::parse(make_default_gltf());
   gltf["extensionsUsed"].push_back("KHR_materials_unlit");
@@ -83,7 +85,7 @@ inline std::string make_mixed_gltf() {
 class CliTest : public testing::Test {
  protected:
   void SetUp() override {
-    // Tests of several suites have the same name, and run side by side.
+    // Tests of several suites have the same name and run at the same time, so the folder's name has both.
     options_.folder = std::filesystem::path(testing::TempDir()) / ("promin_cli_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder());
     std::filesystem::create_directories(folder());
@@ -112,7 +114,7 @@ class CliTest : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  /// Names in the folder beside the scenes.
+  /// Returns the names of the files in the folder, without the scenes.
   std::set<std::string> files() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder())) names.insert(entry.path().filename());
@@ -121,7 +123,7 @@ class CliTest : public testing::Test {
     return names;
   }
 
-  /// Simulates a full disk for any file beyond a number of bytes.
+  /// Simulates a full disk: no file can grow beyond this number of bytes.
   void fill_disk(size_t most_bytes) {
     options_.max_file_bytes = most_bytes;
     options_.environment["LD_PRELOAD"] = PROMIN_FULL_DISK_LIBRARY;
@@ -133,7 +135,7 @@ class CliTest : public testing::Test {
     return Process(PROMIN_EXECUTABLE, arguments, options_).wait();
   }
 
-  /// Renders in a small size; fails the test if the program does.
+  /// Renders in a small size, and fails the test if the program fails.
   Image render(OptionValues arguments, const std::string& output) const {
     arguments.insert(arguments.begin(), "render");
     arguments.insert(arguments.end(), {"-o", output, "--quiet"});
@@ -145,9 +147,9 @@ class CliTest : public testing::Test {
   ProcessOptions options_;
 };
 
-/// Expects a failure with one line "PROGRAM: SENTENCE". `part` is a part of it, or a code of
-/// tests/messages/messages.txt and words: then the sentence has the words of a golden one of this code, and those
-/// words.
+/// Expects a failure with one line "PROGRAM: SENTENCE". `part` is a part of the sentence, or a code of
+/// tests/messages/messages.txt and words; the sentence must then have the words of a golden sentence with this code,
+/// and those words.
 inline void expect_failure(const ProcessResult& result, int exit_code, const std::string& part,
                            const std::string& program = "promin") {
   static const GoldenMessages messages = read_golden_messages(PROMIN_SOURCE_DIR "/tests/messages/messages.txt");

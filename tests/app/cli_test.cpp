@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// Runs the program promin itself: its exit codes, its lines and its files are an interface of their own.
+// These tests run the program promin itself: its exit codes, its lines and its files are an interface.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,14 +37,14 @@ using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
 
-/// The square without lights and cameras.
+/// Returns the square without lights and cameras.
 std::string classic_square() {
   json gltf = json::parse(kSquareGltf);
   gltf["scenes"][0]["nodes"] = {0};
   return gltf.dump();
 }
 
-/// Expects the PNG of a picture to show it so.
+/// Expects that the PNG shows the picture with this transform.
 void expect_displayed(const Image& picture, const Image& png, const DisplayTransform& display) {
   ASSERT_EQ(png.size, picture.size);
   for (size_t i = 0; i < picture.pixels.size(); ++i) {
@@ -56,7 +56,7 @@ void expect_displayed(const Image& picture, const Image& png, const DisplayTrans
 }
 
 TEST_F(CliTest, NamesOfFilesDriveNoTerminal) {
-  // The last is U+009B, which begins commands as ESC and [ do.
+  // The last character is U+009B, which begins commands as ESC and [ do.
   expect_failure(run({"info", "no\nsuch\033[2J\u00e9\u009b.gltf"}), 3, "no?such?[2J\u00e9?.gltf");
   const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8", "-o", "x\033[2J\ny.exr", "-v"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -130,7 +130,7 @@ TEST_F(CliTest, AFileAloneIsRendered) {
 }
 
 TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
-  // tests/messages/usage_messages.cpp has all of them.
+  // tests/messages/usage_messages.cpp has all wrong usages.
   const std::pair<OptionValues, std::string> cases[] = {
       {{"rendr"}, "usage.command.unknown rendr render"},
       {{"diff", "a.png", "b.png"}, "usage.command.unknown diff compare"},
@@ -236,11 +236,11 @@ TEST_F(CliTest, APanoramaLightsAndIsSeen) {
                               "--environment-intensity", "2", "--background", "environment"},
                              "a.exr");
   EXPECT_EQ(image.at(0, 0), vec3(1.0F));
-  // The grey of OBJ, 0.8, under light of 1 from everywhere.
+  // The grey of OBJ is 0.8; the light is 1 from everywhere.
   EXPECT_NEAR(image.at(32, 18).x, 0.8F, 1e-3F);
 }
 
-// Only the loaded scene tells of the files beside its own.
+// The names of the files beside a scene are known only after it has been loaded.
 TEST_F(CliTest, FilesThatASceneIsMadeOfAreNotOverwritten) {
   write("made.obj", "mtllib made.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
   write("made.mtl", "newmtl m\nKd 1 0 0\n");
@@ -252,7 +252,7 @@ TEST_F(CliTest, FilesThatASceneIsMadeOfAreNotOverwritten) {
 TEST_F(CliTest, UnwritableOutputsAreFoundBeforeTheWork) {
   write("old.exr", "old");
   fs::create_directory(folder() / "folder.exr");
-  // The scene does not exist: it is not read before the outputs are known to be writable.
+  // The scene does not exist, but it is only read after the outputs are known to be writable.
   expect_failure(run({"render", "none.obj", "-o", "none/a.exr"}), 1, "output.folder.missing none/a.exr: none");
   expect_failure(run({"render", "none.obj", "-o", "old.exr/a.exr"}), 1,
                  "old.exr/a.exr: the folder of the output file does not exist");
@@ -267,20 +267,20 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   write("old.exr", "old");
   write("old.png", "old");
   fill_disk(2000);
-  // Mesa's cache is no concern of this test, and newer ones do not survive a full disk.
+  // The test does not use Mesa's cache; newer versions of the cache fail on a full disk.
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
   for (const char* output : {"old.exr", "old.png"}) {
     expect_failure(run({"render", "square.gltf", "--size", "300", "300", "-o", output, "--quiet"}), 1, output);
     EXPECT_EQ(read(output), "old");
   }
-  // Not even room for what precedes the rows, nor for more of a message; libpng has nothing to add.
+  // There is no room even for the bytes before the rows, or for more of a message; libpng has nothing to add.
   fill_disk(50);
   const ProcessResult early = run({"render", "square.gltf", "-o", "old.png", "--quiet"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.err, testing::StartsWith("promin: "));
   EXPECT_EQ(read("old.png"), "old");
   fill_disk(2000);
-  // It waits on disk until it is whole, and before it is traced there is no room for that.
+  // This picture waits on disk until it is whole. The disk has no room for it, which is known before tracing.
   const OptionValues large = {"render",         "square.gltf", "--size", "30000",   "20000",
                               "--target-error", "0.5",         "-o",     "old.exr", "--quiet"};
   expect_failure(run(large), 1, "there is no room for 7201 MB beside the output file until it can be written");
@@ -288,14 +288,14 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
 }
 
-// Where a file system promises no room, what waits finds the disk full while it is written.
+// If a file system cannot reserve room, the picture that waits finds the disk full while it is written.
 TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
   write("old.exr", "old");
   fill_disk(700'000);
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
   for (const bool promises_room : {true, false}) {
     if (!promises_room) options_.environment["PROMIN_TEST_PROMISES_NO_ROOM"] = "1";
-    // A picture that takes no room itself.
+    // This picture takes no room itself.
     const OptionValues words = {
         "render", "square.gltf", "-o",           "old.exr", "--quiet", "--light", "none", "--background",   "0",
         "0",      "0",           "--lights-off", "0",       "--size",  "1200",    "900",  "--target-error", "1"};
@@ -303,7 +303,7 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
     EXPECT_EQ(read("old.exr"), "old");
     EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
   }
-  // There is room for what waits, but not for the file.
+  // There is room for the waiting picture, but not for the file.
   const OptionValues large = {
       "render", "square.gltf", "--size",  "200",           "200", "--aov", "object,position,normal",
       "-o",     "old.exr",     "--quiet", "--compression", "none"};
@@ -312,7 +312,7 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
   EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
 }
 
-// Reading from a pipe that nobody writes to would wait without end.
+// Reading from a pipe that nobody writes to would wait forever.
 TEST_F(CliTest, ScenesAreRegularFiles) {
   ASSERT_EQ(::mkfifo((folder() / "pipe.obj").c_str(), 0600), 0);
   expect_failure(run({"info", "pipe.obj"}), 3, "file.kind pipe.obj:");
@@ -335,14 +335,14 @@ TEST_F(CliTest, AFileSizeLimitIsAFailureWhateverItStops) {
   }
 }
 
-// Lavapipe makes constants of uniforms (shaders/shared/bindings.glsl) and then compiles for every scene, where the
-// kernel is small with every dispatch.
+// Lavapipe turns uniforms into constants (shaders/shared/bindings.glsl). It then compiles for every scene, and small
+// kernels for every dispatch.
 TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {
   options_.environment["MESA_SHADER_CACHE_DIR"] = "cache";
   options_.environment["MESA_DISK_CACHE_MULTI_FILE"] = "true";
   fs::create_directory(folder() / "cache");
   const auto count_kernels_after = [&](const char* corners, const OptionValues& camera = {}) {
-    // Triangles and a headlight alone: the smallest kernel there is.
+    // A scene of triangles with a headlight has the smallest kernel.
     write("triangle.obj", std::string(corners) + "f 1 2 3\n");
     OptionValues words = {"render", "triangle.obj", "--size", "64", "64", "-o", "a.exr", "--quiet"};
     words.insert(words.end(), camera.begin(), camera.end());
@@ -399,7 +399,7 @@ TEST_F(CliTest, InfoSaysWhatASceneHolds) {
   EXPECT_THAT(info.out, ContainsRegex("memory +[0-9.]+ MB of geometry on the host, [0-9.]+ MB on the device"));
 }
 
-/// The square, with another text in place of a part of it.
+/// Returns the square's file with one text replaced by another.
 std::string square_with(const std::string& part, const std::string& other) {
   std::string text = kSquareGltf;
   text.replace(text.find(part), part.size(), other);
@@ -458,7 +458,7 @@ TEST_F(CliTest, InfoTellsTexturesBySize) {
   EXPECT_THAT(info.out, HasSubstr("image images[1]: a file does not exist (\"none.png\"); "));
 }
 
-/// The square with a texture whose PNG has a wrong byte among its texels.
+/// Returns the square with a texture whose PNG has a wrong byte among its texels.
 std::string square_with_broken_texels() {
   std::string text = square_with("\"indices\": 1", R"("indices": 1, "material": 0)");
   text.insert(text.rfind('}'), R"(, "materials": [{"normalTexture": {"index": 0}}], "textures": [{"source": 0}],
@@ -482,7 +482,7 @@ TEST_F(CliTest, InfoWarnsOfCamerasWithoutASensibleSize) {
       HasSubstr("the camera's aspect ratio of 1e-06 is too extreme to compute the width of the picture; give --size"));
 }
 
-/// What `promin info --json` says of a scene.
+/// Reads what `promin info --json` says of a scene.
 class InfoJsonTest : public CliTest {
  protected:
   json info(const std::string& scene, const OptionValues& more = {}) {
@@ -494,7 +494,7 @@ class InfoJsonTest : public CliTest {
     return json::parse(text_);
   }
 
-  /// The keys in which two values differ, with the members of those that are objects.
+  /// Returns the keys in which two values differ, and the differing members of those that are objects.
   static std::set<std::string> differences(const json& a, const json& b) {
     std::set<std::string> places;
     for (const json& change : json::diff(a, b)) places.insert(change["path"].get<std::string>());
@@ -531,7 +531,7 @@ TEST_F(InfoJsonTest, SaysWhatASceneHolds) {
   EXPECT_THAT(scene["assumed"].dump(), HasSubstr("weak studio light"));
   EXPECT_EQ(scene["extensions"], json({{{"is_required", false}, {"is_used", true}, {"name", "KHR_lights_punctual"}}}));
   EXPECT_THAT(scene["warnings"], IsEmpty());
-  // The shortest decimal of the fp32 number.
+  // The file has the shortest decimal of the fp32 number.
   EXPECT_THAT(text_, HasSubstr("\"yfov\": 0.7853982"));
   EXPECT_EQ(scene.dump(1) + "\n", text_) << "keys are sorted";
 }
@@ -541,7 +541,7 @@ TEST_F(InfoJsonTest, TellsWhatDiffers) {
   fs::create_directories(folder() / "other");
   write("other/square.gltf", kSquareGltf);
   EXPECT_EQ(info("other/square.gltf"), square);
-  // The first vertex is at x = -1, of the bytes 00 00 80 BF; -1.0625 has 00 00 88 BF.
+  // The first vertex is at x = -1, which has the bytes 00 00 80 BF; -1.0625 has 00 00 88 BF.
   write("square.gltf", square_with("AACAvwAAgL8AAAAA", "AACIvwAAgL8AAAAA"));
   EXPECT_THAT(differences(square, info("square.gltf")),
               testing::ElementsAre("/bounds/lo/0", "/objects/0/geometry/hashes/positions"));
@@ -671,7 +671,7 @@ TEST_F(CliTest, RenderWritesPicturesAndSaysSoInOneLine) {
 
   const Image exr = read_image(folder() / "a.exr");
   ASSERT_EQ(exr.size, uvec2(64, 36));
-  // 3 candela at a distance of 2 are 0.75 lux, which 2 stops bring to about pi.
+  // 3 candela at a distance of 2 give 0.75 lux, which 2 stops raise to about pi.
   EXPECT_EQ(exr.at(0, 0), vec3(0.0625F)) << "EXR files are not exposed";
   EXPECT_NE(exr.at(32, 18), vec3(0.0625F)) << "the square is seen";
   expect_displayed(exr, read_image(folder() / "a.png"), {.exposure_ev = 2.0F, .tone_mapping = ToneMapping::kNeutral});
@@ -693,7 +693,7 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
     const Image exr = render(arguments, "a.exr");
     expect_displayed(exr, read_image(folder() / "a.png"), display);
     const std::string header = read("a.exr");
-    // A header has the length of a value, in four bytes, before it.
+    // In the header, a value's length stands before it in four bytes.
     const auto value_of = [&](const std::string& name, size_t length) {
       return header.substr(header.find(name) + name.size() + sizeof "string" + 5, length);
     };
@@ -702,7 +702,7 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
     const std::string exposure = display.exposure_ev == 0.5F ? "0.5" : display.exposure_ev == 2.0F ? "2" : "0";
     EXPECT_EQ(value_of("promin:exposure_ev", exposure.size()), exposure);
   }
-  // Neither of them is in the light itself, nor does a crop change them.
+  // Exposure and tone mapping do not change the light itself, and a crop does not change the picture.
   const OptionValues plain = {"square.gltf", "--size", "32", "18"};
   OptionValues exposed = plain;
   exposed.insert(exposed.end(), {"--exposure", "5", "--tone-mapping", "none"});
@@ -728,7 +728,7 @@ TEST_F(CliTest, UnlitColoursKeepClearOfExposureAndToneMapping) {
     SCOPED_TRACE(testing::PrintToString(options));
     OptionValues arguments = {"mixed.gltf", "--size", "64", "36", "-o", "a.png"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    // One sample, but where the case says another number: sums of more round.
+    // One sample is used unless the case gives another number, because sums of more samples round.
     if (std::ranges::none_of(options, [](const std::string& w) { return w == "--spp" || w == "--target-error"; })) {
       arguments.insert(arguments.end(), {"--spp", "1"});
     }
@@ -788,7 +788,8 @@ TEST_F(CliTest, OfAMissingSceneNothingIsSaidToBeWritten) {
   EXPECT_THAT(result.err, testing::StartsWith("promin: "));
 }
 
-// Without -o the scene's name, here. Pictures by promin of a scene of this name are replaced, and nothing else.
+// Without -o the picture has the scene's name and lies in the current folder. It replaces only pictures that promin
+// made of a scene of this name.
 TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
   const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -799,7 +800,7 @@ TEST_F(CliTest, PicturesHaveTheScenesNameByDefault) {
   EXPECT_EQ(read_image(folder() / "square.png").size, uvec2(9));
   EXPECT_EQ(read_image(folder() / "square.exr").size, uvec2(9));
   for (const char* name : {"square.png", "square.exr"}) {
-    // A picture of another scene, and one that names no scene.
+    // One picture shows another scene, and one names no scene.
     run({"render", "triangle.obj", "-o", name, "--size", "8", "8"});
     const std::string other = read(name);
     expect_failure(
@@ -843,7 +844,7 @@ TEST_F(CliTest, TheBackgroundIsTheUsers) {
       << "an EXR has what is shown without exposure";
   EXPECT_EQ(corner({"--light", "headlight", "--background", "environment"}), vec3(0.1F)) << "the ambient light";
   EXPECT_EQ(corner({"--light", "headlight", "--background=environment"}), vec3(0.1F));
-  // One word, whatever follows it.
+  // The option takes one word, whatever follows it.
   OptionValues arguments = {"render", "--light", "headlight", "--background", "environment"};
   arguments.insert(arguments.end(), size.begin(), size.end());
   arguments.insert(arguments.end(), {"-o", "b.exr"});
@@ -851,7 +852,8 @@ TEST_F(CliTest, TheBackgroundIsTheUsers) {
   EXPECT_EQ(read_image(folder() / "b.exr").at(0, 0), vec3(0.1F));
 }
 
-// Its codes are those of the picture, whatever makes codes of light, and at an edge it counts with its share.
+// The background has the picture's codes, however light becomes codes. At an edge it counts with its share of the
+// pixel.
 TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
   const auto codes_at = [](const Image& image, uint32_t x, uint32_t y) {
     return uvec3(glm::round(255.0F * image.at(x, y)));
@@ -862,7 +864,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
                                                   {"#336699", uvec3(0x33, 0x66, 0x99)}};
   for (const auto& [word, codes] : colors) {
     for (const std::string_view mapping : tone_mapping_names()) {
-      // The other two are the same colours, or as far from a mapping's middle.
+      // Only two colours are tried with every mapping, because the other two test nothing more.
       const bool is_each_mapped = word == std::string_view("white") || word == std::string_view("#369");
       if (!is_each_mapped && mapping != tone_mapping_names().front()) continue;
       render({"triangle.obj", "--size", "32", "18", "--spp", "2", "--exposure", "1.5", "--background", word, "-o",
@@ -873,7 +875,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], codes[c], is_end ? 0 : 1) << word << ", " << mapping;
     }
   }
-  // The scene shows the same before any background, and the background fills the rest of a pixel, in linear light.
+  // The scene looks the same before any background, and the background fills the rest of a pixel, in linear light.
   const auto show = [&](const char* word) {
     render({"triangle.obj", "--size", "32", "18", "--spp", "16", "--tone-mapping", "aces", "--background", word, "-o",
             "a.png"},
@@ -895,7 +897,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
   EXPECT_GT(edges, 5U);
 }
 
-// The picture of a file's camera, headlight and black background, as pictures were before there was a studio.
+// The picture has the file's camera, a headlight and a black background, as pictures had before there was a studio.
 TEST_F(CliTest, ClassicLightGivesClassicPictures) {
   write("classic.gltf", classic_square());
   const gpu::DeviceHandle device = gpu::open_device();
@@ -926,7 +928,7 @@ TEST_F(CliTest, QuietIsSilent) {
 }
 
 TEST_F(CliTest, WhatIsAssumedIsSaid) {
-  // Without the note that a slow machine gives while it compiles.
+  // The list leaves out the note that a slow machine prints while it compiles.
   const auto notes_of = [&](OptionValues words) {
     words.insert(words.begin(), {"render", "--size", "64x36"});
     std::string notes = run(words).err;
@@ -943,7 +945,7 @@ TEST_F(CliTest, WhatIsAssumedIsSaid) {
       shown,
       "promin: note: assumed: weak studio light in addition to the scene's own, a grey background, an exposure of "
       "+2 EV, tone mapping neutral\n");
-  // Of an EXR errors alone are as it is shown.
+  // For an EXR, only the errors are in display terms.
   EXPECT_EQ(notes_of({"square.gltf", "-o", "a.exr", "--target-error", "0.5", "--error-in", "display"}), shown);
   EXPECT_EQ(notes_of({"square.gltf", "-o", "a.png", "--light", "none", "--background", "0", "0", "0", "--exposure", "0",
                       "--tone-mapping", "aces"}),
@@ -980,11 +982,11 @@ TEST_F(CliTest, ErrorsAsTheyAreShownAreTold) {
   const auto [shown, in_shown] = told({"--error-in", "display"});
   EXPECT_THAT(shown, HasSubstr(" spp, error 0.0625 as shown"));
   EXPECT_EQ(in_shown, "display");
-  // How the picture is shown decides how exact it has to be: all here is white.
+  // The display transform decides how exact the picture has to be; with this exposure everything is white.
   const auto [white, in_white] = told({"--error-in", "display", "--exposure", "20", "--tone-mapping", "none"});
   EXPECT_THAT(white, HasSubstr(", 4 spp, error"));
   EXPECT_THAT(shown, testing::Not(HasSubstr(", 4 spp, error")));
-  // In linear light it is what is white, of which errors are.
+  // In linear light, errors are fractions of white.
   EXPECT_THAT(linear, testing::Not(HasSubstr(", 4 spp, error")));
   EXPECT_THAT(told({"--exposure", "-20"}).first, HasSubstr(", 4 spp, error"));
   const auto [black, in_black] = told({"--error-in", "display", "--exposure", "-20", "--tone-mapping", "none"});
@@ -1038,7 +1040,7 @@ TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {
   const Image by_three = render(arguments, "three.exr");
   ASSERT_EQ(by_one.size, by_three.size);
   for (size_t i = 0; i < by_one.pixels.size(); ++i) ASSERT_EQ(by_one.pixels[i], by_three.pixels[i]) << "pixel " << i;
-  // The same by the option, whose kernels come from the cache that the others have filled.
+  // The option --threads gives the same; its kernels come from the cache that the other runs have filled.
   OptionValues with_threads = arguments;
   with_threads.insert(with_threads.end(), {"--threads", "2"});
   render(with_threads, "two.exr");
@@ -1060,7 +1062,7 @@ TEST_F(CliTest, ACropHasTheBitsOfTheWholePicture) {
 TEST_F(CliTest, RunsAndFeaturesDoNotChangeTheBits) {
   const Image once = render({"square.gltf", "--size", "64", "36"}, "a.exr");
   EXPECT_EQ(once.pixels, render({"square.gltf", "--size", "64", "36"}, "b.exr").pixels);
-  // A debug view, whose kernels with all features compile soonest; RendererTest has pictures.
+  // The debug view is used because its kernels with all features compile fastest; RendererTest has pictures.
   const OptionValues uv = {"square.gltf", "--size", "64", "36", "--shading", "uv"};
   OptionValues of_all = uv;
   of_all.insert(of_all.end(), {"--features", "all"});
@@ -1089,7 +1091,7 @@ TEST_F(CliTest, TheDefaultSizeFollowsTheCamera) {
 }
 
 TEST_F(CliTest, LongWorkTellsItsProgressInPlainLines) {
-  // Nothing is left to assume.
+  // These arguments leave nothing to assume.
   const OptionValues arguments = {"render", "square.gltf", "--size", "4000",         "4000", "-s", "4096", "-o",
                                   "a.exr",  "--light",     "none",   "--background", "0",    "0",  "0"};
   Process program(PROMIN_EXECUTABLE, arguments, options_);
@@ -1117,7 +1119,7 @@ TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
   }
 }
 
-// What waits on disk until the picture is whole has no name there.
+// The data that wait on disk until the picture is whole have no file name.
 TEST_F(CliTest, AnInterruptLeavesNothingOfAPictureThatWaitsOnDisk) {
   write("old.exr", "old");
   Process program(PROMIN_EXECUTABLE,

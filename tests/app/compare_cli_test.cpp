@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// `promin compare`.
+// These tests run `promin compare`.
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -30,7 +30,7 @@ class CompareCliTest : public CliTest {
   }
 
   ProcessResult compare(const OptionValues& more) const {
-    // Of so low a resolution FLIP's filters are small, and quick.
+    // At so low a resolution FLIP's filters are small and fast.
     OptionValues arguments = {"compare", "--pixels-per-degree", "5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
@@ -51,7 +51,7 @@ TEST_F(CompareCliTest, TellsTheFigures) {
   EXPECT_EQ(figures.at("largest_at"), json({9, 7}));
   EXPECT_GT(figures.at("flip"), 0.0);
   EXPECT_EQ(json::parse(compare({"a.exr", "a.exr", "--json"}).out).at("psnr_db"), nullptr);
-  // FLIP is of what is seen, so of light and of its codes the same but for rounding.
+  // FLIP compares displayed colours, so light and its codes give the same result except for rounding.
   const json coded = json::parse(compare({"a.png", "b.png", "--json"}).out);
   EXPECT_NEAR(coded.at("flip"), figures.at("flip"), 2e-4);
 }
@@ -115,7 +115,8 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
 
-/// Two EXRs of the same colours, in one part and in several, of 200 rows: more than are held at a time.
+/// The fixture has two EXRs of the same colours, one in one part and one in several. They have 200 rows, which is more
+/// than are held at a time.
 class CompareChannelsCliTest : public CompareCliTest {
  protected:
   static constexpr uvec2 kSize{600, 200};
@@ -162,7 +163,7 @@ TEST_F(CompareChannelsCliTest, EveryChannelIsCompared) {
   EXPECT_EQ(figures.size(), 11U);
   EXPECT_EQ(figures.at("Z"), json({{"largest", 0.25}, {"largest_at", {597, 199}}, {"different", 1}}));
   EXPECT_EQ(figures.at("N.X").at("different"), 0);
-  // Of an infinity on one side alone there is no difference that is a number.
+  // If only one side is infinite, the difference is not a number.
   channels_[0].values.front() = 0;
   write_channels("other.exr");
   const ProcessResult infinite = compare({"one.exr", "other.exr", "--json", "--fail", "1e9"});

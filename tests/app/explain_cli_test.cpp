@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// `promin render --explain`, and the debug shadings of `--shading`.
+// These tests run `promin render --explain`, and the debug shadings of `--shading`.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

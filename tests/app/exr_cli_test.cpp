@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// What EXRs of `promin render` hold, as OpenImageIO reads them.
+// These tests check the content of EXRs of `promin render`, which OpenImageIO reads.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace promin {
 namespace {
 
-/// All channels of an EXR, of all its parts, by name.
+/// All channels of an EXR, from all its parts, by name.
 struct ReadExr {
   std::map<std::string, std::vector<float>> channels;
   std::map<std::string, OIIO::TypeDesc> types;
@@ -106,7 +106,7 @@ TEST_F(ExrCliTest, AlphaLeavesTheBackgroundOut) {
   EXPECT_EQ(alpha[15 * 40 + 20], 1.0F);
 }
 
-// The square lies across the view, so its depth along that is one number.
+// The square is perpendicular to the view, so its depth is the same everywhere.
 TEST_F(ExrCliTest, DepthIsOfTheRayOrOfThePlane) {
   const ReadExr of_ray = render_exr({"--aov", "depth"});
   const ReadExr of_plane = render_exr({"--aov", "depth", "--depth", "plane"});
@@ -124,26 +124,26 @@ TEST_F(ExrCliTest, DepthIsOfTheRayOrOfThePlane) {
   EXPECT_GT(farthest, 4.1F);
 }
 
-// 12 MiB a band: a picture with many channels is written in several, which the file does not show.
+// A band holds 12 MiB. A picture with many channels is written in several bands, and the file does not show it.
 TEST_F(ExrCliTest, BandsLeaveNoTrace) {
   const OptionValues options = {
       "--size", "900", "400", "--spp", "2", "--aov", "position,normal,shading_normal,albedo,error,direct"};
   OptionValues whole = {"render", "square.gltf", "-o", "whole.exr", "--quiet"};
   whole.insert(whole.end(), options.begin(), options.end());
   ASSERT_EQ(run(whole).exit_code, 0);
-  // An average exposure needs the whole picture at once, and an EXR does not show it.
+  // An average exposure needs the whole picture at once; the EXR is the same.
   OptionValues at_once = {"render", "square.gltf", "-o", "once.exr", "--quiet", "--exposure", "average"};
   at_once.insert(at_once.end(), options.begin(), options.end());
   ASSERT_EQ(run(at_once).exit_code, 0);
   EXPECT_EQ(read_exr("whole.exr").channels, read_exr("once.exr").channels);
 }
 
-// OpenEXR holds blocks of rows for each thread that compresses, of this picture 40 MB each and three of them. It takes
-// memory when rows come, so there are some.
+// OpenEXR holds blocks of rows for each thread that compresses: 40 MB for each of three threads with this picture. It
+// takes memory when rows come, so the picture has some rows.
 TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
   const auto held_mb = [&](const OptionValues& aovs) {
     OptionValues arguments = {"render", "square.gltf", "-o", "a.exr", "--size", "16384", "72", "-v"};
-    // Few samples, because tracing them is not what is measured.
+    // The number of samples is small, because the time of tracing is not measured.
     if (std::ranges::count(aovs, "--target-error") == 0) arguments.insert(arguments.end(), {"--spp", "2"});
     arguments.insert(arguments.end(), aovs.begin(), aovs.end());
     const ProcessResult result = run(arguments);
@@ -165,14 +165,14 @@ TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
   EXPECT_EQ(compression(), "zips") << "16 rows have 71 MB";
   EXPECT_GT(of_colors, 50.0);
   EXPECT_LT(of_all - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
-  // Of a target error it is whole before the first row is written, and waits on disk.
+  // A picture with a target error is whole before its first row is written, and waits on disk.
   OptionValues refined = aovs;
   refined.insert(refined.end(), {"--target-error", "0.25"});
   EXPECT_LT(held_mb(refined) - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
 }
 
-// A job of one piece holds the whole picture; the other waits on disk, as pictures of more than 12 MiB do: these have
-// 55 numbers a pixel.
+// A job of one piece holds the whole picture. The other picture waits on disk, as pictures of more than 12 MiB do:
+// these have 55 numbers a pixel.
 TEST_F(ExrCliTest, PicturesOfAnErrorHaveTheBytesOfThoseHeldWhole) {
   const OptionValues aovs = {
       "--aov",
@@ -188,7 +188,7 @@ TEST_F(ExrCliTest, PicturesOfAnErrorHaveTheBytesOfThoseHeldWhole) {
     OptionValues single = {"render", "square.gltf", "-o", "single.exr", "-o", "single.png"};
     OptionValues job = {
         "render", "square.gltf", "-o", "job.exr", "-o", "job.png", "--job", "job" + std::to_string(i), "--pieces", "1"};
-    // Two times, which add nothing.
+    // Rendering twice adds nothing.
     if (i == 1) single.insert(single.end(), {"--repeat", "2"});
     for (OptionValues* words : {&single, &job}) {
       words->insert(words->end(), windows[i].begin(), windows[i].end());
@@ -211,7 +211,7 @@ TEST_F(ExrCliTest, TheHeaderTellsHowErrorsAreMeasured) {
   EXPECT_NE(shown.channels, linear.channels);
 }
 
-// What beauty is the sum of, in the file.
+// The file has the parts whose sum is beauty.
 TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
   const ReadExr exr = render_exr({"--spp", "16", "--background", "linear:0.5,0.25,1", "--aov",
                                   "emission,direct,indirect,reflection,transmission,background"});
@@ -226,13 +226,13 @@ TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
   }
 }
 
-/// A part of an EXR that another program might write, of 40 x 50 pixels.
+/// A part of an EXR that another program might write, with 40 x 50 pixels.
 struct ForeignPart {
   std::string name;
   std::vector<std::string> channels;
-  /// Of each pixel all channels.
+  /// All channels of each pixel.
   std::vector<float> values;
-  /// 0 where it lies in rows.
+  /// The size of a tile; 0 if the part is stored in rows.
   int tile_size = 0;
 };
 
@@ -274,7 +274,7 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
   write_foreign(folder() / "tiles.exr", {tiles});
   EXPECT_THAT(run({"compare", "rows.exr", "tiles.exr"}).out, testing::HasSubstr("Z: largest 0.5, at pixel 39 33; 1 "));
 
-  // A part that is called as its channels adds nothing to their names.
+  // If a part's name is that of its channels, it adds nothing to their names.
   ForeignPart colors{"rgba", {"R", "G", "B"}, {}};
   ForeignPart depth{"Z", {"Z"}, {}};
   for (size_t i = 0; i < rows.values.size(); ++i) (i % 4 < 3 ? colors : depth).values.push_back(rows.values[i]);
@@ -282,7 +282,7 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
   const ProcessResult parts = run({"compare", "rows.exr", "parts.exr", "--fail", "0"});
   EXPECT_EQ(parts.exit_code, 0) << parts.out << parts.err;
 
-  // Another part's name goes before its channels' names.
+  // The names of other parts go before their channels' names.
   const std::vector<ForeignPart> eyes = {{"left", {"R", "G", "B"}, numbers(3)}, {"right", {"R", "G", "B"}, numbers(3)}};
   std::vector<ForeignPart> other_eyes = eyes;
   other_eyes[1].values[4] += 0.25F;

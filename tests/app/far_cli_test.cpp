@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// Scenes far from the origin, as a user meets them: in coordinates of the world.
+// These tests check scenes far from the origin as a user meets them, in world coordinates.
 
 #include <fmt/format.h>
 
@@ -19,10 +19,10 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// UTM coordinates, of which fp32 has steps of 0.03 and 0.5.
+/// UTM coordinates, where the steps of fp32 are 0.03 and 0.5.
 const dvec3 kPlace(494000.0, 5280000.0, 400.0);
 
-/// Stairs of four steps around a place, as wide as deep.
+/// Returns stairs of four steps around a place, as wide as deep.
 std::string stairs_at(const dvec3& place) {
   std::string text;
   int count = 0;
@@ -56,7 +56,7 @@ class FarCliTest : public CliTest {
     write("far.obj", stairs_at(kPlace));
   }
 
-  /// The options of a view, with the eye at the place's (1, 2, 5).
+  /// Returns the options of a view whose eye is at the place's (1, 2, 5).
   static OptionValues view_at(const dvec3& place) {
     const dvec3 eye = place + dvec3(1, 2, 5);
     return {"--size",
@@ -92,7 +92,7 @@ class FarCliTest : public CliTest {
   }
 };
 
-/// By a pose and by a camera path.
+/// The view is given by a pose and by a camera path.
 TEST_F(FarCliTest, PicturesAreThoseOfTheSameSceneAtTheOrigin) {
   OptionValues near = view_at(dvec3(0.0));
   near.insert(near.begin(), "near.obj");
@@ -130,7 +130,7 @@ TEST_F(FarCliTest, RaysOfDoublesAreInTheWorld) {
   EXPECT_EQ(hits_of("near.obj"), expected);
   write_ray("rays.npy", "<f8", ray_at(kPlace));
   EXPECT_EQ(hits_of("far.obj"), expected);
-  // A job's pieces too.
+  // A job's pieces have the same hits.
   EXPECT_EQ(hits_of("far.obj", {"--job", "job", "--pieces", "1"}), expected);
   float t = 0.0F;
   std::memcpy(&t, expected.data() + expected.find('\n') + 1, sizeof(t));

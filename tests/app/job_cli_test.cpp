@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// `promin render --job` and `promin merge`: pictures in pieces, whatever ends the work.
+// These tests run `promin render --job` and `promin merge`, which make pictures in pieces, and end the work in
+// different ways.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,7 +55,7 @@ TEST_F(JobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   }
 }
 
-// What shows an unlit surface as it is comes by the pieces, whatever files a job is begun with.
+// The pieces tell which surfaces are unlit, so that they are shown unchanged, whatever files the job begins with.
 TEST_F(JobCliTest, PiecesTellOfUnlitSurfaces) {
   write("square.gltf", make_mixed_gltf());
   expect_done(render({"--spp", "4", "-o", "whole.exr", "-o", "whole.png"}));
@@ -111,14 +112,14 @@ TEST_F(JobCliTest, FramesOfAPathAreAJob) {
   }
 }
 
-// With pictures of default names, which a second run finds there.
+// The pictures have default names, and a second run finds them there.
 TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
   expect_done(render({"--job", "job"}));
   const ProcessResult again = run({"render", "square.gltf", "--size", "61", "47", "--job", "job"});
   expect_done(again);
   EXPECT_THAT(again.out, testing::StartsWith("all 5 pieces were made before: "));
   EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
-  // Nothing is said to be written by who is refused.
+  // A refused program does not say that it wrote something.
   const ProcessResult refused = run({"render", "square.gltf", "--job", "job", "--aov", "normal"});
   expect_failure(refused, 2, "job: the folder belongs to another job: ");
   EXPECT_THAT(refused.err, testing::Not(HasSubstr("writing")));
@@ -171,7 +172,7 @@ TEST_F(JobCliTest, OfALargeSceneAllTakeTheTreeOfTheFirst) {
   expect_done(run({"merge", "job", "-o", "merged.exr"}));
   EXPECT_TRUE(read("merged.exr") == read("whole.exr"));
 
-  // Another builder has another tree for the same job, and a file that was given is taken.
+  // Another builder makes another tree for the same job; a tree file that the user gives is used.
   const auto make_first_again = [&](OptionValues words) {
     std::filesystem::remove(pieces().front());
     words.insert(words.end(), {"--job", "job", "--pieces", "6", "-o", "cut.exr"});
@@ -202,7 +203,7 @@ TEST_F(JobCliTest, WhoIsKilledAtTheTreeLeavesNothingHalf) {
   for (int i = 0; i < 6; ++i) {
     std::filesystem::remove_all(folder() / "job");
     Process program(PROMIN_EXECUTABLE, command, options_);
-    // While it is built, or written.
+    // The program is ended while the tree is built or written.
     for (int k = 0; k < 6000 && trees().empty(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(12 * i));
     program.send(SIGKILL);
@@ -309,7 +310,7 @@ TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   }
 }
 
-// There is no next piece then that it is stopped before.
+// The job is stopped before its next piece, but there is none.
 TEST_F(JobCliTest, ASignalInTheLastPieceIsToldToo) {
   const auto is_begun = [&] {
     const std::filesystem::path ledgers = folder() / "job" / "ledger";

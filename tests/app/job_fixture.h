@@ -16,12 +16,12 @@
 
 namespace promin {
 
-/// Commands with --job job.
+/// Runs commands with --job job.
 class JobFixture : public CliTest {
  protected:
   void expect_done(const ProcessResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.err; }
 
-  /// A mesh whose tree is kept for all who work on a job.
+  /// Writes a mesh whose tree is kept for all processes that work on a job.
   void write_sheet(const std::string& file) const {
     const Mesh sheet = make_sheet(kLeastShared + kLeastShared / 10);
     PlyBuilder ply(std::endian::little);
@@ -38,7 +38,7 @@ class JobFixture : public CliTest {
     write(file, ply.bytes());
   }
 
-  /// Names in the folder of the job's trees.
+  /// Returns the names of the files in the folder of the job's trees.
   std::vector<std::string> trees() const {
     std::vector<std::string> names;
     std::error_code error;
@@ -56,7 +56,7 @@ class JobFixture : public CliTest {
     return files;
   }
 
-  /// Sends a command a signal as soon as is_begun() says so, within a minute, and waits for its end.
+  /// Sends a signal to a command as soon as is_begun() returns true, within a minute, and waits for its end.
   template <typename IsBegun>
   ProcessResult signal_when(const IsBegun& is_begun, int signal, const OptionValues& command) const {
     Process program(PROMIN_EXECUTABLE, command, options_);
@@ -65,7 +65,7 @@ class JobFixture : public CliTest {
     return program.wait();
   }
 
-  /// Cuts the first piece, empties the second and flips a bit of the third; returns all.
+  /// Cuts the first piece, empties the second and flips a bit of the third. Returns the names of all three.
   std::vector<std::filesystem::path> damage_pieces() const {
     const auto files = pieces();
     std::filesystem::resize_file(files[0], std::filesystem::file_size(files[0]) - 10);
@@ -77,8 +77,8 @@ class JobFixture : public CliTest {
     return files;
   }
 
-  /// Ends a command that makes `file` by a job again and again, and goes on: `PROMIN_TEST_KILLS` times, 6 where it does
-  /// not say. Whatever is there is as in `whole`, or nothing.
+  /// Runs a command that makes `file` by a job, ends it again and again, and lets it go on: `PROMIN_TEST_KILLS` times,
+  /// 6 by default. Each time, the file must have the content `whole` or be absent.
   void expect_goes_on(const OptionValues& command, const std::string& file, const std::string& whole,
                       size_t piece_count) const {
     const char* const kills_word = std::getenv("PROMIN_TEST_KILLS");
@@ -94,7 +94,7 @@ class JobFixture : public CliTest {
     int ended = 0;
     for (int i = 0; i < kills; ++i) {
       Process program(PROMIN_EXECUTABLE, command, options_);
-      // At any time of a run, by the golden ratio.
+      // The golden ratio spreads the times of the kills over a run.
       const double share = std::fmod(0.618033988749895 * (i + 1), 1.0);
       std::this_thread::sleep_for(std::chrono::duration_cast<std::chrono::microseconds>(duration * share));
       const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
@@ -108,7 +108,7 @@ class JobFixture : public CliTest {
     EXPECT_GT(ended, kills / 4);
     expect_done(run(command));
     EXPECT_TRUE(read(file) == read(whole));
-    // No other files are left.
+    // The folder has no other files.
     EXPECT_EQ(pieces().size(), piece_count);
   }
 };

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// What the programs do where the system gives a process little: a picture comes, or a sentence; nothing hangs, and
-// nothing ends by a signal.
+// These tests check the programs with few resources of the system. Each run must give a picture or a sentence; none may
+// hang or end by a signal.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-/// How often each limit is tried: the long test tries more, as which thread meets it first is chance.
+/// Returns how often each limit is tried. The long test tries more often, because chance decides which thread meets the
+/// limit first.
 int count_runs() {
   const char* text = std::getenv("PROMIN_TEST_LIMIT_RUNS");
   return text == nullptr ? 1 : std::atoi(text);
@@ -30,7 +31,7 @@ class LimitsCliTest : public CliTest {
  protected:
   void SetUp() override {
     CliTest::SetUp();
-    // The layers report each object that a device without threads leaves in use.
+    // The validation layers are off, because they report each object that a device without threads leaves in use.
     options_.environment["PROMIN_VALIDATION"] = "";
   }
 
@@ -40,7 +41,7 @@ class LimitsCliTest : public CliTest {
     options_.environment["PROMIN_TEST_THREADS"] = std::to_string(count);
   }
 
-  /// Runs the program where the shell has removed the current folder.
+  /// Runs the program after the shell has removed the current folder.
   ProcessResult run_in_removed_folder(const std::string& arguments) const {
     ProcessOptions options = options_;
     options.folder = folder() / "gone";
@@ -49,7 +50,7 @@ class LimitsCliTest : public CliTest {
     return Process("/bin/sh", {"-c", command}, options).wait();
   }
 
-  /// What is compared is the same, so there are figures or one sentence with the part.
+  /// Compares a picture with itself. Expects the figures, or one sentence with the part.
   void compare_or_say(const std::string& file, const std::string& part) const {
     SCOPED_TRACE(file);
     const ProcessResult result = run({"compare", "--pixels-per-degree", "5", file, file});
@@ -63,7 +64,7 @@ class LimitsCliTest : public CliTest {
     }
   }
 
-  /// The exit code; the test fails where neither a picture nor a sentence with one of the parts comes.
+  /// Returns the exit code. The test fails if there is neither a picture nor a sentence with one of the parts.
   int render_or_say(const std::string& part, const std::string& other_part, const std::string& features = "scene") {
     fs::remove(folder() / "a.png");
     const ProcessResult result =

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The manual pages and completions that are installed.
+// These tests check the manual pages and completions that are installed.
 #include <gmock/gmock.h>
 
 #include <regex>
@@ -28,7 +28,7 @@ class ManualCliTest : public CliTest {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return result.out;
   }
-  /// All options that --help of the program and its commands names.
+  /// Returns all options that --help of the program and its commands names.
   std::set<std::string> options_of(const std::string& program, const std::vector<const char*>& commands) const {
     std::string help = run_program(program, {"--help"}).out;
     for (const char* command : commands) help += run_program(program, {command, "--help"}).out;
@@ -39,7 +39,7 @@ class ManualCliTest : public CliTest {
     }
     return options;
   }
-  /// What bash offers for a command line, of which the last word is not complete.
+  /// Returns what bash offers for a command line whose last word is not complete.
   std::string complete(const std::string& program, const std::string& function, const std::string& line) const {
     write("completion", make(program, "bash"));
     const std::string script = "source ./completion; COMP_WORDS=(" + line +
@@ -71,7 +71,7 @@ TEST_F(ManualCliTest, EveryOptionIsInEachOfThem) {
   }
 }
 
-// A line that begins with a point or a quote is a request, which would be lost or be an error.
+// A line that begins with a point or a quote is a request for roff: it would be lost or be an error.
 TEST_F(ManualCliTest, ThePagesHaveOnlyRequestsThatThereAre) {
   const std::set<std::string> requests = {".TH", ".SH", ".SS", ".TP", ".B", ".I", ".BR", ".br", ".\\\""};
   for (const auto& [program, commands] : kPrograms) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// A plugin of a version to come, which has nothing but its number: whoever called more would crash.
+// This plugin is of a future version and has only its number; a program that called more would crash.
 #include "image/plugin/pictures.h"
 
 uint32_t promin_pictures_interface() {

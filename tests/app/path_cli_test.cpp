@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// `promin render --path`: the frames of a camera path.
+// These tests run `promin render --path` and check the frames of a camera path.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::UnorderedElementsAre;
 
-/// Three poses before the scenes of the fixture, and the options that give each alone.
+/// The path has three poses in front of the fixture's scenes; kPoses has the options that give each pose alone.
 constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, "frames": [
   {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
   {"time_s": 0.1, "eye": [1, 0.5, 3], "look": [-0.28, 0, -0.96], "up": [0, 1, 0], "fov_deg": 60},
@@ -47,7 +47,7 @@ class PathCliTest : public CliTest {
 };
 
 TEST_F(PathCliTest, EachFrameHasTheBitsOfItsPoseAlone) {
-  // The second has no lights: its headlight follows the camera.
+  // The second scene has no lights, so its headlight follows the camera.
   for (const char* scene : {"square.gltf", "triangle.obj"}) {
     const ProcessResult result = run({"render", scene, "--size", "32", "18", "-s", "2", "--path", "path.json", "-o",
                                       "f.##.exr", "--aov", "depth", "--quiet"});
@@ -89,7 +89,7 @@ TEST_F(PathCliTest, FramesThatAreThereAreSkipped) {
   const ProcessResult nothing = render_path(options);
   EXPECT_EQ(nothing.exit_code, 0);
   EXPECT_THAT(nothing.err, HasSubstr("skipped 3 of 3 frames"));
-  // An empty file is no picture, nor is a folder.
+  // An empty file is not a picture, and neither is a folder.
   write("a1.png", "");
   OptionValues with_stats = options;
   with_stats.insert(with_stats.end(), {"--stats", "s.json"});
@@ -112,7 +112,7 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
 }
 
 TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
-  // Of edges as many samples as there may be take seconds; where nothing is seen the least error is had at once.
+  // Edges with the greatest number of samples take seconds; a view of nothing reaches the least error at once.
   write("path.json", R"({"format": "promin camera path", "version": 1, "frames": [
     {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
     {"time_s": 0.1, "eye": [0, 0, 4], "look": [0, 0, 1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01}]})");

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// The plugin for pictures of other formats as a user of the programs meets it: what goes without it, and what is said
-// where it is missing or not the right one.
+// These tests check the plugin for pictures of other formats as a user meets it: what works without the plugin, and
+// what programs say if it is missing or the wrong one.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,13 +33,13 @@ class PicturesPluginCliTest : public CliTest {
 
   fs::path plugin() const { return folder() / "plugins" / kPlugin.filename(); }
 
-  /// Reading a picture says so in one line.
+  /// Expects that reading a picture fails with one line that contains this part.
   void expect_refusal(const std::string& part) const {
     write("a.tga", "a picture");
     expect_failure(run({"compare", "a.tga", "a.tga"}), 1, part);
   }
 
-  /// Whether a program finds it: what it says then is of the picture.
+  /// Expects that a program finds the plugin: its sentence is then about the picture.
   void expect_found(const fs::path& program) const {
     write("a.tga", "a picture");
     const ProcessResult result = Process(program, {"compare", "a.tga", "a.tga"}, options_).wait();
@@ -47,7 +47,7 @@ class PicturesPluginCliTest : public CliTest {
   }
 };
 
-/// How many lines of what the dynamic loader tells name a library.
+/// Returns how many lines of the dynamic loader's messages name a library.
 std::ptrdiff_t count_libraries(const fs::path& program, const ProcessOptions& options) {
   ProcessOptions telling = options;
   telling.environment["LD_TRACE_LOADED_OBJECTS"] = "1";
@@ -105,7 +105,7 @@ TEST_F(PicturesPluginCliTest, OneThatLacksAFunctionIsRefused) {
 
 TEST_F(PicturesPluginCliTest, TheVariableNamesItsFolder) {
   fs::copy_file(kPlugin, plugin());
-  // A program with nothing beside it that it could take instead.
+  // The program is copied to a folder where it finds no other plugin.
   fs::copy_file(PROMIN_EXECUTABLE, folder() / "promin");
   expect_found(folder() / "promin");
 }
@@ -115,7 +115,7 @@ TEST_F(PicturesPluginCliTest, AProgramFindsItBesideItselfWhateverItIsCalledBy) {
   fs::create_symlink(PROMIN_EXECUTABLE, folder() / "link");
   expect_found(folder() / "link");
 
-  // As it is installed.
+  // The files lie as in an installation.
   fs::create_directories(folder() / "prefix/bin");
   fs::create_directories(folder() / "prefix/lib/promin");
   const fs::path program = folder() / "prefix/bin/promin";
@@ -125,7 +125,7 @@ TEST_F(PicturesPluginCliTest, AProgramFindsItBesideItselfWhateverItIsCalledBy) {
   expect_found(program);
 }
 
-/// The list of libraries is only for speed: a wrong one, or none, changes nothing.
+/// The list of libraries only saves time: a wrong list, or none, changes nothing.
 TEST_F(PicturesPluginCliTest, AWrongListOfLibrariesDoesNoHarm) {
   fs::copy_file(kPlugin, plugin());
   write("plugins/libpromin_pictures.libraries", "libnone.so.1\n\nlibz.so.1\n\x01");

@@ -51,7 +51,7 @@ TEST(MessageTest, EachProblemHasItsOption) {
   EXPECT_EQ(message_of(error), "one; lower --max-depth (1 of 2 problems)\n  there: two");
 }
 
-/// What a program says that does this, and its exit code.
+/// Returns the message and the exit code of a program that does this work.
 std::pair<int, std::string> run_work(const std::function<void()>& work) {
   static std::function<void()> does;
   does = work;
@@ -65,7 +65,7 @@ std::pair<int, std::string> run_work(const std::function<void()>& work) {
   return {code, testing::internal::GetCapturedStderr()};
 }
 
-// Only what nobody has thought of is called a bug.
+// Only unexpected exceptions are called a bug.
 TEST(RunProgramTest, WhatTheSystemRefusesIsNoBug) {
   const auto system_error = [](std::errc code) { return std::system_error(std::make_error_code(code)); };
   EXPECT_EQ(

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// `promin thumbnail` and `promin contact-sheet`.
+// These tests run `promin thumbnail` and `promin contact-sheet`.
 #include <algorithm>
 
 #include "cli_fixture.h"
@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 class ContactSheetTest : public CliTest {
  protected:
-  /// The part of a picture that begins at a pixel.
+  /// Returns the part of a picture that begins at a pixel.
   static std::vector<vec3> cut(const Image& image, const uvec2& lo, const uvec2& size) {
     std::vector<vec3> pixels;
     for (uint32_t y = 0; y < size.y; ++y) {
@@ -48,7 +48,7 @@ TEST_F(ContactSheetTest, ASheetHasThePicturesAndTheirNames) {
            "--exposure", "-1", "--quality", "draft", "-o", "sheet.png", "--quiet"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Image sheet = read_image(folder() / "sheet.png");
-  // Two columns and rows with a gap of 12 around, names of 20 pixels below.
+  // The sheet has two columns and rows with gaps of 12, and names with a height of 20 pixels below the pictures.
   ASSERT_EQ(sheet.size, uvec2(12 + 2 * (32 + 12), 12 + 2 * (24 + 20 + 12)));
   const OptionValues options = {"--from", "three-quarter", "--size", "32x24", "--exposure", "-1", "--quality", "draft"};
   const auto rendered = [&](const std::string& scene) {

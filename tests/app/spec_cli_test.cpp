@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// --spec and --print-spec.
+// These tests check the options `--spec` and `--print-spec`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST_F(SpecCliTest, PrintedAndReadItIsTheSame) {
   const std::string cast = print({"cast", "square.gltf", "rays.npy", "--count", "-o", "counts.npy"});
   write("cast.json", cast);
   EXPECT_EQ(print({"cast", "--spec", "cast.json"}), cast);
-  // Nothing is read or written beside it.
+  // Printing a specification reads and writes no other file.
   EXPECT_EQ(print({"render", "none.gltf"}), print({"render", "none.gltf"}));
 }
 
@@ -73,7 +73,7 @@ TEST_F(SpecPictureCliTest, PicturesAndHitsAreThoseOfTheOptions) {
   write("specs/spec.json", spec);
   expect_done(run({"render", "--spec", "specs/spec.json", "--quiet"}));
   EXPECT_TRUE(read("a.exr") == picture);
-  // As a job, which stores it without the outputs.
+  // A job takes the same specification, and stores it without the outputs.
   expect_done(run({"render", "--spec", "specs/spec.json", "-o", "b.exr", "--job", "job", "--pieces", "2", "--quiet"}));
   EXPECT_TRUE(read("b.exr") == picture);
   EXPECT_THAT(read("job/spec.json"), testing::AllOf(HasSubstr("\"pieces\": 2"), testing::Not(HasSubstr("output"))));
@@ -81,7 +81,7 @@ TEST_F(SpecPictureCliTest, PicturesAndHitsAreThoseOfTheOptions) {
   EXPECT_TRUE(read("c.exr") == picture);
 }
 
-/// Changes who made a piece.
+/// Changes the record of who made a piece.
 void claim(const jobs::Job& job, size_t piece, const std::string& build, std::byte change) {
   jobs::Content content = job.read(piece);
   jobs::Maker maker = *job.maker_of(piece);

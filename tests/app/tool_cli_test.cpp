@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// promin-lab ends as promin does: with one sentence, and an exit code that says whose fault it is.
+// These tests check that promin-lab ends as promin does: with one sentence, and an exit code that says whose fault it
+// is.
 
 #include "cli_fixture.h"
 
@@ -41,7 +42,7 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {{"rates", "wavy:500", "--runs", "1001"}, 2, "--runs takes a whole number"},
       {{"rates", "wavy:500", "--builder", "none"}, 2, "--builder takes "},
       {{"rates", "wavy:500", "--device", ""}, 2, "--device takes a part of a device's name"},
-      // Before a device is asked for, and all of them before the first is measured.
+      // The scenes are refused before a device is opened, and all scenes are read before the first is measured.
       {{"rates", "wavy:500", "none.gltf"}, 3, "none.gltf"},
       {{"rates", "wavy:500"}, 4, ";"},
       {{"check-hits"}, 2, "SCENE is required"},

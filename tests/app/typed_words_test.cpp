@@ -132,7 +132,7 @@ TEST_F(TypedWordsTest, SizesAreReadInEveryForm) {
   }
 }
 
-// The side that is left open is the camera's.
+// The missing side follows from the camera.
 TEST_F(TypedWordsTest, ASideFollowsFromTheCamera) {
   Scene scene;
   Camera camera;
@@ -151,7 +151,7 @@ TEST_F(TypedWordsTest, ASideFollowsFromTheCamera) {
   EXPECT_EQ(make_view(scene, options, silent).size, uvec2(10, 30));
 }
 
-// A suggestion is an option of the command, or it helps nobody.
+// A suggestion must be an option of the command; another would not help.
 TEST_F(TypedWordsTest, WhatIsMeantIsAnOptionOfTheCommand) {
   EXPECT_EQ(find_by_meaning(*render_, "--bg"), "--background");
   EXPECT_EQ(find_by_meaning(*render_, "--timeout"), "--time-limit");

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using layout::Node;
 using testing::HasSubstr;
 
-/// A tree that owns what it shows, to put faults into.
+/// A tree that owns its data, so that tests can put faults into it.
 struct Tree {
   std::vector<Node> nodes;
   std::vector<uint32_t> references;
@@ -53,8 +53,8 @@ void set_child_count(Node& node, uint32_t count) {
   node.frame.w = (node.frame.w & 0x00FFFFFF) | (count << 24);
 }
 
-/// What a device does to the worst: visits all that the nodes lead to. Fails the test if it would leave a buffer or its
-/// stack.
+/// Visits all that the nodes lead to, as a device does in the worst case. Fails the test if it would leave a buffer or
+/// its stack.
 void expect_traversable(const TreeView& tree) {
   struct Open {
     uint32_t node;
@@ -87,7 +87,7 @@ class BvhFileTest : public TempFolder {
     return message_of([&] { const BvhFile file(file_); });
   }
   std::string refusal(const Bytes& bytes) const {
-    // A new file each time: truncating an old one makes some file systems flush.
+    // The file is new each time, because some file systems flush when a file is truncated.
     fs::remove(file_);
     std::ofstream(file_, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -195,7 +195,7 @@ TEST_F(BvhFileTest, CountsBeyondTheFileAreRefused) {
   }
 }
 
-/// A fault in a tree, and a part of the sentence that a file with it, and with the right checksum, gets.
+/// A fault in a tree, and a part of the sentence with which a file with this fault and the right checksum is refused.
 struct HostileTree {
   const char* name;
   void (*spoil)(Tree& tree);
@@ -206,14 +206,14 @@ std::ostream& operator<<(std::ostream& out, const HostileTree& tree) {
   return out << tree.name;
 }
 
-/// The first child of the root that is of a kind.
+/// Returns the first child of the root of this kind.
 uint32_t& child_word(Tree& tree, ChildKind kind) {
   uint32_t i = 0;
   while (child_of(tree.nodes[0], i).kind != kind) ++i;
   return tree.nodes[0].children[static_cast<int>(i)];
 }
 
-/// Nodes of two children, a leaf and the next node, down to two leaves.
+/// Makes a chain of nodes of two children, a leaf and the next node; the last node has two leaves.
 void make_chain(Tree& tree, uint32_t length) {
   tree.nodes.assign(length, tree.nodes[0]);
   tree.references.clear();
@@ -300,14 +300,14 @@ TEST_F(BvhFileTest, ADeepTreeIsTaken) {
   EXPECT_EQ(refusal(tree), "");
 }
 
-/// Whatever stands in a file with a right checksum: it is refused, or a traversal stays in its buffers.
+/// Whatever a file with a right checksum contains, it is refused, or a traversal stays within its buffers.
 TEST_F(BvhFileTest, RandomFaultsAreRefusedOrHarmless) {
   const Bytes good = read_file(file_);
   std::mt19937 random(1);
   size_t taken = 0;
   for (int run = 0; run < 8000; ++run) {
     Bytes bytes = good;
-    // Mostly in the words that lead on: counts, children, references.
+    // Most changes hit the words that lead on: counts, children, references.
     const size_t place = run % 4 == 0 ? random() % bytes.size()
                          : run % 4 == 1
                              ? 40 + random() % 16
@@ -361,14 +361,14 @@ TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
   other.environment.ambient = vec3(1.0F);
   other.objects[1].name = "renamed";
   other.objects[1].material = 2;
-  // A plane is in no tree, and a degenerate triangle only takes a number.
+  // A plane is in no tree, and a degenerate triangle takes only a number.
   other.objects.insert(other.objects.begin(), {"", world::Plane{vec3(0, -1, 0), vec3(0, 1, 0)}, 0});
   std::get<Mesh>(other.objects[6].shape)
       .triangles.insert(std::get<Mesh>(other.objects[6].shape).triangles.begin(), uvec3(0, 0, 1));
   expect_same(pack_scene_with(file_, other), pack_scene(other, "median"));
 }
 
-/// The scene's hash can be read from any good file of it, so a forger has it.
+/// Anybody can read the scene's hash from a good file of it, and forge a file with it.
 TEST_F(BvhFileTest, MorePrimitivesThanTheSceneAreRefused) {
   Tree tree(packed_.tree());
   make_chain(tree, 90);

@@ -17,7 +17,7 @@ namespace {
 
 using Boxes = std::vector<Bounds>;
 
-/// A generator of boxes that some builder might stumble over.
+/// A function that makes boxes with which a builder might have trouble.
 struct BoxSet {
   const char* name;
   Boxes (*make)();
@@ -51,7 +51,7 @@ Boxes make_random(uint32_t count, float scale) {
   return boxes;
 }
 
-/// Small boxes in clusters of a thousand, far from one another, and a few as large as the whole.
+/// Returns small boxes in clusters of a thousand, far from one another, and a few boxes as large as the whole.
 Boxes make_clusters() {
   std::mt19937 random(2);
   Boxes boxes;
@@ -65,8 +65,8 @@ Boxes make_clusters() {
   return boxes;
 }
 
-/// Centres at 2^-140...2^49 on each axis, several in each place: planes at equal distances split off the few largest at
-/// a time.
+/// Returns centres at 2^-140...2^49 on each axis, several at each place. Planes at equal distances split off only the
+/// few largest boxes at a time.
 Boxes make_geometric_series() {
   Boxes boxes;
   for (int exponent = 49; exponent >= -140; --exponent) {
@@ -79,7 +79,7 @@ Boxes make_geometric_series() {
   return boxes;
 }
 
-/// The same along one line and without any extent: every area is 0.
+/// Returns boxes without extent along one line: every area is 0.
 Boxes make_points_on_a_line() {
   Boxes boxes;
   for (int exponent = 49; exponent >= -140; --exponent) {
@@ -195,13 +195,14 @@ TEST_P(BvhTest, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// Boxes that may be cut, down to what no plane can cut.
+// The boxes may be cut, until no plane can cut the rest.
 TEST_P(BvhTest, PartsOfBoxesCoverThem) {
   const Boxes input = boxes();
   const Bvh bvh = build_bvh(builder(), {input, [](uint32_t, const Bounds& window) { return window; }});
   test::expect_tree(bvh);
   EXPECT_LE(bvh.references.size(), input.size() * kMaxReferencesPerPrimitive);
-  // Points of each box, its corners among them, still to be found in a leaf that holds it.
+  // The test takes points of each box, among them its corners. Each must still be in the box of a leaf that refers to
+  // the box.
   std::mt19937 random(4);
   std::vector<std::vector<vec3>> points(input.size());
   for (size_t i = 0; i < input.size(); ++i) {
@@ -224,7 +225,7 @@ struct Ray {
   dvec3 direction;
 };
 
-/// The slab test. Monotonous in the box, so that a ray that meets a box meets the boxes around it.
+/// The slab test. If a ray hits a box, it also hits every box around it.
 bool is_met(const Bounds& box, const Ray& ray) {
   const dvec3 below = (dvec3(box.lo) - ray.origin) / ray.direction;
   const dvec3 above = (dvec3(box.hi) - ray.origin) / ray.direction;
@@ -340,7 +341,8 @@ TEST(BvhBuilders, SahSplitsClustersApart) {
 }
 
 TEST(BvhStats, CostIsTheExpectedWorkOfARay) {
-  // Halves of a 2 x 1 x 1 box: half areas 5 and 3; three references in one leaf, one in the other.
+  // The root has the two halves of a 2 x 1 x 1 box: its half area is 5, theirs is 3. One leaf has three references, the
+  // other one.
   Bvh bvh;
   bvh.nodes = {
       {{vec3(0.0F), vec3(2, 1, 1)}, 1, 0}, {{vec3(0.0F), vec3(1.0F)}, 0, 3}, {{vec3(1, 0, 0), vec3(2, 1, 1)}, 3, 1}};

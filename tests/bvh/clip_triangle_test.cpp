@@ -16,8 +16,9 @@ using Real = long double;
 using Vector = glm::vec<3, Real>;
 using Triangle = std::array<vec3, 3>;
 
-/// Bounds of the part of a triangle in a window, by enumerating what can be a corner of it: the triangle's corners, its
-/// sides' points on the window's planes, and the points of the window's edges in the triangle's plane.
+/// Finds the bounds of the part of a triangle in a window. It lists all points that can be a corner of that part: the
+/// triangle's corners, the points of its sides on the window's planes, and the points of the window's edges in the
+/// triangle's plane.
 struct Corners {
   Vector lo{std::numeric_limits<Real>::infinity()};
   Vector hi{-lo};
@@ -39,7 +40,7 @@ struct Corners {
   bool is_empty() const { return lo.x > hi.x; }
 
  private:
-  /// The window's four edges along an axis, seen along it.
+  /// Adds the points on the window's four edges that are parallel to an axis.
   void add_edges(const Triangle& triangle, int axis) {
     const int i = (axis + 1) % 3;
     const int j = (axis + 2) % 3;
@@ -62,7 +63,7 @@ struct Corners {
       if (p[axis] >= window_.lo[axis] && p[axis] <= window_.hi[axis]) extend(p);
     }
   }
-  /// `on_plane` is an axis along which the point is inside whatever rounding says.
+  /// Adds a point if it is inside. `on_plane` is an axis along which the point is inside, whatever rounding says.
   void add(const Vector& p, int on_plane) {
     for (int axis = 0; axis < 3; ++axis) {
       if (axis != on_plane && !(p[axis] >= window_.lo[axis] && p[axis] <= window_.hi[axis])) return;
@@ -81,7 +82,7 @@ struct Kind {
   const char* name;
   double scale;
   double offset;
-  /// Width over length.
+  /// The width divided by the length.
   double thickness;
 };
 
@@ -95,7 +96,7 @@ class ClipTriangle : public testing::TestWithParam<Kind> {
   }
   vec3 place(const dvec3& p) const { return vec3(GetParam().scale * (p + GetParam().offset)); }
 
-  /// Every eighth lies in a plane across an axis.
+  /// Every eighth triangle lies in a plane perpendicular to an axis.
   Triangle random_triangle() {
     const dvec3 a = random_point();
     const dvec3 b = random_point();
@@ -107,7 +108,7 @@ class ClipTriangle : public testing::TestWithParam<Kind> {
     }
     return triangle;
   }
-  /// Of any size, some around the whole triangle, some with a side through a corner of it.
+  /// Returns a window of any size; some contain the whole triangle, some have a side through a corner of it.
   Bounds random_window(const Triangle& triangle) {
     const dvec3 center = random_point();
     const double size = std::pow(10.0, uniform(-4, 0.5));
@@ -134,7 +135,7 @@ TEST_P(ClipTriangle, HoldsThePartInTheWindowAndLittleElse) {
     Real size = 0;
     for (const vec3& corner : triangle) size = std::max(size, Real(max_abs_component(corner)));
     for (int axis = 0; axis < 3; ++axis) {
-      // Long double's own rounding; the margin against double's is 2^16 of it.
+      // The slack is long double's own rounding; the margin for double's is 2^16 times larger.
       const Real slack = 0x1p-60L * size;
       ASSERT_LE(Real(box.lo[axis]), exact.lo[axis] + slack) << i;
       ASSERT_GE(Real(box.hi[axis]), exact.hi[axis] - slack) << i;
@@ -152,7 +153,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ClipTriangle,
                          [](const auto& kind) { return kind.param.name; });
 
 TEST(ClipTriangleBox, IsTight) {
-  // Cut at x = 1 and y = 0.5: what is left reaches from (1, 0.5) to (3, 0.5) and up to (1, 1.5), z = x.
+  // The triangle is cut at x = 1 and y = 0.5. The rest reaches from (1, 0.5) to (3, 0.5) and up to (1, 1.5), with z =
+  // x.
   const Triangle triangle{vec3(0, 0, 0), vec3(4, 0, 4), vec3(0, 2, 0)};
   const Bounds box = clip_triangle(triangle, {vec3(1, 0.5F, -9), vec3(9)});
   EXPECT_LE(max_abs_component(box.lo - vec3(1, 0.5F, 1)), 1e-6F);

@@ -27,7 +27,7 @@ world::Scene scene_of(std::vector<world::Object> objects) {
   return scene;
 }
 
-/// A packed scene with another tree in the place of its own: what a builder that splits primitives would make.
+/// Returns a packed scene whose tree is replaced, as by a builder that splits primitives.
 PackedScene with_tree(const world::Scene& scene, const Bvh& bvh) {
   PackedScene packed = pack_scene(scene, "median");
   std::vector<layout::Primitive> bounded(packed.bounded_count);
@@ -43,7 +43,7 @@ PackedScene with_tree(const world::Scene& scene, const Bvh& bvh) {
   return packed;
 }
 
-/// A tree of leaves of one reference each, along a chain.
+/// Returns a tree along a chain, in which each leaf has one reference.
 Bvh chain_of(std::span<const Bounds> boxes, std::span<const uint32_t> references) {
   Bvh bvh;
   bvh.references.assign(references.begin(), references.end());
@@ -66,7 +66,7 @@ TEST(FindTreeFaults, TreesOfAllBuildersHaveNone) {
   }
 }
 
-/// Every plane of every box of a tree, moved inward by a step.
+/// Every plane of every box of a tree is moved inward by a step.
 TEST(FindTreeFaults, ShrunkenBoxesAreFound) {
   const PackedScene packed = pack_scene(test::make_scene_of_everything(40), "sah");
   size_t found = 0;
@@ -109,7 +109,7 @@ TEST(FindTreeFaults, WhatIsNoBoxHoldsNothing) {
 
 TEST(FindTreeFaults, TheFirstIsNamedWhateverTheThreads) {
   PackedScene packed = pack_scene(test::make_scene_of_everything(30'000), "sah");
-  // All boxes to points.
+  // All boxes shrink to points.
   for (Node& node : packed.nodes) node.frame.w &= 0xFF000000;
   const TreeFaults by_one = find_tree_faults(packed, {.thread_count = 1});
   double told = 0.0;
@@ -140,7 +140,7 @@ TEST(FindTreeFaults, LeavesAreSortedByKind) {
   FAIL() << "no leaf of two kinds";
 }
 
-/// A triangle and a sphere beside it, both in several leaves.
+/// A triangle and a sphere beside it; both are in several leaves.
 class SplitTree : public testing::Test {
  protected:
   static world::Scene make_scene() {
@@ -153,7 +153,7 @@ class SplitTree : public testing::Test {
   TreeFaults faults() const { return find_tree_faults(with_tree(scene_, chain_of(boxes_, references_))); }
 
   world::Scene scene_ = make_scene();
-  // The triangle at x = 1 and at x = 2.5, each part's own bounds; the sphere at y = 0.25.
+  // The triangle is cut at x = 1 and at x = 2.5, and each part has its own bounds; the sphere is cut at y = 0.25.
   std::vector<Bounds> boxes_ = {{vec3(0, 0, 0), vec3(1, 3, 1)},
                                 {vec3(1, 0, 0.125F), vec3(2.5F, 2.25F, 0.875F)},
                                 {vec3(2.5F, 0, 0.3125F), vec3(4, 1.125F, 0.6875F)},
@@ -182,13 +182,13 @@ TEST_F(SplitTree, EveryMissingPartIsFound) {
   }
 }
 
-/// A gap of the size of a few of the grid's steps, on each side of each part that another part does not cover.
+/// The test makes a gap of a few steps of the grid, on each side of each part that no other part covers.
 TEST_F(SplitTree, EveryShrunkenPartIsFound) {
   for (size_t i = 0; i < boxes_.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const bool is_upper : {false, true}) {
         const std::vector<Bounds> boxes = boxes_;
-        // The sphere's boxes are larger than it is.
+        // The sphere's boxes are larger than the sphere.
         const float step = i < 3 ? 0.1F : 0.7F;
         if (is_upper) {
           boxes_[i].hi[axis] -= step;
@@ -208,7 +208,7 @@ TEST_F(SplitTree, BoxesAboveALeafCount) {
   Node& root = packed.nodes[0];
   uint32_t i = 0;
   while (child_of(root, i).kind != ChildKind::kNode) ASSERT_LT(++i, layout::NODE_WIDTH);
-  // Its hi of x; at least one leaf below loses its end.
+  // This lowers the box's upper x; at least one leaf below it loses its end.
   root.lo.w -= 0x10U << (8 * i);
   EXPECT_THAT(find_tree_faults(packed).first, HasSubstr("leaves, and their boxes do not cover it"));
 }

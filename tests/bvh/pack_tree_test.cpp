@@ -21,8 +21,8 @@ uint32_t byte_of(uint32_t word, uint32_t index) {
   return (word >> (8 * index)) & 0xFF;
 }
 
-/// That fp32 gives each plane of a child's box once rounded, with a fused multiply-add and without one: steps are
-/// powers of two.
+/// Expects that fp32 rounds each plane of a child's box only once, with and without a fused multiply-add. This holds
+/// because steps are powers of two.
 void expect_contraction_is_no_matter(const Node& node, uint32_t child) {
   const ExactBounds box = child_box(node, child);
   const uvec3 hi_words(node.lo.w, node.hi.x, node.hi.y);
@@ -46,7 +46,7 @@ std::vector<Bounds> random_boxes(size_t count, double spread, double size, uint3
   std::vector<Bounds> boxes(count);
   for (Bounds& box : boxes) {
     const dvec3 center = spread * (2.0 * dvec3(uniform(), uniform(), uniform()) - 1.0);
-    // Some are flat.
+    // Some boxes are flat.
     const dvec3 half = size * dvec3(uniform(), generator() % 4 == 0 ? 0.0 : uniform(), uniform());
     box.lo = vec3(center - half);
     box.hi = vec3(center + half);
@@ -73,8 +73,8 @@ class Walk {
   }
 
  private:
-  /// Returns the bounds of all leaves below. `entries`: families on the stack when a ray leaves the node, one for
-  /// each node above.
+  /// Returns the bounds of all leaves below. `entries` is the number of families on the stack when a ray leaves the
+  /// node, one for each node above it.
   Bounds visit(uint32_t index, uint32_t entries) {
     ++visited_;
     const Node& node = tree_.nodes.at(index);
@@ -105,7 +105,8 @@ class Walk {
 
   const PackedTree& tree_;
   const Bvh& bvh_;
-  /// By their first reference. That a leaf's box holds its primitives is the builder's part.
+  /// The leaves by their first reference. The builder, not the packing, must make sure that a leaf's box holds its
+  /// primitives.
   std::map<uint32_t, BvhNode> leaves_;
   std::vector<size_t> seen_;
   size_t visited_ = 0;
@@ -136,11 +137,11 @@ TEST_P(PackTreeFilled, NodesAreFilled) {
   const PackedTree tree = pack_tree(bvh);
   const auto leaves = static_cast<size_t>(
       std::count_if(bvh.nodes.begin(), bvh.nodes.end(), [](const BvhNode& node) { return node.count > 0; }));
-  // Full nodes would take a third of the leaves.
+  // With full nodes, there would be a third as many nodes as leaves.
   EXPECT_LT(tree.nodes.size(), leaves / 2);
 }
 
-// Areas that fp32 does not hold, and such as are all 0.
+// Some sizes give areas that fp32 cannot hold, and some give only areas of 0.
 INSTANTIATE_TEST_SUITE_P(Sizes, PackTreeFilled,
                          testing::Values(std::pair(1.0, 0.01), std::pair(1e25, 1e23), std::pair(1e-25, 1e-27),
                                          std::pair(1.0, 0.0)));

@@ -31,7 +31,7 @@ std::vector<Bounds> boxes_of(const std::vector<Triangle>& triangles) {
   return boxes;
 }
 
-/// What a tree is built over, and who holds it.
+/// The input of a builder, with the object that holds its data.
 struct Input {
   std::vector<Triangle> triangles;
   std::vector<Bounds> boxes = boxes_of(triangles);
@@ -51,7 +51,7 @@ double area_of(const Polygon& polygon) {
   return 0.5 * glm::length(sum);
 }
 
-/// The parts of a convex polygon on the two sides of a plane across an axis.
+/// Returns the parts of a convex polygon on the two sides of a plane perpendicular to an axis.
 std::pair<Polygon, Polygon> cut(const Polygon& polygon, int axis, double plane) {
   std::pair<Polygon, Polygon> parts;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -68,11 +68,11 @@ std::pair<Polygon, Polygon> cut(const Polygon& polygon, int axis, double plane) 
   return parts;
 }
 
-/// What is left of convex polygons outside a box, convex again.
+/// Returns the parts of convex polygons outside a box, again as convex polygons.
 std::vector<Polygon> subtract(const std::vector<Polygon>& polygons, const Bounds& box) {
   std::vector<Polygon> outside;
   const auto add = [&](Polygon part, int axis, double plane) {
-    // What lies in a side of the box is in the box.
+    // A polygon in a side of the box counts as inside the box.
     const bool has_area = std::any_of(part.begin(), part.end(), [&](const dvec3& p) { return p[axis] != plane; });
     if (part.size() >= 3 && has_area) outside.push_back(std::move(part));
   };
@@ -88,7 +88,7 @@ std::vector<Polygon> subtract(const std::vector<Polygon>& polygons, const Bounds
   return outside;
 }
 
-/// Two triangles across everything else, of ordinary shape: they are cut along all axes.
+/// Adds two triangles of ordinary shape across everything else; they are cut along all axes.
 Input make_input(uint32_t pipes) {
   Input input{triangles_of(test::make_pipes(pipes))};
   input.triangles.push_back({vec3(-1, -1, -0.5F), vec3(2, -0.5F, 1), vec3(0, 2, 1.5F)});
@@ -117,13 +117,13 @@ TEST(SpatialBuilder, IsATreeWhosePartsCoverEveryTriangle) {
     const double whole = area_of({dvec3(t[0]), dvec3(t[1]), dvec3(t[2])});
     double area = 0.0;
     for (const Polygon& polygon : uncovered[i]) area += area_of(polygon);
-    // A box short by one float's rounding would leave about 1e-8 uncovered.
+    // If a box were too small by one float's rounding, an area of about 1e-8 would be uncovered.
     EXPECT_LE(area, 1e-12 * whole) << "triangle " << i;
   }
 }
 
 TEST(SpatialBuilder, IsTheSameForAnyNumberOfThreads) {
-  // Beyond the size that is built on one thread.
+  // The input is larger than one that is built on one thread.
   const Input input = make_input(650);
   const Bvh expected = build_bvh("spatial", input.get(), {.thread_count = 1});
   for (const unsigned thread_count : {2U, 7U}) {

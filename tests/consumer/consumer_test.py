@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The installed library as another project uses it without CMake, and the promises of its headers and of docs/library.md.
+"""Tests the installed library as another project uses it without CMake, and the promises of its headers and of
+docs/library.md.
 
-consumer_test.py TEST PREFIX FOLDER COMPILER: PREFIX is where promin is installed, FOLDER the test's own.
+consumer_test.py TEST PREFIX FOLDER COMPILER: PREFIX is the folder where promin is installed, FOLDER the test's own.
 """
 
 import concurrent.futures
@@ -65,7 +66,7 @@ def links_shared_by_pkg_config(installed):
 
 
 def links_static_by_pkg_config(installed):
-    # A prefix as it is without shared libraries; the linker would take those first.
+    # This prefix is like one without shared libraries; the linker would prefer those.
     prefix = installed.folder / "prefix"
     shutil.copytree(installed.prefix, prefix, symlinks=True, ignore=shutil.ignore_patterns("bin", "libpromin*.so.*"))
     for link in prefix.glob("lib*/**/libpromin*.so"):
@@ -100,7 +101,7 @@ def builds_the_documented_program(installed):
     options.append("-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
     run("cmake", "-G", "Ninja", "-S", installed.folder, "-B", build, *options)
     run("cmake", "--build", build)
-    # The same with pkg-config.
+    # The same program builds with pkg-config.
     environment = {**os.environ, "PKG_CONFIG_PATH": str(installed.libraries / "pkgconfig")}
     run("sh", "-c", command, cwd=installed.folder, env=environment)
     shutil.copy(REPOSITORY / "scenes" / "sphere.gltf", installed.folder / "scene.gltf")
@@ -112,12 +113,12 @@ def builds_the_documented_program(installed):
 
 
 def headers_stand_alone(installed):
-    """Each public header compiles by itself, and what it brings along is the standard library, GLM and its like."""
+    """Each public header compiles by itself, and includes only the standard library, GLM and the headers these need."""
     include = installed.prefix / "include"
 
     def find_faults(header):
         source = installed.folder / (str(header).replace("/", "_") + ".cpp")
-        # Twice: it guards itself.
+        # The header is included twice, to check its include guard.
         source.write_text(f"#include <{header}>\n" * 2)
         list_file = source.with_suffix(".d")
         command = [installed.compiler, "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"]
@@ -127,9 +128,9 @@ def headers_stand_alone(installed):
             return [f"{header}: {done.stderr}"]
         faults = []
         for name in list_file.read_text().replace("\\\n", " ").split()[2:]:
-            file = pathlib.Path(name).absolute()  # a compiler cache may shorten them
+            file = pathlib.Path(name).absolute()  # a compiler cache may shorten the paths
             is_ours = file.is_relative_to(include / "promin")
-            # Debian 13 has the kernel's headers, which the standard library brings along, in /usr/lib/linux/uapi.
+            # In Debian 13 the kernel's headers, which the standard library includes, are in /usr/lib/linux/uapi.
             is_systems = r"/(c\+\+|gcc|clang|glm)/|^/usr/include/(?!vulkan|nlohmann)|^/usr/lib/linux/uapi/"
             if not is_ours and not re.search(is_systems, str(file)):
                 faults.append(f"{header} includes {file}")
@@ -149,7 +150,7 @@ def headers_stand_alone(installed):
 
 
 def shows_what_is_public(installed):
-    """The shared libraries show what the public headers mark, and nothing else of promin."""
+    """The shared libraries export the symbols that the public headers mark, and nothing else of promin."""
     text = "".join((installed.prefix / "include" / name).read_text() for name in installed.headers())
     text = re.sub(r"//.*|#define.*", "", text)
     classes = set(re.findall(r"\b(?:class|struct) PROMIN_EXPORT (\w+)", text))
@@ -158,7 +159,7 @@ def shows_what_is_public(installed):
     faults = []
     for name, wanted in (("libpromin.so", functions), ("libpromin_host.so", {"load_scene", "validate"})):
         table = run("nm", "--dynamic", "--demangle", "--defined-only", installed.libraries / name)
-        # Qualified names without their arguments, of what is no template of the standard library.
+        # The set has qualified names without their arguments, except for templates of the standard library.
         shown = set(re.findall(r" \w (?:(?:typeinfo|typeinfo name|vtable) for )?promin::(?:gpu::)?([\w:~]+)", table))
         for symbol in sorted(shown):
             owner, _, function = symbol.rpartition("::")
@@ -170,7 +171,7 @@ def shows_what_is_public(installed):
 
 
 def reference_is_complete(installed):
-    """Doxygen has nothing to complain about in the public headers. Skipped where it is not installed."""
+    """Doxygen accepts the public headers without a warning. The test is skipped if Doxygen is not installed."""
     if shutil.which("doxygen") is None:
         print("doxygen is not installed")
         sys.exit(77)

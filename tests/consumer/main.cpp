@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a program does with promin as a library: a scene in memory, checked, rendered, changed, rendered again, and
-// rays; a picture to the file that the argument names, and a failure caught.
+// This program uses promin as a library. It makes a scene in memory, checks it, renders it, changes it, renders it
+// again, and casts rays. It writes a picture to the file that the argument names, and catches a failure.
 #include <cstdio>
 #include <vector>
 
@@ -44,17 +44,17 @@ int main(int argument_count, char** arguments) {
   const std::vector<promin::Ray> rays = {{{0, 5, 0}, 0, {0, -1, 0}}};
   std::vector<promin::Hit> hits(rays.size());
   caster.cast(rays, hits);
-  // Through the ball and the edge that the floor's triangles share.
+  // This ray goes through the ball and the edge that the floor's triangles share.
   std::vector<int32_t> counts(rays.size());
   caster.count(rays, counts);
   size_t listed = 0;
   caster.list(rays, [&](const promin::HitList& list) { listed += list.hits.size(); });
 
-  // Pictures are the plugin's, which is to be found wherever this program lies.
+  // The plugin writes pictures. The library must find it wherever this program lies.
   if (argument_count > 1) promin::write_image(arguments[1], after.image);
   const bool is_written = argument_count < 2 || promin::read_image(arguments[1]).size == view.size;
 
-  // A failure of the library is known here by its type.
+  // The program can catch a failure of the library by its type.
   bool is_caught = false;
   view.size = {0, 0};
   try {

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""run_validated.py CONSUMER ARGUMENT...: runs it under the Khronos validation layer, which speaks on standard output:
-anything there beside the consumer's one line is a failure.
+"""run_validated.py CONSUMER ARGUMENT...: runs the consumer under the Khronos validation layer, which writes to the
+standard output. Anything there besides the consumer's one line is a failure.
 
-Exits with 77, which ctest takes for skipped, where the layer is not installed.
+Exits with 77, which ctest counts as skipped, if the layer is not installed.
 """
 
 import os
@@ -25,9 +25,9 @@ def main():
         print("the validation layer is not installed")
         sys.exit(77)
     environment = {**os.environ, "VK_INSTANCE_LAYERS": "VK_LAYER_KHRONOS_validation"}
-    # Not promin's own way to the layer, which would take its messages.
+    # promin's own way to load the layer would take the layer's messages.
     environment.pop("PROMIN_VALIDATION", None)
-    # Warnings as well as errors, by the names of this and of older releases.
+    # The layer reports warnings and errors. The variables are those of this release and of older ones.
     environment["VK_LAYER_REPORT_FLAGS"] = "error,warn,perf"
     environment["VK_KHRONOS_VALIDATION_REPORT_FLAGS"] = "error,warn,perf"
     environment["VK_LOADER_DEBUG"] = "layer"

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
 
-# The library as another project sees it: installed, of both kinds, by CMake and by pkg-config, and as a folder of its
-# own. All of it lies apart from the build's folders, so that the plugin is found by the library's own means.
+# These tests use the library as another project does: installed, of both kinds, with CMake and with pkg-config, and as
+# a folder of that project. All of it lies outside the build's folders, so that the library finds the plugin by its own
+# means.
 set(PROMIN_CONSUMER_DIR ${PROMIN_TESTS_BINARY_DIR}/consumer)
 add_test(NAME Consumer.install
   COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${PROMIN_CONSUMER_DIR}/prefix)
@@ -19,8 +20,8 @@ function(promin_add_consumer NAME)
 endfunction()
 promin_add_consumer(finds_static -DPROMIN_KIND=static -DCMAKE_PREFIX_PATH=${PROMIN_CONSUMER_DIR}/prefix)
 promin_add_consumer(finds_shared -DPROMIN_KIND=shared -DCMAKE_PREFIX_PATH=${PROMIN_CONSUMER_DIR}/prefix)
-# As a part of the consumer: what that makes of the project, and with the label `long`, as it compiles the whole library
-# once more, whether it works.
+# The library is a part of the consumer. A test configures the consumer; a test with the label `long` also builds and
+# runs it, which compiles the whole library once more.
 set(PROMIN_AS_PART -DPROMIN_KIND=static -DPROMIN_SOURCE_DIR=${PROJECT_SOURCE_DIR} -DCMAKE_BUILD_TYPE=Release
     $<$<BOOL:${CCACHE}>:-DCMAKE_CXX_COMPILER_LAUNCHER=${CCACHE}>)
 add_test(NAME Consumer.takes_the_sources_in
@@ -28,7 +29,7 @@ add_test(NAME Consumer.takes_the_sources_in
           -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} ${PROMIN_AS_PART})
 promin_add_consumer(works_with_the_sources ${PROMIN_AS_PART})
 set_tests_properties(Consumer.works_with_the_sources PROPERTIES LABELS "device;long" TIMEOUT 1800)
-# Under the validation layers, which speak on standard output where nobody else listens.
+# These tests run under the validation layers, which write to the standard output if no program listens to them.
 set_tests_properties(Consumer.finds_static PROPERTIES FIXTURES_SETUP consumer)
 add_test(NAME Consumer.breaks_no_rule_of_Vulkan
   COMMAND ${Python3_EXECUTABLE} ${PROMIN_TESTS_DIR}/consumer/run_validated.py

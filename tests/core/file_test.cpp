@@ -16,12 +16,13 @@
 #include "support/temp_folder.h"
 
 namespace {
-/// How many files are renamed before the process ends as if it were killed; below 0 it does not.
+/// The number of files that are renamed before the process ends as if it were killed; a negative number means that it
+/// does not end.
 int renames_to_the_end = -1;
 constexpr int kKilled = 99;
 }  // namespace
 
-/// In place of the C library's.
+/// This function replaces the C library's.
 extern "C" int rename(const char* from, const char* to) noexcept {
   if (renames_to_the_end >= 0 && renames_to_the_end-- == 0) _exit(kKilled);
   return renameat(AT_FDCWD, from, AT_FDCWD, to);
@@ -71,13 +72,13 @@ TEST_F(FileTest, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
     AtomicFile::commit_together(files);
   };
   write_text_file(folder_ / "a.txt", "old");
-  // The last cannot be renamed: a folder has its name by now.
+  // The last file cannot be renamed, because a folder has its name by then.
   EXPECT_THROW(commit([&] { fs::create_directory(folder_ / "c.txt"); }), RunError);
   EXPECT_EQ(text_of(folder_ / "a.txt"), "old");
   EXPECT_FALSE(fs::exists(folder_ / "b.txt"));
   fs::remove(folder_ / "c.txt");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "something was left behind";
-  // Nor is any renamed where one cannot be read back.
+  // No file is renamed if one cannot be read back.
   EXPECT_THROW(commit([&] {
                  for (const auto& entry : fs::directory_iterator(folder_)) {
                    if (entry.path().string().find("c.tmp") != std::string::npos) fs::remove(entry.path());
@@ -90,7 +91,7 @@ TEST_F(FileTest, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "something was left behind";
 }
 
-// Nor are old files gone where the first of the new ones cannot be renamed.
+// The old files are also kept if the first of the new ones cannot be renamed.
 TEST_F(FileTest, OldFilesOfACommitThatFailsAreBack) {
   for (const char* name : {"b.txt", "c.txt"}) write_text_file(folder_ / name, "old");
   {
@@ -130,9 +131,9 @@ TEST_F(FileTest, AKillLeavesNoFilesThatDoNotBelongTogether) {
   }
 }
 
-// Of processes of this machine that are gone; others may still write, and a user's files are none of ours.
+// Temporary files of ended processes of this machine are removed. Files of other processes and of users stay.
 TEST_F(FileTest, LeftoversOfTheDeadAreCleared) {
-  // Beyond the largest process number.
+  // This number is larger than any process number.
   const std::string dead = "a.tmp99999999-" + host_name() + ".exr";
   const std::string others[] = {"a.tmp1-" + host_name() + ".exr", "a.tmp99999999-elsewhere.exr", "a.tmp.exr",
                                 "a.tmp99999999.exr", "a.exr"};
@@ -144,7 +145,7 @@ TEST_F(FileTest, LeftoversOfTheDeadAreCleared) {
   clear_leftovers(folder_ / "nowhere");
 }
 
-// One that had this process's number has left something; what this one is at stays.
+// An earlier process with the same number has left a file; the file that this process is writing stays.
 TEST_F(FileTest, ThreadsMayWriteOneFileAtATime) {
   AtomicFile first(folder_ / "a.exr");
   AtomicFile second(folder_ / "a.exr");
@@ -203,7 +204,7 @@ TEST_F(FileTest, AFileKeepsTheModeOfTheOneItReplaces) {
     write_text_file(file, "old");
     fs::permissions(file, static_cast<fs::perms>(mode));
     AtomicFile output(file);
-    // Nobody may read meanwhile who may not afterwards.
+    // Nobody who may not read the file at the end may read it while it is written.
     EXPECT_EQ(mode_of(output.temporary()), mode | 0200U);
     std::ofstream(output.temporary()) << "new";
     output.commit();
@@ -231,7 +232,7 @@ TEST_F(FileTest, NamesMayBeAsLongAsTheFileSystemAllows) {
     AtomicFile::commit_together(files);
     EXPECT_EQ(text_of(file), "new");
   }
-  // One whose ending is the longer part.
+  // The extension of this name is longer than the rest.
   write_text_file(folder_ / ("a." + std::string(kMost - 2, 'e')), "new");
 }
 

@@ -63,7 +63,7 @@ TEST_F(ScratchFileTest, ReplacesNothing) {
   EXPECT_EQ(file_count(), 1);
 }
 
-// Before anything is written: the room is taken at once.
+// The space is reserved at once, before anything is written.
 TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
   EXPECT_THAT(failure(folder_ / "none" / "a.exr", 10), testing::HasSubstr("does not exist"));
   const std::string message = [&] {
@@ -76,7 +76,7 @@ TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
   EXPECT_EQ(file_count(), 0);
 }
 
-// The system writes then what there is room for, and tells no error before it is asked for the rest.
+// The system writes as much as there is room for, and reports an error only when it is asked to write the rest.
 TEST_F(ScratchFileTest, ADiskThatFillsIsToldByWhoeverWrites) {
   ScratchFile file(folder_ / "a.exr", 0);
   const std::vector<std::byte> bytes(3 << 20, std::byte{7});
@@ -86,7 +86,7 @@ TEST_F(ScratchFileTest, ADiskThatFillsIsToldByWhoeverWrites) {
   }();
   EXPECT_THAT(message,
               testing::HasSubstr("a.exr: there is no room for 1 MB beside the output file until it can be written ("));
-  // And what was written before is there.
+  // The data that were written before are still there.
   std::vector<std::byte> read(1 << 20);
   file.read(0, read);
   EXPECT_TRUE(std::equal(read.begin(), read.end(), bytes.begin()));

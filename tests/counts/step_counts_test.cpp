@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Node steps and primitive tests of fixed rays through fixed scenes, for every builder, against stored ones: what makes
-// rays faster or slower whatever the machine. PROMIN_UPDATE_COUNTS=1, which tools/update_counts sets, stores them anew.
+// These tests compare node steps and primitive tests of fixed rays through fixed scenes with stored numbers, for every
+// builder. The numbers show what makes rays faster or slower on any machine. PROMIN_UPDATE_COUNTS=1, which
+// tools/update_counts sets, stores new numbers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,10 +30,10 @@ using measure::RaySet;
 using measure::StepCounts;
 
 constexpr uint32_t kSide = 128;
-/// GPUs may round a division otherwise than CPU drivers, on which nothing may differ.
+/// GPUs may round a division differently from CPU drivers; on CPU drivers no count may differ.
 constexpr double kGpuTolerance = 1e-3;
 
-/// The counts of one scene by "builder rays".
+/// The counts of one scene. The key is "builder rays".
 using Counts = std::map<std::string, StepCounts>;
 
 constexpr const char* kHead = "# builder rays: count hits node_steps primitive_tests; by tools/update_counts\n";
@@ -73,7 +74,7 @@ std::string describe_change(const char* what, uint64_t stored, uint64_t now) {
   return fmt::format("; {} {} -> {} ({:+.3f} %)", what, stored, now, percent);
 }
 
-/// Empty if all are as stored; otherwise a line for each that is not.
+/// Returns an empty text if all counts are as stored; otherwise a line for each count that is not.
 std::string compare_counts(const Counts& now, const Counts& stored, double tolerance) {
   std::string text;
   for (const auto& [name, c] : now) {
@@ -140,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, StepCountsTest,
 
 class RaysFromAfarTest : public test::DeviceTest {};
 
-/// At points of the unit ball from a distance, as near as fp32 brings them.
+/// Returns rays from this distance at points of the unit ball, as exactly as fp32 can represent them.
 RaySet make_rays_from(double distance) {
   RaySet set{"from afar", HitQuery::kNearest, {}};
   std::mt19937 generator(1);
@@ -155,8 +156,8 @@ RaySet make_rays_from(double distance) {
   return set;
 }
 
-// A floor without end sends mirror and shadow rays from there, and what a box may hide grows with the distance: once
-// every box was met, and llvmpipe cut the loops.
+// An endless floor makes mirror and shadow rays start far away, and a box's margin grows with the distance. Without a
+// remedy every box was met, and llvmpipe cut the loops.
 TEST_F(RaysFromAfarTest, TakeNoMoreStepsThanOthers) {
   const measure::StepCounter counter(device(), measure::make_wavy_sphere(20000), "sah");
   const StepCounts near = counter.count(make_rays_from(10.0));
@@ -166,7 +167,7 @@ TEST_F(RaysFromAfarTest, TakeNoMoreStepsThanOthers) {
     EXPECT_LT(static_cast<double>(far.node_steps), 1.5 * static_cast<double>(near.node_steps)) << distance;
     EXPECT_NEAR(static_cast<double>(far.hits), static_cast<double>(near.hits), 0.03 * near.rays) << distance;
   }
-  // From there fp32's grid is as coarse as the tree, which most rays miss and others go through the middle of.
+  // At these distances fp32's grid is as coarse as the tree; most rays miss the tree, and others go through its middle.
   for (const double distance : {1e7, 1e8, 1e9, 1e12}) {
     const StepCounts far = counter.count(make_rays_from(distance));
     EXPECT_LT(static_cast<double>(far.node_steps), 3.0 * static_cast<double>(near.node_steps)) << distance;

@@ -18,7 +18,7 @@ struct BranchConstants {
   std::vector<gpu::SpecializationConstant> list() const { return {{0, first}, {1, second}, {2, third ? 1U : 0U}}; }
 };
 
-/// All that differ in what they reach.
+/// Returns all values that lead to different branches.
 inline std::vector<BranchConstants> all_branch_constants() {
   std::vector<BranchConstants> all;
   for (uint32_t i = 0; i < 18; ++i) all.push_back({i % 3, i / 3 % 3, i / 9 != 0});

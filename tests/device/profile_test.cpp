@@ -9,7 +9,7 @@
 namespace promin::gpu {
 namespace {
 
-// Of VkDriverId, as Vulkan's registry has them.
+// Values of VkDriverId from Vulkan's registry.
 constexpr uint32_t kNvidia = 4;
 constexpr uint32_t kIntel = 6;
 constexpr uint32_t kSwiftShader = 10;
@@ -26,7 +26,7 @@ DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 
                        .texel_buffer_bytes = kTexelBytes});
 }
 
-/// What a GPU is given, be it discrete or integrated.
+/// Expects the profile of a GPU, discrete or integrated.
 void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
   for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal}) {
@@ -49,7 +49,7 @@ void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.measured_rays, 1U << 20);
 }
 
-/// What any CPU device with 8 cores is given, but for what is lavapipe's own.
+/// Expects the profile of any CPU device with 8 cores, without what is special to lavapipe.
 void expect_cpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
   EXPECT_TRUE(profile.fetches_film_texels);

@@ -35,7 +35,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::Not;
 
-/// What spirv-val finds wrong with a module; empty if nothing.
+/// Returns the faults that spirv-val finds in a module; empty if there are none.
 std::string find_faults(std::span<const uint32_t> spirv) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / ("promin_spirv_test_" + std::to_string(getpid()) + ".spv");
@@ -77,7 +77,7 @@ TEST(SpecializeTest, ConstantsThatAreNotGivenHaveTheirDefaults) {
 }
 
 TEST(SpecializeTest, WhatIsNoModuleIsRefused) {
-  // Cut within its second instruction.
+  // The module is cut within its second instruction.
   EXPECT_THROW(specialize(std::span(k_branches_spirv).first(9), {}), std::logic_error);
   EXPECT_THROW(specialize(std::vector<uint32_t>(4), {}), std::logic_error);
   EXPECT_THROW(specialize(std::vector<uint32_t>(40), {}), std::logic_error);
@@ -86,11 +86,13 @@ TEST(SpecializeTest, WhatIsNoModuleIsRefused) {
 struct Kernel {
   const char* name;
   std::span<const uint32_t> spirv;
-  /// What the masks of features leave of it, at least; half as many of those that any run takes.
+  /// At least this many modules remain different after specialisation by masks of features; a usual run tries half as
+  /// many.
   size_t least_module_count = 20;
 };
 const Kernel kKernels[] = {{"Cast", k_cast_spirv},
-                           // Kinds of primitives and open shapes are all that it knows, each of which is there or not.
+                           // This kernel depends only on the kinds of primitives and on open shapes; each kind is there
+                           // or not.
                            {"Crossings", k_crossings_spirv, 16},
                            {"CameraStage", k_camera_stage_spirv},
                            {"FollowPaths", k_follow_paths_spirv},
@@ -103,7 +105,7 @@ std::vector<SpecializationConstant> constants_of(uint64_t features, uint32_t pac
           {layout::CONSTANT_ALL_ASK_FOR_ANY, any},
           {layout::CONSTANT_STEPS_TOGETHER, any},
           {layout::CONSTANT_WAITS_WITH_SOLIDS, any},
-          // Only one of the kernels has it.
+          // Only one of the kernels has this constant.
           {layout::CONSTANT_LISTS_CROSSINGS, packet_size > 1 ? 1U : 0U}};
 }
 
@@ -119,7 +121,7 @@ TEST_P(KernelTest, WhatIsLeftIsValidWithEachFeature) {
   for (uint32_t bit = 0; bit < 64; ++bit) {
     const uint64_t feature = uint64_t{1} << bit;
     add(feature, bit % 4 < 2 ? 1 : 8, bit % 2);
-    // All but one is much to validate.
+    // Masks without one feature are many modules to validate, so only thorough tests use them.
     if (test::is_thorough()) add(~feature, bit % 4 < 2 ? 8 : 1, bit % 2);
   }
   EXPECT_GE(modules.size(), test::is_thorough() ? GetParam().least_module_count : GetParam().least_module_count / 2);
@@ -141,9 +143,9 @@ TEST_P(KernelTest, EachKindOfPrimitiveAddsCode) {
   }
 }
 
-// A caller that asks for one thing more waits for the kernels that read it, not for the others.
+// If a caller asks for one thing more, it waits for the kernels that depend on it, and not for the others.
 TEST(SpecializeTest, UsesOfOneSceneShareTheKernelsThatDoNotDiffer) {
-  // Those of a scene like scenes/showcase.gltf.
+  // These are the features of a scene like scenes/showcase.gltf.
   constexpr uint64_t kScene = 0xE3FFF;
   std::vector<uint64_t> masks = {kScene};
 #define PROMIN_FEATURE(NAME, BIT, LABEL)

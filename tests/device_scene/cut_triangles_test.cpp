@@ -9,8 +9,8 @@
 namespace promin {
 namespace {
 
-/// Triangle 0 has its corners in a line, 1 and 2 share its short sides; the middle of its long side lies on the edge
-/// of 3. Triangle 4 is elsewhere.
+/// Triangle 0 has its corners in a line; 1 and 2 share its short sides; the middle of its long side lies on the edge of
+/// 3. Triangle 4 is elsewhere.
 Mesh make_mesh() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {4, 0, 0}, {1, 2, 0}, {1, -2, 0}, {9, 9, 9}};
@@ -49,7 +49,8 @@ TEST(CutTriangles, CutsTheNeighbourAtTheCornerOnItsEdge) {
 }
 
 TEST(CutTriangles, CutsAcrossTrianglesInOneLine) {
-  // Two triangles in a line share their long side: each middle lies on an edge beside the other.
+  // Two triangles whose corners lie in a line share their long side; the middle corner of each lies on an edge of a
+  // neighbour.
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0}, {1, 2, 0}, {1, -2, 0}};
   mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 4, 1}, {1, 4, 3}, {0, 2, 5}, {2, 3, 5}};
@@ -65,7 +66,8 @@ TEST(CutTriangles, NumbersStayThoseOfTheScene) {
   mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
   const PackedScene packed =
       pack_scene(scene_of({world::Sphere(), mesh, world::NotDrawn(), mesh, world::Plane()}), "sah");
-  // One sphere, twice five triangles with one cut in two, of which one is not packed, and a plane.
+  // The scene has one sphere, two objects of five triangles and a plane. In each object one triangle is cut in two and
+  // one is not packed.
   ASSERT_EQ(packed.primitives.size(), 12U);
   const std::vector<PrimitiveId> expected = {{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 3}, {1, 3}, {1, 4},
                                              {3, 0}, {3, 1}, {3, 2}, {3, 3}, {3, 3}, {3, 4}, {4, 0}};
@@ -74,7 +76,8 @@ TEST(CutTriangles, NumbersStayThoseOfTheScene) {
     EXPECT_EQ(id.object, expected[order].object) << order;
     EXPECT_EQ(id.primitive, expected[order].primitive) << order;
   }
-  // The first part keeps the third corner; the second has the cut there, 1/4 of the way from it to the first.
+  // The first part keeps the third corner. The third corner of the second part is the cut, 1/4 of the way from the
+  // third corner to the first.
   EXPECT_EQ(weights_of_triangle(packed.numbers, 2, 1, vec2(0.25F, 0.5F)), vec2(0.25F, 0.5F));
   for (const uint32_t order : {4U, 5U, 10U, 11U}) {
     const vec2 third = weights_of_triangle(packed.numbers, order, expected[order].object, vec2(0, 1));

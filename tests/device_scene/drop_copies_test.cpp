@@ -14,13 +14,13 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// A triangle, as often, between two that lie beside it.
+/// Returns a scene with this number of copies of a triangle, between two triangles beside it.
 Scene make_scene(uint32_t copies, const Material& material) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)};
   mesh.triangles.emplace_back(3, 4, 5);
   for (uint32_t i = 0; i < copies; ++i) mesh.triangles.emplace_back(0, 1, 2);
-  // The same face of other corners is no copy: its weights differ.
+  // A face with the same corners in another order is not a copy, because its weights differ.
   mesh.triangles.emplace_back(1, 2, 0);
   Scene scene;
   scene.add("", std::move(mesh));
@@ -48,7 +48,7 @@ TEST(DropCopiesTest, ManyLeaveTheTreeAndFewStay) {
   }
 }
 
-/// What lies behind them shows through.
+/// Surfaces behind such copies are seen through them.
 TEST(DropCopiesTest, WhatIsNotOpaqueStays) {
   Material blend;
   blend.alpha_mode = AlphaMode::kBlend;
@@ -70,7 +70,7 @@ TEST(CopiedHitsTest, CopiesAreListedInTheOrderOfHits) {
     made.primitive = primitive;
     return made;
   };
-  // Two rays that meet the copies, and one between them that does not.
+  // Two rays hit the copies; one between these rays does not.
   const std::vector<Hit> hits = {hit(1, 0, 1), hit(1, 1, 0), hit(2, 1, 5), hit(3, 1, 5), hit(4, 0, 1)};
   const std::vector<uint64_t> offsets = {0, 3, 4, 5};
   const auto list = [&](uint64_t budget) {

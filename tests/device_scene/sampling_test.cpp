@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// Row of the i-th sample, as shaders/picture/camera.glsl has it.
+/// Returns the row of the i-th sample, as shaders/picture/camera.glsl computes it.
 uint32_t row_of(uint32_t index, uint32_t count, uint32_t generator) {
   return static_cast<uint32_t>((static_cast<uint64_t>(generator) * (index + 1)) % (count + 1)) - 1;
 }
@@ -35,7 +35,7 @@ TEST_P(SamplingTest, EachRowHasOneSampleAndTheCentreIsTheMean) {
 INSTANTIATE_TEST_SUITE_P(Counts, SamplingTest,
                          testing::Values(1U, 2U, 3U, 4U, 5U, 8U, 16U, 64U, 100U, 128U, 129U, 1000U, 65535U));
 
-/// Of a filter 2 wide, unnormalised.
+/// Returns the weight of a filter with a width of 2; it is not normalised.
 double weight_of(PixelFilter filter, double x) {
   const double t = 0.5 * (1.0 + x);
   constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -53,7 +53,7 @@ double weight_of(PixelFilter filter, double x) {
   return 0.0;
 }
 
-// The share of samples before a place is that of the filter's weight, by a sum over small steps.
+// The fraction of samples before a place is that of the filter's weight, which is summed over small steps.
 TEST(PixelFilterTest, SamplesAreAsDenseAsTheWeight) {
   for (size_t number = 0; number < pixel_filter_names().size(); ++number) {
     const auto filter = static_cast<PixelFilter>(number);

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-// Of any 2^m first points there is one in each box of area 2^-m whose sides are powers of two: 2^a columns of 2^(m - a)
+// Of the first 2^m points, each box of area 2^-m whose sides are powers of two has one point: 2^a columns of 2^(m - a)
 // rows, for each a.
 TEST(ScrambledPointsTest, FirstPointsAreNets) {
   for (const uvec2& pixel : {uvec2(0), uvec2(1, 0), uvec2(0, 1), uvec2(639, 17), uvec2(32767)}) {
@@ -34,7 +34,7 @@ TEST(ScrambledPointsTest, FirstPointsAreNets) {
   }
 }
 
-// As many of a later run of as many points.
+// The same holds for any later batch of 2^m points.
 TEST(ScrambledPointsTest, BatchesAreNetsToo) {
   const ScrambledPoints points(uvec2(3, 5));
   for (uint32_t first = 0; first < 256; first += 32) {
@@ -58,7 +58,7 @@ TEST(ScrambledPointsTest, CoordinatesAreExact) {
   }
 }
 
-// Pixels side by side have points of their own: of 64 pixels the first ones are as even as chance.
+// Neighbouring pixels have different points: the first points of 64 pixels are as evenly spread as random ones.
 TEST(ScrambledPointsTest, PixelsDiffer) {
   double sum = 0.0;
   double squares = 0.0;
@@ -83,7 +83,7 @@ TEST(FilterPlacesTest, AreThoseOfTheSharesOfTheFilter) {
       const double share = (i + 0.37) / 4097.0;
       const auto width = static_cast<double>(view.filter_width);
       const double expected = 0.5 + place_of_share(view.filter, width, share);
-      // At the ends of a filter, where it weighs nothing, the places of shares lie far apart.
+      // At the ends of a filter, where its weight is almost 0, small steps of the fraction are far apart.
       const double tolerance = share > 0.002 && share < 0.998 ? 2e-3 : 0.06;
       ASSERT_NEAR(places.at(vec2(static_cast<float>(share), 0.5F)).x, expected, tolerance)
           << pixel_filter_names()[number] << " " << share;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// pack_scene_sharing: the first who needs a tree builds it and writes it, the others read it.
+// These tests check pack_scene_sharing(): the first process that needs a tree builds and writes it, and the others read
+// it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ class SharedTreeTest : public TempFolder {
   PackedScene pack(const world::Scene& scene, const BuildOptions& options = {}) const {
     return pack_scene_sharing(file_, scene, "median", options);
   }
-  /// What the tests know the whole by: the tree, and the primitives in its order.
+  /// Expects that the packed scene is the one of this test, by its tree and the primitives in the tree's order.
   void expect_is_own(const PackedScene& packed) const {
     const auto is_same = [](const auto& a, const auto& b) {
       return a.size() == b.size() && std::memcmp(a.data(), b.data(), std::as_bytes(std::span(a)).size()) == 0;
@@ -54,7 +55,7 @@ class SharedTreeTest : public TempFolder {
     return names;
   }
 
-  /// Its folder is not there yet.
+  /// The file's folder does not exist yet.
   const fs::path file_ = folder_ / "trees" / "median.pbvh";
   const world::Scene scene_ = make_scene(kLeastShared + kLeastShared / 10);
   const PackedScene own_ = pack_scene(scene_, "median");

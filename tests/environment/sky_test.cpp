@@ -27,7 +27,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 constexpr double kRoughnesses[] = {0.0, 0.1, 0.2, 0.35, 0.6, 1.0};
-/// Half floats have 11 bits.
+/// The rounding of half floats, which have 11 bits.
 constexpr double kHalfRounding = 0x1p-11;
 
 const dvec3 kAxes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -61,7 +61,7 @@ std::vector<dvec3> make_directions(size_t count) {
   return directions;
 }
 
-/// Many directions, each of which stands for the same solid angle.
+/// Returns many directions, each for the same solid angle.
 std::vector<dvec3> spread_directions(int count) {
   std::vector<dvec3> directions;
   for (int i = 0; i < count; ++i) {
@@ -90,7 +90,7 @@ dvec3 integrate_irradiance(const Environment& environment, const dvec3& normal) 
   return 4.0 / kCount * sum;
 }
 
-/// The mean over the lobe of GGX around its normal, as an integral over half vectors.
+/// Returns the mean over the lobe of GGX around its normal, as an integral over half vectors.
 dvec3 integrate_lobe(const Environment& environment, double roughness, const dvec3& normal) {
   if (roughness == 0.0) return sky_radiance(environment, normal);
   constexpr int kCount = 5000;
@@ -152,7 +152,7 @@ double max_error(const dvec3& a, const dvec3& b) {
   return std::max({difference.x, difference.y, difference.z});
 }
 
-// Light has no bands beyond the second, so that the coefficients have all of it.
+// Light without bands beyond the second, so that the coefficients represent all of it.
 dvec3 smooth_light(const dvec3& d) {
   return {2.0 + d.x - 0.5 * d.y * d.z, 2.0 + d.y + 0.5 * d.x * d.y + 0.25 * d.z * d.x,
           2.0 - d.z + 0.5 * (d.x * d.x - d.y * d.y) + 0.25 * (3.0 * d.z * d.z - 1.0)};
@@ -176,13 +176,14 @@ TEST(SkyTest, IrradianceOfAGradientIsTheIntegral) {
   Environment environment;
   environment.sky = GradientSky{vec3(0.2F, 0.4F, 1.0F), vec3(0.8F), vec3(0.3F, 0.2F, 0.1F), 0.7F, 0.3F};
   const PackedSky sky = pack_sky(environment);
-  // The bands beyond the second are what the coefficients lack.
+  // The coefficients lack the bands beyond the second.
   for (const dvec3& normal : make_directions(10)) {
     EXPECT_LT(max_error(irradiance_over_pi(sky, normal), integrate_irradiance(environment, normal)), 0.01);
   }
 }
 
-// However small a sun is, all of its light arrives: as the cosine to it in the coefficients of the first band, say.
+// However small a sun is, all of its light arrives. In the coefficients of the first band, for example, it arrives with
+// the cosine to the sun.
 TEST(SkyTest, ASinglePixelLosesNoLight) {
   constexpr uint32_t kWidth = 3000;
   constexpr uint32_t kHeight = 1500;
@@ -256,7 +257,8 @@ TEST(SkyTest, LevelsAreTheMeansOverLobes) {
   }
 }
 
-// Along the square's edges, which are half planes below the horizon, and along the fold, which is the horizon.
+// The test moves along the square's edges, which are half planes below the horizon, and along the fold, which is the
+// horizon.
 TEST(SkyTest, NothingJumpsOverTheSeams) {
   const PackedSky sky = pack_sky(make_panorama({512, 256}, smooth_light));
   constexpr double kStep = 1e-7;
@@ -280,7 +282,8 @@ TEST(SkyTest, NothingJumpsOverTheSeams) {
 }
 
 TEST(SkyTest, ThePicturesMiddleIsAheadAndItsQuarterIsRight) {
-  // Six patches: the colour has 1 for the axis and 2 where it is negative.
+  // The panorama has six patches. A patch's colour has 1 in the channel of its axis, and 2 if the direction is
+  // negative.
   const Environment patches = make_panorama({64, 32}, [](const dvec3& d) {
     const dvec3 size = glm::abs(d);
     const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
@@ -305,7 +308,7 @@ TEST(SkyTest, RotationTurnsFromZToX) {
   turned.rotation = 0.5F * std::numbers::pi_v<float>;
   turned.intensity = 3.0F;
   const dvec3 direction = glm::normalize(dvec3(0.3, 0.2, 0.9));
-  // What was ahead is to the right of it.
+  // After the turn, what was ahead of the viewer is to the right.
   const dvec3 moved(direction.z, direction.y, -direction.x);
   EXPECT_LT(max_error(sky_radiance(turned, moved), 3.0 * sky_radiance(plain, direction)), 1e-6);
   const PackedSky sky = pack_sky(turned);
@@ -324,7 +327,7 @@ TEST(SkyTest, AGradientHasItsColorsAtTheEnds) {
   EXPECT_LT(max_error(sky_radiance(environment, {0, -1, 1}), dvec3(0, 0.25, 0.75)), 1e-12) << "the horizon is narrow";
 }
 
-// The figures of docs/model.md.
+// The test checks the figures of docs/model.md.
 TEST(SkyTest, TheStudioLightsAsItIsDescribed) {
   Environment studio;
   const float front = 0.7F;

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the shaders with a fault in them, for tests of the tests: what removes robustness must make a test fail.
+"""Builds the shaders with a fault in them, for tests of the tests: a fault removes a part of the robustness, which must
+make a test fail.
 
-seed_fault.py FAULT SHADERS INCLUDE GLSLANG OUT KERNEL...: copies the folder SHADERS and the .comp files KERNEL into OUT,
-puts the fault in, and compiles the kernels to OUT/*.spv, with the tables in INCLUDE. A fault whose place is gone is an
-error."""
+seed_fault.py FAULT SHADERS INCLUDE GLSLANG OUT KERNEL...: copies the folder SHADERS and the .comp files KERNEL into
+OUT, puts the fault in, and compiles the kernels to OUT/*.spv, with the tables in INCLUDE. If the code that a fault
+changes no longer exists, the script fails."""
 
 import os
 import pathlib
@@ -14,7 +15,7 @@ import shutil
 import subprocess
 import sys
 
-# fma(a, b, c) with the one rounding that hardware gives, of fp32 alone: the product's own error by Dekker's splitting.
+# fma(a, b, c) has one rounding, as hardware gives it, in fp32 alone; Dekker's splitting gives the product's own error.
 FUSED = """
 float fused(float a, float b, float c) {
   precise float split_a = 4097.0 * a;
@@ -30,7 +31,7 @@ float fused(float a, float b, float c) {
 }
 """
 
-# By name, pairs of a regular expression and what replaces it, by file.
+# FAULTS maps a fault's name to files, and each file to pairs of a regular expression and its replacement.
 FAULTS = {
     "unpadded_boxes": {
         "trace/make_ray.glsl": [
@@ -48,7 +49,7 @@ FAULTS = {
         ]
     },
     "nothing_precise": {"trace/primitives/triangle.glsl": [(r"\bprecise ", "")]},
-    # Of pictures (tests/gpu/boards_test.cpp).
+    # These are faults of pictures (tests/gpu/boards_test.cpp).
     "srgb_is_linear": {"shade/textures.glsl": [(r"return vec3\(code\.x <= 0\.04045[^;]*;", "return code;")]},
     "srgb_after_filter": {
         "shade/textures.glsl": [
@@ -80,7 +81,7 @@ FAULTS = {
         "shade/shading.glsl": [(r"point\.coat = seen_coat\(point\.coat, direction\);",
                           "{ Coat bent = point.coat; bent.normal = point.normal; point.coat = seen_coat(bent, direction); }")]
     },
-    # Of levels (tests/gpu/levels_test.cpp).
+    # These are faults of levels (tests/gpu/levels_test.cpp).
     "levels_of_fronts": {"shade/textures.glsl": [(r" / max\(abs\(facing\), 1\.0 / 64\.0\)", "")]},
     "levels_a_little_fine": {"shade/textures.glsl": [(r"log2_about\(texels\)\);", "log2_about(texels)) - 0.005;")]},
     "mirrors_keep_cones": {"picture/path.glsl": [(r"path\.cone_spread = spread;", ";")]},
@@ -88,7 +89,7 @@ FAULTS = {
     "shadows_take_levels": {
         "picture/camera_stage.comp": [(r"sight_width = 0\.0;\s*sight_spread = 0\.0;", "sight_width = CAMERA.look.w + 0.05;")]
     },
-    # Of what few materials have (tests/gpu/oracle_picture_test.cpp).
+    # These are faults of properties that few materials have (tests/gpu/oracle_picture_test.cpp).
     "behind_seen_from_front": {
         "shade/shading.glsl": [(r"lift_off\(point\.position, -point", "lift_off(point.position, point")]
     },
@@ -96,7 +97,7 @@ FAULTS = {
     "grain_unbent": {"shade/anisotropy.glsl": [(r"max_abs\(bent\) == 0\.0 \? point\.normal : bent", "point.normal")]},
     "sky_behind_in_front": {"shade/materials/metallic_roughness.glsl": [(r"ambient_at\(-point", "ambient_at(point")]},
     "grain_turned": {"shade/anisotropy.glsl": [(r"vec2\(along, across\)", "vec2(across, along)")]},
-    # Of glass (tests/gpu/oracle_picture_test.cpp).
+    # These are faults of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
     "colors_swapped": {"shade/glass.glsl": [(r"color == RED \? -", "color == BLUE ? -")]},
     "glass_seen_from_outside": {"shade/faces.glsl": [(r"face\.from <= face\.to \? cosine : beyond", "cosine")]},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Which files were written for classic light.
+// These tests check which files count as written for classic light.
 #include <gtest/gtest.h>
 
 #include "support/gltf_builder.h"
@@ -13,7 +13,7 @@ using nlohmann::json;
 
 class ClassicTest : public SceneFolder {
  protected:
-  /// Whether a file of one triangle is, which has the first of these materials.
+  /// Returns whether a file is classic that has one triangle, which has the first of these materials.
   bool is_classic(const std::vector<json>& materials) const {
     GltfBuilder gltf = triangle_gltf();
     if (!materials.empty()) gltf.json["materials"] = materials;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// Files whose coordinates lie far from the origin.
+// These tests load files whose coordinates lie far from the origin.
 
 #include "formats/far_scene.h"
 
@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// UTM coordinates: steps of fp32 are 0.03 and 0.5 there.
+/// UTM coordinates, where the steps of fp32 are 0.03 and 0.5.
 const dvec3 kUtm(494000.0, 5280000.0, 400.0);
 /// A place on the equator, in metres from the Earth's centre.
 const dvec3 kEquator(6378137.0, 0.0, 0.0);
@@ -44,7 +44,7 @@ std::string stl_at(const dvec3& place) {
       place.x, place.y, place.z, place.x + 0.125, place.y + 0.125);
 }
 
-/// Three vertices of this type 1 cm apart, and a triangle.
+/// Returns a triangle with vertices of this type that are 1 cm apart.
 std::string ply_at(const dvec3& place, const std::string& type, double step) {
   PlyBuilder ply(std::endian::little);
   ply.header("element vertex 3\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type +
@@ -75,7 +75,7 @@ TEST_F(FarSceneTest, TextIsReadInDouble) {
   expect_near(corner(stl, 1), kEquator + dvec3(0.125, 0, 0), 1e-6);
 }
 
-/// The differences of what lies far are those of the same mesh at the origin, to the bit where they are exact.
+/// The coordinate differences of a far mesh are those of the same mesh at the origin, to the bit if they are exact.
 TEST_F(FarSceneTest, WhatLiesFarIsAsAtTheOrigin) {
   const Scene far = load("far.obj", obj_at(kUtm, 0.25));
   const Scene near = load("near.obj", obj_at(dvec3(0.0), 0.25));
@@ -91,14 +91,14 @@ TEST_F(FarSceneTest, DoublesOfPlyKeepAMillimetre) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
-/// Nothing helps what was rounded before it was written.
+/// The loader cannot repair numbers that were rounded before they were written.
 TEST_F(FarSceneTest, CoarseFloatsAreWarnedOf) {
   const Scene scene = load("far.ply", ply_at(kEquator, "float", 2.0));
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("steps of 0.5 are coarse for a scene of size 2")));
   expect_near(corner(scene, 1), kEquator + dvec3(2, 0, 0), 0.0);
 }
 
-/// The triangle of a glTF file, its node and what else it has.
+/// Returns a glTF file with the triangle, its node and the other given parts.
 std::string gltf(const std::string& node, const std::string& more_nodes, const std::string& roots) {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [)" + roots + R"(]}], "nodes": [)" + node +
          more_nodes + R"(], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
@@ -136,7 +136,7 @@ TEST_F(FarSceneTest, NffIsMovedWithItsViewAndLights) {
   EXPECT_EQ(scene.center + dvec3(scene.lights.at(0).position), kEquator + dvec3(0.5, 2, 0));
 }
 
-/// Near the origin, and where all is a point.
+/// A scene near the origin needs no center, and neither does one that is a single point.
 TEST_F(FarSceneTest, WhatNeedsNoCenterHasNone) {
   EXPECT_EQ(load("near.obj", obj_at(dvec3(100, -50, 3), 1.1)).center, dvec3(0.0));
   const std::string mesh = obj_at(dvec3(0.1, 0, 0), 1.1);
@@ -146,7 +146,7 @@ TEST_F(FarSceneTest, WhatNeedsNoCenterHasNone) {
 }
 
 TEST(FarBoundsTest, StepsAreComparedWithTheSize) {
-  // From 2^20 on they are 1/8.
+  // From 2^20 on, the steps of fp32 are 1/8.
   const vec3 far(0x1p20F, 0, 0);
   EXPECT_TRUE(is_too_coarse({far, far + 12499.0F}));
   EXPECT_FALSE(is_too_coarse({far, far + 12501.0F}));

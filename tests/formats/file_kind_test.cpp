@@ -36,14 +36,14 @@ std::string binary_stl() {
   return stl.bytes();
 }
 
-/// A chunk that is as long as it says, around a version.
+/// Returns a chunk with a version in it; the chunk is as long as it says.
 std::string small_3ds() {
   return "MM\x10\0\0\0\x02\0\x0A\0\0\0\x03\0\0\0"s;
 }
 
 struct Kind {
   const char* name;
-  /// What a file with these bytes should end in; empty where promin does not read it.
+  /// The extension that a file with these bytes should have; empty if promin does not read it.
   const char* ending;
   std::string bytes;
   const char* what;
@@ -56,7 +56,7 @@ std::ostream& operator<<(std::ostream& stream, const Kind& kind) {
 
 class FileKindTest : public SceneFolder, public testing::WithParamInterface<Kind> {};
 
-/// Under a name of another scene, and of none.
+/// The file has the extension of another kind of scene, or one of no kind.
 TEST_P(FileKindTest, IsSaidWhereItIsNotWhatTheNameSays) {
   for (const std::string other : {".obj", ".ply", ".stl", ".nff", ".gltf"}) {
     const std::string name = "scene" + other;

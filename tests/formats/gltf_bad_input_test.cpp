@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A valid document, how to break it, and what the refusal must name.
+/// A change that breaks a valid document, and the words that the refusal must contain.
 struct BadGltf {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;
@@ -47,7 +47,7 @@ TEST_P(BadGltfTest, IsRefusedWithPlaceAndCure) {
 }
 
 const BadGltf kBadGltf[] = {
-    // The document
+    // The next rows are faults of the document.
     {"Version1", [](auto& g) { g.json["asset"]["version"] = "1.0"; }, "gltf.version", "asset.version"},
     {"Version3", [](auto& g) { g.json["asset"]["version"] = "3.0"; }, "gltf.version \"3.0\"", "asset.version"},
     {"MinVersion", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }, "gltf.version \"2.1\"", "asset.minVersion"},
@@ -57,7 +57,7 @@ const BadGltf kBadGltf[] = {
        primitive(g)["extensions"]["EXT_splats"] = json::object();
      },
      "gltf.extension.required EXT_splats", "meshes[0].primitives[0]"},
-    // Types
+    // The next rows are faults of types.
     {"NodesIsNoArray", [](auto& g) { g.json["nodes"] = 3; }, "json.type 3", "nodes"},
     {"NodeIsNoObject", [](auto& g) { g.json["nodes"][1] = "x"; }, "json.type", "nodes[1]"},
     {"MeshIndexIsText", [](auto& g) { g.json["nodes"][0]["mesh"] = "0"; }, "json.type", "nodes[0].mesh"},
@@ -73,7 +73,7 @@ const BadGltf kBadGltf[] = {
        g.json["nodes"][0]["scale"] = {1, "1", 1};
      },
      "json.type", "nodes[0].scale[1]"},
-    // Indices
+    // The next rows are faults of indices.
     {"MeshIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }, "json.index 9", "nodes[0].mesh"},
     {"NegativeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = -1; }, "json.index -1", "nodes[0].mesh"},
     {"HugeIndex", [](auto& g) { g.json["nodes"][0]["mesh"] = 1e30; }, "json.index 1e+30", "nodes[0].mesh"},
@@ -95,14 +95,14 @@ const BadGltf kBadGltf[] = {
        primitive(g)["indices"] = g.template add<uint16_t>({0, 1, 65535}, "SCALAR");
      },
      "gltf.indices.range 65535", "meshes[0].primitives[0].indices"},
-    // Enumerations and ranges
+    // The next rows are faults of enumerations and ranges.
     {"Mode", [](auto& g) { primitive(g)["mode"] = 7; }, "json.range 7", "meshes[0].primitives[0].mode"},
     {"ComponentType", [](auto& g) { g.json["accessors"][0]["componentType"] = 5124; }, "json.choice",
      "accessors[0].componentType"},
     {"AccessorType", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }, "json.choice \"VEC5\"",
      "accessors[0].type"},
     {"BrokenCount", [](auto& g) { g.json["accessors"][0]["count"] = 1.5; }, "json.type 1.5", "accessors[0].count"},
-    // Shapes
+    // The next rows are faults of shapes.
     {"ZeroRadius", [](auto& g) { shape(g, 0)["sphere"]["radius"] = 0; }, "json.range 0",
      "extensions.KHR_implicit_shapes.shapes[0].sphere.radius"},
     {"NegativeRadius", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = -1; }, "json.range -1",
@@ -142,7 +142,7 @@ const BadGltf kBadGltf[] = {
      "gltf.shape.size shapes[0]", "extensions.KHR_implicit_shapes.shapes[0].capsule"},
     {"UnknownShape", [](auto& g) { shape(g, 0)["type"] = "torus"; }, "json.choice \"torus\"",
      "extensions.KHR_implicit_shapes.shapes[0].type"},
-    // Vertices
+    // The next rows are faults of vertices.
     {"NanVertex",
      [](auto& g) {
        set_positions(g, {0, 0, 0, 1, kNan, 0, 0, 1, 0});
@@ -173,7 +173,7 @@ const BadGltf kBadGltf[] = {
        primitive(g)["indices"] = g.template add<float>({0, 1, 2}, "SCALAR");
      },
      "gltf.accessor.format SCALAR 5126", "meshes[0].primitives[0].indices"},
-    // Bytes
+    // The next rows are faults of bytes.
     {"ViewPastTheBuffer", [](auto& g) { g.json["bufferViews"][1]["byteLength"] = 999; }, "gltf.view.short",
      "bufferViews[1]"},
     {"ViewOffset", [](auto& g) { g.json["bufferViews"][1]["byteOffset"] = 9007199254740992; }, "gltf.view.short",
@@ -217,7 +217,7 @@ const BadGltf kBadGltf[] = {
            {"count", 1}, {"indices", {{"bufferView", view}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
      },
      "gltf.accessor.index 3", "accessors[0].sparse.indices, element 0"},
-    // Nodes
+    // The next rows are faults of nodes.
     {"OwnChild", [](auto& g) { g.json["nodes"][0]["children"] = {0}; }, "gltf.node.cycle", "nodes[0]"},
     {"Cycle",
      [](auto& g) {
@@ -237,7 +237,7 @@ const BadGltf kBadGltf[] = {
 INSTANTIATE_TEST_SUITE_P(Table, BadGltfTest, testing::ValuesIn(kBadGltf),
                          [](const auto& bad) { return std::string(bad.param.name); });
 
-/// Buffers: the document's own URI is replaced, so these do not go through text().
+/// Faults of buffers. The document's own URI is replaced, so these cases do not use text().
 struct BadUri {
   const char* name;
   const char* uri;
@@ -292,7 +292,7 @@ const BadUri kBadUris[] = {
 INSTANTIATE_TEST_SUITE_P(Table, BadUriTest, testing::ValuesIn(kBadUris),
                          [](const auto& bad) { return std::string(bad.param.name); });
 
-// Files
+// The next tests check faults of files.
 
 class BadFileTest : public SceneFolder {};
 
@@ -357,7 +357,7 @@ TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
   EXPECT_THAT(refusal("a.glb", bytes), HasProblem("gltf.buffer.short 44 48"));
 }
 
-/// Whatever reads from a buffer makes its bytes needed.
+/// A buffer's bytes are needed as soon as something reads from the buffer.
 TEST_F(BadFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
   const auto refuse_without = [&](const std::function<void(GltfBuilder&)>& use) {
     GltfBuilder gltf = triangle_gltf();

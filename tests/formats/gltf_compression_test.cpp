@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Compressed meshes of glTF: EXT_meshopt_compression and KHR_draco_mesh_compression.
+// These tests load compressed meshes of glTF: EXT_meshopt_compression and KHR_draco_mesh_compression.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ using testing::IsEmpty;
 
 using Stream = std::vector<unsigned char>;
 
-/// A square of `side` x `side` cells in the plane z = 0: its corners.
+/// Returns the corners of a square of `side` x `side` cells in the plane z = 0.
 std::vector<float> grid_positions(uint32_t side) {
   std::vector<float> positions;
   for (uint32_t y = 0; y <= side; ++y) {
@@ -44,7 +44,7 @@ std::vector<uint32_t> grid_indices(uint32_t side) {
   return indices;
 }
 
-/// What the triangles are, whatever order they and their corners come in.
+/// Returns the triangles in an order that depends neither on their order in the mesh nor on that of their corners.
 std::vector<std::vector<float>> sorted_triangles(const Mesh& mesh) {
   std::vector<std::vector<float>> triangles;
   for (const uvec3& triangle : mesh.triangles) {
@@ -80,7 +80,8 @@ class GltfCompressionTest : public SceneFolder {
  protected:
   std::string refusal_of(GltfBuilder& gltf) const { return refusal("scene.gltf", gltf.text()); }
 
-  /// Loads or refuses the scene with each of `count` mutants of the bytes from `first` to `last` of its buffer.
+  /// Changes bytes from `first` to `last` of the scene's buffer in `count` ways. Each changed file must load or be
+  /// refused.
   void expect_mutants_to_load_or_be_refused(const GltfBuilder& good, size_t first, size_t last, int count) const {
     std::mt19937 random(20240607);
     int refused = 0;
@@ -100,7 +101,7 @@ class GltfCompressionTest : public SceneFolder {
   }
 };
 
-// meshoptimizer
+// The next tests check streams of meshoptimizer.
 
 Stream compress_attributes(const void* elements, size_t count, size_t stride) {
   Stream stream(meshopt_encodeVertexBufferBound(count, stride));
@@ -120,7 +121,7 @@ Stream compress_indices(const std::vector<uint32_t>& indices, size_t vertex_coun
   return stream;
 }
 
-/// Appends an accessor over a compressed view, whose decoded bytes would lie in buffer 1; its index.
+/// Appends an accessor over a compressed view, whose decoded bytes would lie in buffer 1. Returns its index.
 size_t add_compressed(GltfBuilder& gltf, const Stream& stream, size_t count, size_t stride, const std::string& mode,
                       const json& accessor, const std::string& filter = "NONE") {
   const size_t view = gltf.add_view(stream);
@@ -138,7 +139,7 @@ size_t add_compressed(GltfBuilder& gltf, const Stream& stream, size_t count, siz
 const json kPositions = {{"componentType", 5126}, {"type", "VEC3"}};
 const json kIndices = {{"componentType", 5125}, {"type", "SCALAR"}};
 
-/// The text of a document whose buffer 1 has no bytes.
+/// Returns the text of a document whose buffer 1 has no bytes.
 std::string packed_text(GltfBuilder& gltf) {
   gltf.text();
   gltf.json["buffers"].push_back(
@@ -257,7 +258,7 @@ TEST_F(GltfCompressionTest, MeshoptThatLiesIsRefused) {
 TEST_F(GltfCompressionTest, MeshoptThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
   GltfBuilder gltf = packed_grid(4, "INDICES");
   packed_text(gltf);
-  // 24 GB of a few hundred bytes.
+  // A few hundred bytes stand for 24 GB.
   const uint64_t count = uint64_t{2'000'000'000};
   json& view = gltf.json["bufferViews"][0];
   view["extensions"]["EXT_meshopt_compression"]["count"] = count;
@@ -290,7 +291,7 @@ TEST_F(GltfCompressionTest, MeshoptOfALaterVersionIsSaidToBe) {
 
 TEST_F(GltfCompressionTest, BrokenMeshoptLoadsOrIsRefused) {
   GltfBuilder gltf = packed_grid(4, "TRIANGLES");
-  // Buffer 1 must not be there when text() is called again.
+  // Buffer 1 must be removed before text() is called again.
   for (json& view : gltf.json["bufferViews"]) view["buffer"] = 0;
   gltf.json["bufferViews"][0]["byteLength"] = 300;
   const size_t first = gltf.bytes.size();
@@ -298,7 +299,7 @@ TEST_F(GltfCompressionTest, BrokenMeshoptLoadsOrIsRefused) {
   expect_mutants_to_load_or_be_refused(gltf, 0, first, 1000);
 }
 
-// Draco
+// The next tests check streams of Draco.
 
 struct Compressed {
   std::string bytes;
@@ -307,7 +308,7 @@ struct Compressed {
   uint32_t position_id = 0;
 };
 
-/// The triangles of a grid, lossless.
+/// Compresses the triangles of a grid, without loss.
 Compressed compress_grid(uint32_t side, int method) {
   const Mesh grid = grid_mesh(side);
   draco::TriangleSoupMeshBuilder builder;
@@ -378,7 +379,7 @@ TEST_F(GltfCompressionTest, DracoThatLiesIsRefused) {
   }
 }
 
-/// A header of version 2.2 that promises 2^31 triangles.
+/// Returns a header of version 2.2 that promises 2^31 triangles.
 std::string absurd_header(int method) {
   std::string bytes = "DRACO\x02\x02\x01";
   bytes += static_cast<char>(method);
@@ -393,13 +394,13 @@ TEST_F(GltfCompressionTest, DracoThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken
     Compressed grid{absurd_header(method), 25, 32, 0};
     GltfBuilder small = draco_grid(grid);
     EXPECT_THAT(refusal_of(small), HasProblem("gltf.draco.damaged 32"));
-    // The accessors may lie as well.
+    // The accessors may be wrong as well.
     GltfBuilder large = draco_grid(grid);
     large.json["accessors"][0]["count"] = 2147483647;
     large.json["accessors"][1]["count"] = 2147483647;
     EXPECT_NE(refusal_of(large), "");
     std::string bytes = absurd_header(method);
-    // 2^29 triangles and vertices, within what both accessors say.
+    // The stream promises 2^29 triangles and vertices, which is within both accessors' numbers.
     for (size_t at = bytes.find("\xFF\xFF\xFF\xFF\x07"); at != std::string::npos;
          at = bytes.find("\xFF\xFF\xFF\xFF\x07")) {
       bytes.replace(at, 5, "\x80\x80\x80\x80\x02");

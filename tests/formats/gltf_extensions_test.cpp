@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Extensions of glTF that are not known, or change how the rest of the file is read.
+// These tests load glTF files with extensions that promin does not know, or that change how the rest of the file is
+// read.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -30,7 +31,7 @@ class GltfExtensionsTest : public SceneFolder {
 
 const json kFoo = {{"KHR_materials_foo", json::object()}};
 
-/// The triangle, in a file that cannot be shown without KHR_materials_foo, which three materials have.
+/// Returns the triangle in a file that requires KHR_materials_foo, which three materials have.
 GltfBuilder gltf_with_foo() {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["extensionsUsed"] = {"KHR_materials_foo"};
@@ -114,12 +115,12 @@ TEST_F(GltfExtensionsTest, KnownOnesOfNodesAreNotRefused) {
   EXPECT_TRUE(scene.extensions[0].is_used);
 }
 
-/// A PNG of one pixel: 80 hexadecimal of red, 40 of green, 20 of blue.
+/// A PNG of one pixel with the codes 80 (red), 40 (green) and 20 (blue), all hexadecimal.
 const std::string kPixel =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNocFAAAAIkAOGVpLGLAAAAAElFTkSuQmCC";
 
-/// The triangle in a material whose base colour is a texture.
+/// Returns the triangle with a material whose base colour is a texture.
 GltfBuilder textured_gltf(const json& texture) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
@@ -197,14 +198,14 @@ TEST_F(GltfExtensionsTest, TexturesOfLayersAreRead) {
   EXPECT_EQ(use_of(model.anisotropy_texture), ImageUse::kData);
 }
 
-// Specular-glossiness
+// The next tests check the specular-glossiness model.
 
-/// Two pixels: red and blue 80 hexadecimal with glossiness 1, blue 80 with glossiness 1/5.
+/// Two pixels: red and blue are 80 hexadecimal with a glossiness of 1; blue is 80 with a glossiness of 1/5.
 const std::string kGlossyPixels =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR42mP4z9Dwn4GhwRgAES8DMu8hmVcAAAAASUVORK5CYII=";
 
-/// The triangle in a material of KHR_materials_pbrSpecularGlossiness.
+/// Returns the triangle with a material of KHR_materials_pbrSpecularGlossiness.
 GltfBuilder glossy_gltf(const json& extension) {
   GltfBuilder gltf = textured_gltf({{"source", 0}});
   gltf.json["images"] = {{{"uri", kGlossyPixels}}};
@@ -245,7 +246,7 @@ TEST_F(GltfExtensionsTest, TexturesOfGlossinessBecomeSuchOfRoughness) {
     const Texture& texture = scene.textures.at(model.metallic_roughness_texture.texture);
     const TextureImage& image = *scene.images.at(texture.image);
     EXPECT_EQ(image.use, ImageUse::kData);
-    // 255 - 255 and 255 - 51, or half of what is taken off, rounded up.
+    // The roughness codes are 255 - 255 and 255 - 51. With half of the effect, half is subtracted, rounded up.
     const std::vector<uint32_t> expected =
         factor == 1.0 ? std::vector<uint32_t>{0xFF000000, 0xFF00CC00} : std::vector<uint32_t>{0xFF008000, 0xFF00E600};
     EXPECT_EQ(image.texels, expected);
@@ -268,9 +269,9 @@ TEST_F(GltfExtensionsTest, GlossinessHoldsWhereItsTextureIsMissing) {
   EXPECT_EQ(model_of(scene).specular_color, vec3(1));
 }
 
-// Variants
+// The next tests check variants.
 
-/// The triangle with material 0, in the variants "dawn" 1 and "night" 2.
+/// Returns the triangle with material 0; the variant "dawn" has material 1 and "night" has 2.
 GltfBuilder varied_gltf() {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["materials"] = {json::object(), json::object(), json::object()};
@@ -331,9 +332,9 @@ TEST_F(GltfExtensionsTest, MappingsToVariantsThatAreNotThereAreIgnored) {
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("an index is out of range (index 3)")));
 }
 
-// Instances
+// The next tests check instances.
 
-/// The triangle, shown by a node at (1, 0, 0).
+/// Returns the triangle, shown by a node at (1, 0, 0).
 GltfBuilder instanced_gltf(const json& attributes) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["nodes"][0]["translation"] = {1, 0, 0};
@@ -358,7 +359,7 @@ TEST_F(GltfExtensionsTest, InstancesAreCopiesInTheirPlaces) {
   EXPECT_EQ(scene.geometries.size(), 1U) << "copies share their geometry";
   EXPECT_EQ(scene.objects[1].geometry, 0U);
   EXPECT_EQ(dvec3(scene.objects[0].world_from_object * dvec4(1, 0, 0, 1)), dvec3(2, 0, 0));
-  // Scaled to (2, 0, 0), turned to (0, 2, 0), moved by (0, 5, 0), and by the node.
+  // The corner is scaled to (2, 0, 0), rotated to (0, 2, 0), moved by (0, 5, 0), and then moved by the node.
   const dvec3 corner(scene.objects[1].world_from_object * dvec4(1, 0, 0, 1));
   EXPECT_LT(glm::distance(corner, dvec3(1, 7, 0)), 1e-6);
 }
@@ -396,7 +397,7 @@ TEST_F(GltfExtensionsTest, BadInstancesAreRefused) {
 
 TEST_F(GltfExtensionsTest, TooManyInstancesAreRefusedBeforeTheyAreTaken) {
   GltfBuilder gltf = instanced_gltf(json::object());
-  // 2^14 + 1 copies of 2^14 triangles.
+  // The file has 2^14 + 1 copies of 2^14 triangles.
   gltf.json["meshes"][0]["primitives"][0]["indices"] = gltf.add(std::vector<uint8_t>(3 << 14, 0), "SCALAR");
   instances_of(gltf)["SCALE"] = gltf.add(std::vector<float>(3 * ((1 << 14) + 1), 1.0F), "VEC3");
   EXPECT_THAT(refusal_of(gltf), HasProblem("scene.size.limit 16385 16384 1"));

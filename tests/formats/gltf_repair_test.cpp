@@ -21,7 +21,7 @@ using testing::SizeIs;
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 const std::vector<vec3> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-/// Faults that leave the geometry in no doubt: how to spoil a document, and the warning.
+/// A change that makes a document faulty but leaves its geometry clear, and the warning that it gives.
 struct Repair {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;
@@ -36,7 +36,7 @@ class GltfRepairTest : public SceneFolder {
  protected:
   LoadedScene load(GltfBuilder& gltf) const { return SceneFolder::load("scene.gltf", gltf.text()); }
 
-  /// What a strict reader says.
+  /// Returns the refusal of a strict loader.
   std::string strict_refusal(const std::string& name, std::string_view bytes) const {
     const std::filesystem::path file = write(name, bytes);
     return message_of([&] { load_scene(file, {.is_strict = true}); });
@@ -58,7 +58,7 @@ TEST_P(GltfRepairsTest, AreOneWarningAndStrictlyARefusal) {
   EXPECT_THAT(strict_refusal("bad.gltf", gltf.text()), HasSubstr("; ")) << "no cure";
 }
 
-/// The text of a file whose material has this number, of any length, as its metallic factor.
+/// Returns the text of a file whose material has this number as its metallic factor. The number may have any length.
 std::string with_metallic_factor(const std::string& number) {
   GltfBuilder gltf = rich_gltf();
   gltf.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = "NUMBER";
@@ -84,7 +84,7 @@ TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
 #define PROMIN_LIGHT "extensions.KHR_lights_punctual.lights[0]"
 
 const Repair kRepairs[] = {
-    // The document
+    // The next rows are faults of the document.
     {"NoAsset", [](auto& g) { g.json.erase("asset"); },
      "asset.version: the version is missing; promin reads the file as glTF 2.0"},
     {"VersionIsANumber", [](auto& g) { g.json["asset"]["version"] = 2; },
@@ -100,7 +100,7 @@ const Repair kRepairs[] = {
      },
      "extensionsUsed[1]: another value is given where a string is expected (3); promin ignores the object that "
      "contains it"},
-    // Materials
+    // The next rows are faults of materials.
     {"MaterialIndex", [](auto& g) { primitive(g)["material"] = 1; },
      "meshes[0].primitives[0].material: an index is out of range (index 1); promin ignores it"},
     {"MaterialIsNoObject", [](auto& g) { g.json["materials"][0] = "red"; },
@@ -196,7 +196,7 @@ const Repair kRepairs[] = {
        g.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
      },
      "images[0]: the buffer view of an image extends beyond its buffer (10 bytes); promin omits the image"},
-    // Lights and cameras
+    // The next rows are faults of lights and cameras.
     {"LightIndex", [](auto& g) { g.json["nodes"][3]["extensions"]["KHR_lights_punctual"]["light"] = 1; },
      "nodes[3].extensions.KHR_lights_punctual.light: an index is out of range (index 1); promin omits the light"},
     {"NegativePower", [](auto& g) { light(g)["intensity"] = -1; },
@@ -228,7 +228,7 @@ const Repair kRepairs[] = {
      },
      "extensions.OMI_environment_sky.skies[0].type: another value is given where a string is expected (3); promin "
      "ignores the object that contains it"},
-    // Vertices
+    // The next rows are faults of vertices.
     {"NegativeColor",
      [](auto& g) {
        primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, 0, 0, 0, -1, 0, 0, 0, 0}, "VEC3");
@@ -270,7 +270,7 @@ const Repair kRepairs[] = {
     {"NoStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 0; },
      "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (0); promin reads the elements without "
      "a stride"},
-    // Nodes
+    // The next rows are faults of nodes.
     {"TwoParents",
      [](auto& g) {
        g.json["nodes"][0]["children"] = {2};
@@ -318,7 +318,7 @@ const Repair kRepairs[] = {
 INSTANTIATE_TEST_SUITE_P(Table, GltfRepairsTest, testing::ValuesIn(kRepairs),
                          [](const auto& repair) { return std::string(repair.param.name); });
 
-// Numbers off by rounding
+// The next tests check numbers with rounding errors.
 
 TEST_F(GltfRepairTest, RoundedFactorsAreClampedInSilence) {
   GltfBuilder gltf = triangle_gltf();
@@ -357,7 +357,7 @@ TEST_F(GltfRepairTest, RoundedMatricesAreAffine) {
   EXPECT_THAT(corners_of(mesh_of(scene))[1], vec3(4, 0, 0));
 }
 
-// Nodes
+// The next tests check faults of nodes.
 
 TEST_F(GltfRepairTest, AListedNodeIsARootWhereItsParentIsInNoScene) {
   GltfBuilder gltf = triangle_gltf();
@@ -419,12 +419,12 @@ TEST_F(GltfRepairTest, TheMatrixCountsAlone) {
   EXPECT_THAT(scene.warnings, SizeIs(1));
 }
 
-// Scales of 0
+// The next tests check scales of 0.
 
 TEST_F(GltfRepairTest, NodesOfScaleZeroAreNotDrawnAndKeepTheirNumber) {
   GltfBuilder gltf = rich_gltf();
   gltf.add_node({{"mesh", 0}, {"name", "last"}});
-  // The mesh, and both shapes, below scales of 0 along three axes and two.
+  // The mesh and both shapes are under scales of 0 along three axes and along two.
   gltf.json["nodes"][0]["scale"] = {0, 0, 0};
   gltf.json["nodes"][1]["scale"] = {0, 2, 0};
   gltf.json["nodes"][2]["matrix"] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
@@ -458,7 +458,7 @@ TEST_F(GltfRepairTest, CamerasAndLightsBelowScaleZeroTurnByRotations) {
   EXPECT_THAT(scene.warnings, IsEmpty());
   ASSERT_THAT(scene.cameras, SizeIs(1));
   ASSERT_THAT(scene.lights, SizeIs(1));
-  // -Z turns to -X about Y, which the turn about X leaves; +Y turns to +Z.
+  // The rotation about Y turns -Z to -X, which the rotation about X keeps; that rotation turns +Y to +Z.
   EXPECT_LT(glm::distance(scene.cameras[0].look, vec3(-1, 0, 0)), 1e-6F);
   EXPECT_LT(glm::distance(scene.cameras[0].up, vec3(0, 0, 1)), 1e-6F);
   EXPECT_LT(glm::distance(scene.lights[0].direction, vec3(-1, 0, 0)), 1e-6F);
@@ -520,7 +520,7 @@ TEST_F(GltfRepairTest, TheDraftOfLightsIsRead) {
   EXPECT_EQ(scene.lights[0].outer_cone_angle, 0.5F);
 }
 
-// Bytes
+// The next tests check faults of bytes.
 
 TEST_F(GltfRepairTest, DataUrisHaveManyForms) {
   GltfBuilder gltf = triangle_gltf();
@@ -592,7 +592,7 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
       ElementsAre(
           "buffers[0]: a buffer is shorter than its byteLength (42 bytes instead of 100); the existing part is read"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
-  // Padding that the view counts.
+  // The view's length includes padding.
   gltf.json["bufferViews"][1]["byteLength"] = 8;
   scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings, SizeIs(1));
@@ -629,7 +629,7 @@ TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
 TEST_F(GltfRepairTest, TheLastColumnOfAMatrixNeedsNoPadding) {
   GltfBuilder gltf = triangle_gltf();
   const size_t view = gltf.add_view(std::vector<uint8_t>(14, 0));
-  // Two of 2 x 2 bytes: columns of 2 lie 4 apart.
+  // The buffer has two matrices of 2 x 2 bytes; their columns of 2 bytes begin 4 bytes apart.
   gltf.json["accessors"].push_back({{"bufferView", view}, {"componentType", 5121}, {"count", 2}, {"type", "MAT2"}});
   EXPECT_EQ(strict_refusal("scene.gltf", gltf.text()), "");
   gltf.json["bufferViews"][view]["byteLength"] = 13;

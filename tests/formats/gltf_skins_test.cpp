@@ -21,7 +21,7 @@ void expect_all_near(const std::vector<vec3>& got, const std::vector<vec3>& want
   for (size_t i = 0; i < got.size(); ++i) expect_near(got[i], wanted[i]);
 }
 
-/// A triangle, which node 0 shows by a skin of the joints 1 and 2.
+/// A triangle that node 0 shows with a skin of the joints 1 and 2.
 class GltfSkinTest : public SceneFolder {
  protected:
   GltfSkinTest() {
@@ -41,7 +41,7 @@ class GltfSkinTest : public SceneFolder {
   GltfBuilder gltf_ = triangle_gltf();
 };
 
-/// The first vertex goes with joint 1, the second with joint 2, the third with both.
+/// The first vertex follows joint 1, the second follows joint 2, the third follows both.
 const std::vector<vec3> kPosed = {{0, 0, 2}, {3, 4, 0}, {0, 4, 1}};
 
 TEST_F(GltfSkinTest, JointsPoseTheMeshAndItsOwnNodeDoesNot) {
@@ -92,7 +92,7 @@ TEST_F(GltfSkinTest, JointsMayBeInNoScene) {
 TEST_F(GltfSkinTest, EverySetOfJointsCounts) {
   primitive()["attributes"]["JOINTS_1"] = gltf_.add<uint16_t>(std::vector<uint16_t>(12, 1), "VEC4");
   primitive()["attributes"]["WEIGHTS_1"] = gltf_.add<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0}, "VEC4", true);
-  // The third vertex: 1/2 of joint 1 and 3/2 of joint 2, over 2.
+  // The third vertex has 1/2 of joint 1 and 3/2 of joint 2; the sum of the weights is 2.
   expect_all_near(corners(), {kPosed[0], kPosed[1], {0, 0.25F + 0.75F * 7, 0.5F}});
 }
 
@@ -111,7 +111,7 @@ TEST_F(GltfSkinTest, NormalsAndTangentsFollow) {
   gltf_.json["nodes"][2]["scale"] = {3, 1, 1};
   const LoadedScene scene = load();
   const Mesh& mesh = mesh_of(scene);
-  // Under a scale of (3, 1, 1) normals go by (1/3, 1, 1), under that of (2, 1, 1), the mean, by (1/2, 1, 1).
+  // Under a scale of (3, 1, 1) normals are multiplied by (1/3, 1, 1); under the mean scale of (2, 1, 1) by (1/2, 1, 1).
   expect_all_near(mesh.normals, {{half, half, 0}, glm::normalize(vec3(1, 3, 0)), glm::normalize(vec3(1, 2, 0))});
   std::vector<vec3> tangents;
   for (const vec4& tangent : mesh.tangents) tangents.emplace_back(tangent);
@@ -125,7 +125,8 @@ TEST_F(GltfSkinTest, JointsThatMirrorTurnTheWinding) {
   const LoadedScene scene = load();
   const Mesh& mesh = mesh_of(scene);
   EXPECT_TRUE(scene.objects.at(0).is_rewound) << "as hits number its corners";
-  // As a mesh whose node mirrors: the corners go round the other way, and the normals turn with the surface.
+  // The mesh behaves like one whose node mirrors it: the order of the corners is reversed, and the normals turn with
+  // the surface.
   expect_all_near(corners_of(mesh), {{0, 0, -2}, {0, 4, -1}, {3, 4, 0}});
   for (const vec3& normal : mesh.normals) EXPECT_EQ(normal, vec3(0, 0, -1));
 }

@@ -33,7 +33,7 @@ class GltfTest : public SceneFolder {
 
 const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 
-// Meshes
+// The next tests check meshes.
 
 TEST_F(GltfTest, TrianglesComeOutInTheWorld) {
   GltfBuilder gltf = triangle_gltf();
@@ -177,7 +177,7 @@ TEST_F(GltfTest, VertexColorsComeInEveryFormat) {
   EXPECT_EQ(second_color(std::vector<uint16_t>{0, 0, 0, 65535, 0, 0, 0, 0, 0}, "VEC3", true), vec4(1, 0, 0, 1));
 }
 
-// Nodes
+// The next tests check nodes.
 
 TEST_F(GltfTest, ObjectsAreNumberedDepthFirst) {
   GltfBuilder gltf = triangle_gltf();  // node 0
@@ -215,9 +215,9 @@ TEST_F(GltfTest, DeepHierarchiesDoNotOverflowTheStack) {
   EXPECT_EQ(load_scene(folder_ / "scene.gltf").center + dvec3(corner), dvec3(kDepth, 0, 0));
 }
 
-// Shapes
+// The next tests check shapes.
 
-/// A document of one implicit shape, with a triangle as its fallback.
+/// Returns a document of one implicit shape, with a triangle as its fallback.
 GltfBuilder shape_gltf(const json& shape, const json& node = json::object()) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"] = {shape};
@@ -274,15 +274,15 @@ TEST_F(GltfTest, BoxesStretchAndTurn) {
   EXPECT_EQ(plain.half_size, vec3(1, 2, 3));
   EXPECT_EQ(plain.turn, vec3(0));
   EXPECT_EQ(box_of({{"scale", {-3, 2, 1}}}).half_size, vec3(3, 4, 3));
-  // A quarter turn is another order of the axes, exactly.
+  // A quarter turn is exactly another order of the axes.
   const world::Box quarter = box_of({{"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
   EXPECT_EQ(quarter.half_size, vec3(2, 1, 3));
   EXPECT_EQ(quarter.turn, vec3(0));
-  // 30 degrees about x.
+  // This rotation is 30 degrees about x.
   const world::Box turned = box_of({{"rotation", {std::sin(0.2617993877991494), 0, 0, std::cos(0.2617993877991494)}}});
   EXPECT_EQ(turned.half_size, vec3(1, 2, 3));
   expect_near(turned.turn, {0.25881905F, 0, 0});
-  // 75 degrees about x are -15 with two axes renamed.
+  // A rotation of 75 degrees about x is one of -15 degrees with two axes exchanged.
   const world::Box more = box_of({{"rotation", {std::sin(0.6544984694978736), 0, 0, std::cos(0.6544984694978736)}}});
   EXPECT_EQ(more.half_size, vec3(1, 3, 2));
   expect_near(more.turn, {-0.13052619F, 0, 0});
@@ -348,9 +348,9 @@ TEST_F(GltfTest, CollidersAreNotDrawn) {
   EXPECT_THAT(scene.warnings, ElementsAre("the extension KHR_physics_rigid_bodies is ignored"));
 }
 
-// Materials
+// The next tests check materials.
 
-/// The triangle's material as it is loaded.
+/// Returns a document whose triangle has this material.
 GltfBuilder material_gltf(const json& material) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["materials"] = {material};
@@ -390,7 +390,7 @@ TEST_F(GltfTest, PhongMaterialsFallBackOnTheBaseColor) {
   EXPECT_EQ(material.phong().reflection, vec3(0));
 }
 
-/// What the file's only material is of.
+/// Returns the model of the file's only material.
 template <class Model>
 Model model_of(const LoadedScene& scene) {
   return std::get<Model>(scene.materials.at(0).model);
@@ -484,7 +484,7 @@ TEST_F(GltfTest, IridescenceAndAnisotropyAreRead) {
   EXPECT_EQ(bare.anisotropy, 0.0F);
 }
 
-// An index below 1 takes its default, but for one that is rounded.
+// An index below 1 becomes the default, unless it is 1 with a rounding error.
 TEST_F(GltfTest, ARoundedIndexIsNotReplaced) {
   const auto read_ior = [&](double ior) {
     const LoadedScene scene = load(material_gltf(
@@ -506,7 +506,7 @@ TEST_F(GltfTest, MetallicRoughnessHasTheSpecificationsDefaults) {
   EXPECT_EQ(model.specular_color, vec3(1));
 }
 
-// KHR_materials_ior: 0 stands for what reflects everything.
+// In KHR_materials_ior, 0 stands for a material that reflects everything.
 TEST_F(GltfTest, AnIndexOfRefractionIsZeroOrFromOneOn) {
   const auto load_ior = [this](double ior) {
     return load(material_gltf({{"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}}));
@@ -633,17 +633,17 @@ TEST_F(GltfTest, PhongMaterialsHaveNoTextures) {
   EXPECT_THAT(load(gltf).warnings, ElementsAre("material \"old\": its textures are ignored and its factors are used"));
 }
 
-/// A PNG of one pixel: 80 hexadecimal of red, 40 of green, 20 of blue.
+/// A PNG of one pixel with the codes 80 (red), 40 (green) and 20 (blue), all hexadecimal.
 const std::string kPixel =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNocFAAAAIkAOGVpLGLAAAAAElFTkSuQmCC";
 
-/// One whose green is 0.
+/// A PNG of one pixel whose green is 0.
 const std::string kSmooth =
     "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z/"
     "AfAAQAAf8iCjrwAAAAAElFTkSuQmCC";
 
-/// What is drawn of it and what is not: one warning for all of a file.
+/// A file gets one warning for all the properties that promin does not draw.
 TEST_F(GltfTest, RoughGlassIsWarnedOfOnce) {
   const json pbr = {{"metallicFactor", 0}, {"roughnessFactor", 0.25}};
   const json extensions = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
@@ -749,7 +749,7 @@ TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
                                                                        HasSubstr("--root DIR"))));
 }
 
-// Lights and sky
+// The next tests check lights and sky.
 
 GltfBuilder light_gltf(const json& light, const json& node = json::object()) {
   GltfBuilder gltf = triangle_gltf();
@@ -766,7 +766,7 @@ TEST_F(GltfTest, SizesOfImagesAreReadWithoutTheirTexels) {
                                     {"occlusionTexture", {{"index", 2}}}});
   gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}};
   gltf.json["images"] = {{{"uri", kPixel}}, {{"uri", "long.png"}}, {{"uri", "broken.png"}}};
-  // A text of 100000 bytes comes between the chunk with the size and the pixel.
+  // A text of 100000 bytes lies between the chunk with the size and the pixel.
   std::string bytes;
   const std::optional<std::vector<std::byte>> pixel = decode_base64(kPixel.substr(kPixel.find(',') + 1));
   for (const std::byte byte : *pixel) bytes += static_cast<char>(byte);
@@ -892,7 +892,7 @@ TEST_F(GltfTest, PanoramasLieInTheFileToo) {
     gltf.json["images"] = {{{"uri", "data:image/whatever;base64," + encode_base64(picture)}}};
     const LoadedScene in_text = load(gltf);
     EXPECT_THAT(in_text.warnings, IsEmpty());
-    // A PNG's levels are sRGB's: 188 / 255 is 0.503 of light.
+    // A PNG has codes of sRGB: the code 188 of 255 is a light of 0.503.
     EXPECT_NEAR(sky_radiance(in_text.environment, dvec3(1, 0, 0)).x, 0.5, 0.004) << name;
     gltf.json["images"] = {{{"mimeType", "image/png"},
                             {"bufferView", gltf.add_view(std::vector<uint8_t>(picture.begin(), picture.end()))}}};
@@ -912,7 +912,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   write("my sky.exr", "no picture");
   EXPECT_THAT(load(gltf).warnings, ElementsAre(HasSubstr("the picture has an unknown format")));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(load(gltf).environment.sky));
-  // The middle is +Z and the left is +X: of four pixels the first goes from -Z to +X.
+  // The middle of the picture is +Z and its left edge is -Z: the first of four pixels covers -Z to +X.
   Image picture = {{4, 2}, std::vector<vec3>(8, vec3(0.0F))};
   picture.at(0, 0) = picture.at(0, 1) = vec3(1, 0, 0);
   write_image(folder_ / "my sky.exr", picture);
@@ -933,7 +933,7 @@ TEST_F(GltfTest, PanoramasLieBesideTheFile) {
   EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("panorama.equirectangular: ")));
 }
 
-// Cameras
+// The next tests check cameras.
 
 TEST_F(GltfTest, CamerasComeInNodeOrderWithoutScale) {
   GltfBuilder gltf = triangle_gltf();
@@ -966,7 +966,7 @@ TEST_F(GltfTest, CamerasComeInNodeOrderWithoutScale) {
   EXPECT_EQ(scene.cameras[2].aspect_ratio, 0);
 }
 
-// Files
+// The next tests check files.
 
 TEST_F(GltfTest, GlbAndTextAreToldApartByTheirBytes) {
   GltfBuilder gltf = triangle_gltf();
@@ -983,7 +983,7 @@ TEST_F(GltfTest, BuffersLieBesideTheScene) {
   EXPECT_THAT(SceneFolder::load("a.gltf", gltf.json.dump()).objects, SizeIs(1));
 }
 
-/// A triangle with texture coordinates, which nothing reads, in a buffer of their own.
+/// Returns a document of a triangle with texture coordinates, which nothing reads, in a buffer of their own.
 GltfBuilder two_buffer_gltf(const json& second_buffer) {
   GltfBuilder gltf = triangle_gltf();
   gltf.text();

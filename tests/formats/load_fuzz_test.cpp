@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A small document with a bit of everything.
+/// Returns a small document with a little of everything.
 GltfBuilder small_gltf() {
   GltfBuilder gltf = triangle_gltf();
   auto& primitive = gltf.json["meshes"][0]["primitives"][0];
@@ -69,7 +69,7 @@ const std::string kSmallMtl =
     "newmtl metal\nPr 0.5\nPm 1\nmap_Pr -clamp on -o 0 1 a.png\nmap_Pm a.png\nmap_Ke a.png\nbump -bm 2 -imfchan r "
     "a.png\n";
 
-/// A square with normals and colours, a strip, and what is passed over.
+/// Returns a square with normals and colours, a strip, and elements that the loader skips.
 std::string small_ply(const std::string& format) {
   return "ply\nformat " + format +
          " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty float nx\n"
@@ -78,7 +78,7 @@ std::string small_ply(const std::string& format) {
          "element tristrips 1\nproperty list int char vertex_indices\nend_header\n";
 }
 
-/// Faces with colours, textures and texture coordinates, behind a header with other ends of lines.
+/// Returns faces with colours, textures and texture coordinates, after a header with other line ends.
 std::string small_textured_ply() {
   return "ply\rformat ascii 1.0\rcomment TextureFile a.png\relement face 3\rproperty uchar red\r"
          "property uchar green\rproperty float blue\rproperty list uchar int vertex_index\r"
@@ -127,7 +127,7 @@ const std::string kSmallNff =
     "l 4 5 6 1 0.5 0\nf 1 0.5 0.2 0.7 0.3 20 0.1 1.5\ns 0 0 0 1\nc 0 0 0 1 0 2 0 1\nc 0 0 0 -1 0 2 0 0\n"
     "p 5\n0 0 0\n2 0 0\n2 2 0\n1 1 0\n0 2 0\nf 0 0 1 1 0 0 0 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0.1 1\n0 1 0 0.1 0 1\n";
 
-/// Bytes that mean something to one of the parsers, or nothing to any.
+/// Changes the text at random. Some of the new bytes have a meaning for one of the parsers.
 std::string mutate(std::string bytes, std::mt19937& random) {
   static const std::string kTelling = "{}[]\",:-+.eE0123456789/\\# \n\r\tnullvfog\0\xff";
   const size_t changes = 1 + random() % 4;
@@ -163,7 +163,7 @@ class LoadFuzzTest : public SceneFolder {
     write("a.png", {reinterpret_cast<const char*>(png.data()), png.size()});
   }
 
-  /// Loads `scene` with mutants of the file `name`: 3000 in thorough tests, else the first 600 of these.
+  /// Loads `scene` with changed forms of the file `name`: 3000 in thorough tests, else the first 600 of them.
   void run(const std::string& name, const std::string& bytes, const std::string& scene,
            const LoadOptions& options = {}) {
     const int count = test::is_thorough() ? 3000 : 600;
@@ -203,7 +203,7 @@ TEST_F(LoadFuzzTest, ObjLoadsOrIsRefused) {
   run("a.obj", kSmallObj, "a.obj");
 }
 
-// Only a strict loader refuses an OBJ for its MTL.
+// Only a strict loader refuses an OBJ because of its MTL.
 TEST_F(LoadFuzzTest, MtlLoadsOrIsRefused) {
   write("a.obj", kSmallObj);
   run("a.mtl", kSmallMtl, "a.obj", {.is_strict = true});
@@ -228,7 +228,7 @@ TEST_F(LoadFuzzTest, NffLoadsOrIsRefused) {
   run("a.nff", kSmallNff, "a.nff");
 }
 
-/// A file that ends anywhere, and one that lacks any of its words or has it twice.
+/// The file ends at any place, or lacks any of its words, or has a word twice.
 TEST_F(LoadFuzzTest, NffWithOtherWordsLoadsOrIsRefused) {
   std::vector<std::string> words;
   std::istringstream text(kSmallNff);
@@ -259,7 +259,7 @@ TEST_F(LoadFuzzTest, NffWithOtherWordsLoadsOrIsRefused) {
   EXPECT_LT(refused, total);
 }
 
-/// A step further than bytes: any value of the document becomes any other kind of value.
+/// This test changes more than bytes: any value of the document becomes any other kind of value.
 TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
   GltfBuilder gltf = small_gltf();
   gltf.text();
@@ -270,7 +270,7 @@ TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
     for (const json& value : kOtherValues) {
       json document = good.unflatten();
       document[json::json_pointer(pointer)] = value;
-      // Also the container around it.
+      // The object or array around the value changes, too.
       json parent = good.unflatten();
       parent[json::json_pointer(pointer).parent_pointer()] = value;
       for (const json& mutant : {document, parent}) {

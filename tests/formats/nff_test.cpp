@@ -174,18 +174,18 @@ double area_of(const Mesh& mesh) {
 }
 
 TEST_F(NffTest, PolygonsMayBeConcave) {
-  // An arrow's head, whose fan around its first corner would lie outside.
+  // The polygon is an arrow's head; a fan around its first corner would lie partly outside.
   const Scene scene = load("p 4 2 0 1 0 1 1 1 0 1 0 -1 1");
   const auto& mesh = shape_of<Mesh>(scene, 0);
   EXPECT_THAT(mesh.triangles, SizeIs(2));
   EXPECT_NEAR(area_of(mesh), 1.0, 1e-12);
   EXPECT_THAT(mesh.normals, IsEmpty());
-  // A comb of 40 teeth: many notches.
+  // The polygon is a comb of 40 teeth, with many notches.
   std::string comb = "p 81\n";
   for (int i = 0; i < 81; ++i) {
     comb += std::to_string(i) + (i == 0 || i == 80 ? " 0 0\n" : i % 2 == 1 ? " 2 0\n" : " 1 0\n");
   }
-  // The outline is 0,0 - ... - 80,0 with its base as the last side.
+  // The outline goes from 0,0 to 80,0, and the base is its last side.
   const Scene teeth = load(comb);
   EXPECT_THAT(shape_of<Mesh>(teeth, 0).triangles, SizeIs(79));
   EXPECT_NEAR(area_of(shape_of<Mesh>(teeth, 0)), 119.0, 1e-9);
@@ -208,7 +208,7 @@ TEST_F(NffTest, PatchesHaveNormals) {
   EXPECT_THAT(mesh.positions, ElementsAre(vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)));
   EXPECT_THAT(mesh.normals, ElementsAre(vec3(0, 0, 2), vec3(0, 1, 1), vec3(1, 0, 1)));
 
-  // Beside flat ones, before and after.
+  // The patch stands between flat polygons.
   const Scene mixed = load(kMaterial + kSquare + patch + kSquare);
   const auto& both = shape_of<Mesh>(mixed, 0);
   ASSERT_THAT(both.normals, SizeIs(both.positions.size()));
@@ -238,9 +238,9 @@ TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
   }
 }
 
-// What is forgiven
+// The next tests check faults that cost only a warning.
 
-/// A file with one thing that is wrong, and the warning that it costs.
+/// A fault in a file, and the warning that it gives.
 struct Repair {
   const char* name;
   const char* text;
@@ -325,7 +325,7 @@ TEST_F(NffTest, AFileWhoseShapesAreAllLeftOutIsRefused) {
   EXPECT_THAT(refusal("s 0 0 0 0\np 1 0 0 0\n"), HasProblem("scene.geometry.none \"s\" radius"));
 }
 
-// Refusals
+// The next tests check refusals.
 
 class BadNffTest : public BadFileTest {};
 
@@ -354,7 +354,7 @@ const BadFile kBadNff[] = {
 
 INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff), name_of_bad_file);
 
-/// A problem ends the parsing, so one is told, whatever comes after.
+/// Parsing stops at the first problem, so only that one is told, whatever follows.
 TEST_F(NffTest, OneProblemIsTold) {
   EXPECT_THAT(refusal("s 0 0 0 x\nq\nq\n"), testing::Not(HasSubstr("\"q\"")));
 }

@@ -30,7 +30,7 @@ class ObjTest : public SceneFolder {
   LoadedScene load(std::string_view text) const { return SceneFolder::load("scene.obj", text); }
   std::string refusal(std::string_view text) const { return SceneFolder::refusal("scene.obj", text); }
 
-  /// Checks that a strict loader refuses a text that another reads, with this problem and this place.
+  /// Checks that a strict loader refuses a text that the usual loader reads, with this problem at this place.
   void expect_strict_refusal(std::string_view text, const char* what, const std::string& where) const {
     const std::filesystem::path file = write("strict.obj", text);
     EXPECT_EQ(SceneFolder::refusal(file), "");
@@ -39,7 +39,7 @@ class ObjTest : public SceneFolder {
     EXPECT_THAT(said, HasSubstr("strict.obj" + where));
   }
 
-  /// The material "m" of an MTL with these lines.
+  /// Returns the material "m" of an MTL with these lines.
   Material material(const std::string& lines, std::vector<std::string>* warnings = nullptr) const {
     write("m.mtl", "newmtl m\n" + lines);
     const LoadedScene scene = load(kSquare + "mtllib m.mtl\nusemtl m\nf 1 2 3\n");
@@ -70,7 +70,7 @@ TEST_F(ObjTest, TellsOfItsFilesAsTheyWereBeforeReading) {
   EXPECT_THAT(names_of(sources), Contains("scene.obj")) << "also of a broken scene";
 }
 
-// Faces
+// The next tests check faces.
 
 TEST_F(ObjTest, FacesCountFromTheFrontOrTheBack) {
   const std::vector<vec3> wanted = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
@@ -95,7 +95,7 @@ TEST_F(ObjTest, LinesOfAnMtlMayEndInCrAlone) {
   EXPECT_EQ(scene.materials.at(0).phong().diffuse, vec3(0, 0, 1));
 }
 
-// As editors of Windows write it; the first line would be no statement with it.
+// Windows editors write a byte order mark. If it were not skipped, the first line would not be a statement.
 TEST_F(ObjTest, AByteOrderMarkIsNoPartOfTheFirstLine) {
   const LoadedScene scene = load("\xEF\xBB\xBF" + kSquare + "f 1 2 3\n");
   EXPECT_THAT(mesh_of(scene).triangles, SizeIs(1));
@@ -128,7 +128,8 @@ TEST_F(ObjTest, StatementsGoOnBehindABackslash) {
   EXPECT_EQ(scene.objects.at(0).name, "name");
 }
 
-// In Latin-1, as older programs write them. What quotes them is UTF-8 too, wherever a quoted word is cut.
+// The text is Latin-1, as older programs write it. Messages that quote it are still UTF-8, wherever a quoted word is
+// cut.
 TEST_F(ObjTest, NamesAreShownInUtf8) {
   write("latin.mtl", "newmtl m\xFCller\n");
   const LoadedScene scene =
@@ -191,7 +192,7 @@ TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
   EXPECT_THAT(refusal(kSquare + "f 1 2\nf 3 4\n"), HasProblem("obj.faces.none"));
 }
 
-// Faults that only cost colours, shades or what no face shows
+// The next tests check faults that lose only colours, shading or something that no face shows.
 
 TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");
@@ -291,7 +292,7 @@ TEST_F(ObjTest, ZeroBytesAtTheEndAreCutOff) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
-// Materials
+// The next tests check materials.
 
 TEST_F(ObjTest, FactorsAreTakenAsTheyStand) {
   const Material m = material("Ka 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 2 1 0\nNs 96\nKe 3 0 0\nillum 2\n");
@@ -342,7 +343,7 @@ TEST_F(ObjTest, GlassIsRead) {
   EXPECT_EQ(mirror.phong().transmission, vec3(0.0F));
   EXPECT_TRUE(mirror.phong().fresnel);
   EXPECT_EQ(mirror.phong().ior, 1.25F);
-  // What is transparent in part lets as much through its filter.
+  // A partly transparent material also transmits only a fraction through its filter.
   const Material half = material(factors + "4\nd 0.5\n");
   EXPECT_EQ(half.phong().transmission, vec3(0.25F, 0.375F, 0.5F));
   EXPECT_EQ(half.phong().ior, 1.0F);
@@ -388,7 +389,7 @@ TEST_F(ObjTest, NumbersOfMaterialsThatAreNoneAreIgnored) {
   EXPECT_THAT(warnings, IsEmpty());
 }
 
-// Both are of MTL, so that a strict loader takes them too.
+// Both statements are valid MTL, so a strict loader accepts them.
 TEST_F(ObjTest, ColoursOfOtherSpacesAreIgnored) {
   std::vector<std::string> warnings;
   const Material m = material("Kd 1 0 0\nKa spectral file.rfl 1\nKs xyz 0.1 0.2 0.3\n", &warnings);
@@ -399,7 +400,7 @@ TEST_F(ObjTest, ColoursOfOtherSpacesAreIgnored) {
   EXPECT_NO_THROW(load_scene(folder_ / "scene.obj", {.is_strict = true}));
 }
 
-// 3ds Max and others write Tr 1 for opaque.
+// 3ds Max and other programs write Tr 1 for opaque materials.
 TEST_F(ObjTest, WhatWouldBeInvisibleByTrIsOpaque) {
   std::vector<std::string> warnings;
   EXPECT_EQ(material("Kd 1 0 0\nTr 1.000000\nillum 1\n", &warnings).alpha_mode, AlphaMode::kOpaque);
@@ -426,7 +427,7 @@ TEST_F(ObjTest, WhatIsInvisibleByDIsSaid) {
   EXPECT_THAT(warnings, IsEmpty()) << "glass";
 }
 
-// Names
+// The next tests check names.
 
 TEST_F(ObjTest, CommentsMayFollowNames) {
   write("a.mtl",
@@ -538,9 +539,9 @@ TEST_F(ObjTest, MtlNamesMayHoldSpaces) {
   EXPECT_EQ(load(kSquare + "mtllib a.mtl b.mtl\nusemtl b\nf 1 2 3\n").materials.at(0).phong().diffuse, vec3(0, 1, 0));
 }
 
-// Texture maps
+// The next tests check texture maps.
 
-/// Loads a square with texture coordinates on all corners and a material of these lines.
+/// Loads a square with texture coordinates at all corners, and a material with these lines.
 class ObjMapTest : public ObjTest {
  protected:
   ObjMapTest() { write_picture("a.png", {10, 20, 30}); }
@@ -621,7 +622,7 @@ TEST_F(ObjMapTest, CornersThatAreEqualAreShared) {
 TEST_F(ObjMapTest, CoordinatesThatAreMissingAreSaid) {
   write("m.mtl", "newmtl m\nmap_Kd a.png\n");
   const LoadedScene scene = load("mtllib m.mtl\nusemtl m\nvt 0 x\n" + kSquare + "f 1/1 2/7 3\n");
-  // They are 0; v goes down in meshes, where 1 is 0 as the texture repeats.
+  // The file's coordinates are 0. In meshes v goes down, where it would be 1; that is 0, because the texture repeats.
   EXPECT_THAT(mesh_of(scene).uvs, Each(vec4(0, 0, 0, 0)));
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("not a number up to 1e15"), HasSubstr("that do not exist"),
                                           HasSubstr("have no texture coordinates")));
@@ -633,7 +634,7 @@ TEST_F(ObjMapTest, OptionsPlaceTheMap) {
   EXPECT_THAT(scene.warnings, IsEmpty());
   const TextureSlot& slot = scene.materials.at(0).phong().diffuse_texture;
   EXPECT_EQ(slot.to_u, vec3(2, 0, 0.5F));
-  // Upwards v' = 4 v + 0.25, so downwards 1 - v' = 4 (1 - v) - 3.25.
+  // Upwards v' = 4 v + 0.25; therefore downwards 1 - v' = 4 (1 - v) - 3.25.
   EXPECT_EQ(slot.to_v, vec3(0, 4, -3.25F));
   EXPECT_EQ(scene.textures.at(slot.texture).wrap_u, TextureWrap::kClampToEdge);
   EXPECT_EQ(scene.textures.at(slot.texture).wrap_v, TextureWrap::kClampToEdge);
@@ -693,26 +694,26 @@ TEST_F(ObjMapTest, PicturesOfOtherFoldersAreReadFromBesideTheScene) {
   EXPECT_THAT(load_with("map_Kd C:\\x\\none.png\n").warnings, ElementsAre(HasSubstr("is not relative")));
 }
 
-// Maps of heights
+// The next tests check height maps.
 
-/// The normal of a texel, without the error of its 8 bits.
+/// Returns the normal of a texel, without the rounding error of its 8 bits.
 vec3 normal_at(const TextureImage& image, uint32_t x, uint32_t y) {
   const uint32_t texel = image.texels.at(uint64_t{y} * image.size.x + x);
   return 2.0F / 255.0F * vec3(texel & 0xFF, texel >> 8 & 0xFF, texel >> 16 & 0xFF) - 1.0F;
 }
 
-/// The slopes along u and v of a normal.
+/// Returns the slopes along u and v of a normal.
 vec2 slope_at(const TextureImage& image, uint32_t x, uint32_t y) {
   const vec3 normal = normal_at(image, x, y);
   return -vec2(normal) / normal.z;
 }
 
-/// A step of 8 bits in a normal.
+/// The step between neighbouring 8-bit values of a normal's component.
 constexpr float kStep = 2.0F / 255.0F;
 
 class ObjHeightsTest : public ObjMapTest {
  protected:
-  /// A ramp of 16 columns from black to 240, the same in all 4 rows; or of rows, that grows downwards.
+  /// Writes a ramp of 16 columns from black to 240, the same in all 4 rows; or one of 16 rows, which grows downwards.
   void write_ramp(bool is_of_rows) const {
     std::vector<uint8_t> grey;
     const uvec2 size = is_of_rows ? uvec2(4, 16) : uvec2(16, 4);
@@ -745,7 +746,7 @@ TEST_F(ObjHeightsTest, ARampHasOneSlope) {
       EXPECT_NEAR(slope_at(normals, x, 2).x, 8.0F * 16.0F / 255.0F, 2.0F * kStep) << x;
       EXPECT_NEAR(slope_at(normals, x, 2).y, 0.0F, 2.0F * kStep);
     }
-    // The picture repeats: 16 lies beside 240.
+    // The picture repeats, so 16 lies beside 240.
     for (const uint32_t x : {0U, 15U}) EXPECT_NEAR(slope_at(normals, x, 0).x, -8.0F * 112.0F / 255.0F, 0.2F);
   }
   EXPECT_NEAR(slope_at(normals_of("bump -bm -8 ramp.png\n"), 5, 0).x, -8.0F * 16.0F / 255.0F, 2.0F * kStep);
@@ -809,7 +810,7 @@ TEST_F(ObjHeightsTest, APictureOfNormalsIsTakenForOne) {
   const TextureImage normals = normals_of("map_Bump -bm 0.5 n.png\n", &warnings);
   EXPECT_EQ(normals.texels.at(1), 0xFFFA80A0U);
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("\"n.png\" of a height map contains normals")));
-  // Bright grey texels are vectors of length 1 too, and photographs are blue.
+  // Bright grey texels are also vectors of length 1, and photographs may be blue.
   write_picture("grey.png", {200, 200, 200, 201, 201, 201, 199, 199, 199, 202, 202, 202}, {4, 1});
   normals_of("bump grey.png\n", &warnings);
   EXPECT_THAT(warnings, IsEmpty());
@@ -925,9 +926,9 @@ TEST_F(ObjMapTest, TheSmallerPictureIsEnlarged) {
               ElementsAre(0xFF0501FFU, 0xFF0502FFU, 0xFF0603FFU, 0xFF0604FFU));
 }
 
-// Refusals
+// The next tests check refusals.
 
-/// The texts follow the square.
+/// Each text follows the square's text.
 class BadObjTest : public BadFileTest {};
 
 TEST_P(BadObjTest, IsRefusedWithPlaceAndCure) {
@@ -957,7 +958,7 @@ TEST_F(ObjTest, BrokenFilesSayWhy) {
               testing::ResultOf([](const std::string& list) { return std::ranges::count(list, '\n'); }, 4));
 }
 
-// Polygons
+// The next tests check polygons.
 
 double area_of(const std::vector<vec3>& corners, const std::vector<uvec3>& triangles) {
   double area = 0.0;
@@ -969,9 +970,9 @@ double area_of(const std::vector<vec3>& corners, const std::vector<uvec3>& trian
 }
 
 TEST(TriangulateTest, ConcavePolygonsAreCoveredOnce) {
-  // A thin arrow head: its shorter diagonal lies outside.
+  // A thin arrow head, whose shorter diagonal lies outside.
   const std::vector<vec3> arrow = {{0, 10, 0}, {-0.5F, 0, 0}, {0, 8, 0}, {0.5F, 0, 0}};
-  // A comb with two teeth, and a C.
+  // A comb with two teeth, and a polygon in the shape of a C.
   const std::vector<vec3> comb = {{0, 0, 0}, {5, 0, 0}, {5, 4, 0}, {4, 4, 0},
                                   {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
   for (const auto& [corners, area] : {std::pair{arrow, 1.0}, std::pair{comb, 11.0}}) {

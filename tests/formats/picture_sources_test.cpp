@@ -28,7 +28,7 @@ using Bytes = std::vector<std::byte>;
 
 constexpr size_t kHeadBytes = 65536;
 
-/// 200 KB, with the size in the first of them.
+/// Returns a file of 200 KB with the size in its first bytes.
 Bytes make_long_png() {
   std::mt19937 random(1);
   std::vector<uint8_t> rows(size_t{3} * 256 * 256);
@@ -36,7 +36,7 @@ Bytes make_long_png() {
   return make_png({256, 256}, PNG_COLOR_TYPE_RGB, 8, rows);
 }
 
-/// With 80,000 bytes of metadata before the size.
+/// Returns a JPEG with 80,000 bytes of metadata before the size.
 Bytes make_late_jpeg() {
   Bytes file = make_jpeg({24, 16}, std::vector<uint8_t>(size_t{3} * 24 * 16, 100));
   Bytes metadata(40000);
@@ -53,7 +53,7 @@ std::string_view text_of(const Bytes& bytes) {
 
 class PictureSourcesTest : public SceneFolder {
  protected:
-  /// Reads a picture of these bytes; how many bytes were asked for, time after time.
+  /// Reads a picture of these bytes. Returns how many bytes were asked for in each request.
   std::vector<uint64_t> read(const Bytes& file, PictureSource& source) {
     std::vector<uint64_t> asked;
     read_picture(source, report_, [&](LoadReport&, uint64_t most_bytes) {
@@ -115,7 +115,7 @@ TEST_F(PictureSourcesTest, WhatIsDamagedButDecodedIsShownWithAWarning) {
   EXPECT_THROW(strict.throw_if_refused(), InputError);
 }
 
-/// Radiance stores a mantissa and an exponent: 128 / 256 * 2^(127 - 128) is a quarter, the byte 64, and the code 137.
+/// Radiance stores a mantissa and an exponent: 128 / 256 * 2^(127 - 128) is 1/4, which is the byte 64; its code is 137.
 TEST_F(PictureSourcesTest, OfPicturesOfLightColorsBecomeCodes) {
   const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x7F";
   const auto* first = reinterpret_cast<const std::byte*>(text.data());

@@ -23,12 +23,12 @@ const std::string kPlace = "property float x\nproperty float y\nproperty float z
 const std::string kCornerList = "property list uchar int vertex_indices\n";
 const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
-/// The header of a text with these elements, which are "element" lines and what follows.
+/// Returns the header of a text file with these elements, which are "element" lines and their properties.
 std::string text_header(const std::string& elements) {
   return "ply\nformat ascii 1.0\ncomment made here\nobj_info as well\n" + elements + "end_header\n";
 }
 
-/// A square's vertices with these faces.
+/// Returns a square's vertices with these faces.
 std::string square(const std::string& faces, int face_count) {
   return text_header("element vertex 4\n" + kPlace + "element face " + std::to_string(face_count) + "\n" +
                      kCornerList) +
@@ -64,7 +64,7 @@ TEST_F(PlyTest, LinesMayEndInCarriageReturnsAlone) {
   EXPECT_THAT(mesh_of(load(text)).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
 }
 
-/// A triangle of which the first byte of numbers looks like the end of a line; `end` is that of the header's lines.
+/// Returns a triangle whose first byte of numbers looks like the end of a line; `end` is the line end of the header.
 std::string tricky_binary(const std::string& end) {
   PlyBuilder ply(std::endian::little);
   ply.header("element face 1\nproperty uchar flags\n" + kCornerList + "element vertex 3\n" + kPlace);
@@ -89,7 +89,7 @@ TEST_F(PlyTest, ZeroBytesBehindATextAreCutOff) {
   EXPECT_THAT(mesh_of(load(square("3 0 1 2", 1) + std::string(5, '\0'))).triangles, SizeIs(1));
 }
 
-/// Each type of numbers holds what it can, in both orders of bytes.
+/// Each type of numbers can hold its whole range, in both byte orders.
 TEST_F(PlyTest, BinaryFilesHoldEveryType) {
   struct Kind {
     const char* names[2];
@@ -116,7 +116,7 @@ TEST_F(PlyTest, BinaryFilesHoldEveryType) {
 }
 
 TEST_F(PlyTest, DoublesAreRoundedToTheNearest) {
-  // Just above the middle of two floats.
+  // The number lies just above the middle of two floats.
   const std::string file = text_header(
                                "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
                                "element face 1\n" +
@@ -146,7 +146,7 @@ TEST_F(PlyTest, WhatIsUnknownIsPassedOver) {
 TEST_F(PlyTest, PolygonsAreCutIntoTriangles) {
   const LoadedScene scene = load(square("4 0 1 2 3\n3 0 1 2\n", 2));
   EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3), uvec3(0, 1, 2)));
-  // An arrow's head, whose fan around corner 0 would leave it.
+  // The polygon is an arrow's head; a fan around corner 0 would leave it.
   const std::string arrow = text_header("element vertex 4\n" + kPlace + "element face 1\n" + kCornerList) +
                             "1 0 0\n0 8 0\n-1 0 0\n0 10 0\n4 0 3 2 1\n";
   const LoadedScene concave = load(arrow);
@@ -198,9 +198,9 @@ TEST_F(PlyTest, NumbersBeyondDoubleAreThoseOfTheirSide) {
   EXPECT_THAT(refusal(file + "1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), HasProblem("scene.geometry.none 1e15"));
 }
 
-// Normals and colours
+// The next tests check normals and colours.
 
-/// A triangle with further properties; `vertices` are those of each of its three vertices.
+/// Returns a triangle with further properties; `vertices` has those of each of its three vertices.
 std::string triangle(const std::string& properties, const std::vector<std::string>& vertices) {
   return text_header("element vertex 3\n" + kPlace + properties + "element face 1\n" + kCornerList) + "0 0 0 " +
          vertices.at(0) + "\n1 0 0 " + vertices.at(1) + "\n0 1 0 " + vertices.at(2) + "\n3 0 1 2\n";
@@ -237,7 +237,7 @@ TEST_F(PlyTest, ColorsAreThoseOfScreens) {
   const auto colors = [](const std::string& type) {
     return "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
   };
-  // sRGB's curve: the middle code shows a fifth of the light.
+  // The curve of sRGB makes the middle code a fifth of the light.
   const LoadedScene bytes = load(triangle(colors("uchar"), {"0 128 255", "255 255 255", "10 10 10"}));
   EXPECT_EQ(mesh_of(bytes).colors.at(0).r, 0.0F);
   EXPECT_NEAR(mesh_of(bytes).colors.at(0).g, 0.2158605F, 1e-6F);
@@ -328,7 +328,7 @@ TEST_F(PlyTest, SharpFacesAndStripsKeepTheirColors) {
   EXPECT_THAT(validate(load_scene(folder_ / "scene.ply")), IsEmpty());
 }
 
-/// Around one vertex each of very many faces may have another colour.
+/// Very many faces meet at one vertex, and each may have another colour.
 TEST_F(PlyTest, TimeStaysInBoundsWhereManyColorsMeet) {
   PlyBuilder ply(std::endian::little);
   const int count = 200'000;
@@ -353,9 +353,9 @@ TEST_F(PlyTest, ColorsOfVerticesComeBeforeThoseOfFaces) {
   EXPECT_THAT(scene.warnings, ElementsAre("colours of faces are ignored because the vertices have colours"));
 }
 
-// Textures
+// The next tests check textures.
 
-/// Files of textures lie in the folder of the test.
+/// The texture files lie in the test's folder.
 class PlyTextureTest : public PlyTest {
  protected:
   PlyTextureTest() {
@@ -475,7 +475,7 @@ TEST_F(PlyTextureTest, SizesAreReadAloneWhereAskedFor) {
   EXPECT_THAT(scene.images.at(0)->texels, IsEmpty());
 }
 
-// Refusals
+// The next tests check refusals.
 
 class BadPlyTest : public BadFileTest {};
 
@@ -485,7 +485,7 @@ TEST_P(BadPlyTest, IsRefusedWithPlaceAndCure) {
 
 const std::string kVertexElement = "element vertex 4\n" + kPlace;
 
-/// The square's file as binary, up to its last face.
+/// Returns the square's file as binary, up to its last face.
 std::string cut_binary(const std::string& count_of_faces) {
   PlyBuilder ply(std::endian::little);
   ply.header(kVertexElement + "element face " + count_of_faces + "\n" + kCornerList);

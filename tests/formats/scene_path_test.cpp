@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A scene in a folder "scene", beside which lie others.
+/// A scene in a folder "scene", with other folders beside it.
 class ScenePathTest : public SceneFolder {
  protected:
   ScenePathTest() {
@@ -28,7 +28,7 @@ class ScenePathTest : public SceneFolder {
     fs::create_directory_symlink("../textures", folder_ / "scene/up");
   }
 
-  /// What a file holds that a scene names, or why it is not read.
+  /// Returns the content of a file that a scene names, or the reason why it is not read.
   std::string read(const std::string& name, const fs::path& root = {}, const std::string& scene = "scene") const {
     LoadReport report(folder_ / scene / "scene.gltf", false, root.empty() ? root : folder_ / root);
     const auto file = find_beside_scene(name, "images[0].uri", true, report);

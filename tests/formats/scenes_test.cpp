@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// The scenes in scenes/: what the generator writes is what is checked in, and all of it loads.
+// These tests check the scenes in scenes/: the generator writes exactly the stored files, and all of them load.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Name and bytes of each file.
+/// Returns the name and the bytes of each file.
 std::map<std::string, std::string> contents_of(const fs::path& folder) {
   std::map<std::string, std::string> contents;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -89,7 +89,7 @@ TEST_F(ScenesTest, FineScenesHaveWhatTheyAreNamedFor) {
     if (const auto* wire = std::get_if<world::Cylinder>(&object.shape)) radii.push_back(wire->radius);
   }
   ASSERT_EQ(radii.size(), 48U);
-  // Of a picture of 360 rows, which shows a height of 2.
+  // The picture has 360 rows and shows a height of 2.
   EXPECT_FLOAT_EQ(radii.front(), 0.5F / 8.0F * 2.0F / 360.0F);
   EXPECT_FLOAT_EQ(radii.back(), 0.5F * 2.0F / 360.0F);
 }

@@ -172,13 +172,13 @@ TEST_F(StlTest, ACountThatWasNeverWrittenIsThatOfTheSize) {
     EXPECT_THAT(mesh_of(scene).triangles, SizeIs(3));
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("the number of facets is missing")));
     EXPECT_THROW(load_scene(folder_ / "scene.stl", {.is_strict = true}), InputError);
-    // Where the size is no sign, the file is refused.
+    // If the size does not show which format it is, the file is refused.
     EXPECT_THAT(refusal(bytes + "x"),
                 testing::AnyOf(HasProblem("scene.geometry.none"), HasProblem("stl.file.short 3")));
   }
 }
 
-/// The light of a colour of 5 bits.
+/// Returns the light of a colour's 5-bit code.
 float light_of(int code) {
   return static_cast<float>(srgb_to_linear(code / 31.0));
 }
@@ -223,7 +223,7 @@ TEST_F(StlTest, WithoutFacetsThereIsNothingToShow) {
   }
 }
 
-// Refusals
+// The next tests check refusals.
 
 class BadStlTest : public BadFileTest {};
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Every scene of scenes/ against its stored picture, and pictures that must not pass.
-// PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes them instead.
+// These tests compare a picture of every scene in scenes/ with its stored one, and check that wrong pictures fail.
+// PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes the stored pictures instead.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ const fs::path kGoldens = PROMIN_GOLDENS_DIR;
 
 constexpr CompareOptions kTolerance = {.fail = 0.004F, .fail_percent = 0.02, .hard_fail = 0.012F, .edge_percent = 0.5};
 
-/// Empty if the picture is the golden one; otherwise what is wrong.
+/// Returns an empty text if the picture equals the golden one; otherwise the difference.
 std::string compare_with_golden(const Image& picture, const Image& golden) {
   const ImageDifference difference = compare_images(picture, golden, kTolerance);
   return difference.is_equal ? "" : difference.summary();
@@ -63,7 +63,7 @@ Subject load_subject(const std::string& name) {
 
 class GoldenTest : public test::DeviceTest {
  protected:
-  /// With packets, as users have them.
+  /// The device uses packets, as users have them.
   static void SetUpTestSuite() { open({}); }
 
   static Image render(const Subject& subject) {
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SceneGoldenTest, testing::ValuesIn(scene_names(
   return name;
 });
 
-// Negative controls: if one of these passes, the comparison above proves nothing.
+// These are negative controls: if one of these comparisons passes, the comparison above proves nothing.
 
 constexpr const char* kControl = "all_primitives.gltf";
 

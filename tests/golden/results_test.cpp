@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The version of results (engine/work/jobs/results_version.h), which jobs depend on: it must be raised if the stored
-// pictures or the casts of three scenes change. results.txt has the hashes of each, and the version at which they were
-// recorded. PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes it.
+// These tests check the version of results (engine/work/jobs/results_version.h), on which jobs depend. It must be
+// raised if the stored pictures or the casts of three scenes change. results.txt has their hashes, and the version at
+// which they were recorded. PROMIN_UPDATE_GOLDENS=1, which tools/update_goldens sets, writes that file.
 #include "work/jobs/results_version.h"
 
 #include <gtest/gtest.h>
@@ -34,10 +34,10 @@ const fs::path kScenes = PROMIN_SCENES_DIR;
 const fs::path kGoldens = PROMIN_GOLDENS_DIR;
 const fs::path kResults = PROMIN_RESULTS_FILE;
 
-/// Shapes; meshes that share edges; glass.
+/// Scenes with shapes, with meshes that share edges, and with glass.
 constexpr const char* kCastScenes[] = {"all_primitives.gltf", "showcase.gltf", "glass.gltf"};
 
-/// Hashes by what they are of: "goldens", or "cast SCENE, DRIVER". Casts of drivers may differ.
+/// Hashes by the name of their content: "goldens", or "cast SCENE, DRIVER". The hits of different drivers may differ.
 using Hashes = std::map<std::string, std::string>;
 
 struct Results {
@@ -57,7 +57,7 @@ std::string hash_goldens() {
   return hash.finish();
 }
 
-/// Returns the hash of the hits of rays through a scene, from around it to places in it.
+/// Returns the hash of the hits of rays through a scene. The rays start around the scene and aim at places in it.
 std::string hash_casts(const gpu::Device& device, const std::string& name) {
   const Scene scene = load_scene(kScenes / name);
   const Bounds bounds = bounds_of(scene);

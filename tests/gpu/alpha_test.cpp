@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Alpha and sides (docs/model.md, "Alpha"): holes, what blends, and backs that are not shown. boards_test.cpp has more
-// of cutoffs, sides and shadows. Boards are unlit and fill the picture, so that its pixels are closed forms.
+// These tests check alpha and sides (docs/model.md, "Alpha"): holes, blending, and backs that are not shown.
+// boards_test.cpp has more tests of cutoffs, sides and shadows. Boards are unlit and fill the picture, so that its
+// pixels have closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ Material make_blending(const vec3& color, float alpha = 1.0F) {
   return make_unlit(color, AlphaMode::kBlend, alpha);
 }
 
-/// A white surface that sends the light that it gets.
+/// Returns a white material that scatters all the light it gets.
 Material make_matt() {
   Material material;
   material.phong() = Phong{.ambient = vec3(0.0F), .diffuse = vec3(1.0F)};
@@ -37,7 +38,7 @@ void add_board(Scene& scene, float z, const Material& material) {
   scene.add("board", make_board(z), static_cast<uint32_t>(scene.materials.size() - 1));
 }
 
-/// An image of which each texel has this alpha, named by its number from v = 0 on.
+/// Adds an image with these alphas of its texels, which are numbered from v = 0 on, and its texture.
 void add_alpha_texture(Scene& scene, const uvec2& size, const std::vector<uint32_t>& alphas) {
   std::vector<uint32_t> texels;
   for (const uint32_t alpha : alphas) texels.push_back(alpha << 24 | 0xFFFFFFU);
@@ -50,7 +51,7 @@ class AlphaTest : public DeviceTest {
     EXPECT_THAT(validate(scene), testing::IsEmpty());
     return make_renderer(device(), scene, options).render(view);
   }
-  /// Of a row of a square picture, of which all rows are alike.
+  /// Returns the red of a row of a square picture whose rows are all alike.
   std::vector<float> reds(const Scene& scene, uint32_t side) {
     const Image image = trace(scene, make_board_view(uvec2(side))).image;
     std::vector<float> result;
@@ -62,7 +63,7 @@ class AlphaTest : public DeviceTest {
   }
 };
 
-// Means of alpha alone would be under the cutoff nearly everywhere.
+// If levels were means of alpha alone, they would be below the cutoff nearly everywhere.
 TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
   Scene scene;
   std::vector<uint32_t> alphas;
@@ -76,7 +77,8 @@ TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
   scene.environment.background = vec3(1.0F);
   const Image image = trace(scene, make_board_view(uvec2(32))).image;
   const auto there = std::ranges::count_if(image.pixels, [](const vec3& pixel) { return pixel.r == 0.0F; });
-  // Means of 16 texels are few numbers: the share nearest to a quarter that they can make is 0.19; unscaled it is 0.03.
+  // A mean of 16 texels has few possible values. The fraction nearest to a quarter that they give is 0.19; without
+  // scaling it is 0.03.
   EXPECT_NEAR(static_cast<double>(there) / 1024, 0.19, 0.03);
 }
 
@@ -87,7 +89,7 @@ TEST_F(AlphaTest, AMaskOfTooLittleAlphaIsNowhere) {
   scene.add("ball", Sphere{.radius = 0.5}, 1);
   add_board(scene, -1.0F, make_blending(vec3(0.5F)));
   EXPECT_THAT(reds(scene, 4), testing::Each(0.5F));
-  // AOVs do not see it either; of solids they see what blends with alpha 0.
+  // AOVs do not see the board either. They see the ball, because a solid counts as one that blends with alpha 0.
   TunedRendererOptions options;
   options.with_aovs = true;
   const Aovs aovs = trace(scene, make_board_view(uvec2(4)), options).aovs;
@@ -111,7 +113,7 @@ TEST_F(AlphaTest, WhatBlendsIsOverWhatIsBehind) {
 }
 
 TEST_F(AlphaTest, LayersAtTheSamePlaceAllCount) {
-  // In the order of their numbers, whichever triangle the tree has first.
+  // Surfaces at the same place blend in the order of their numbers, whichever triangle comes first in the tree.
   Scene scene;
   scene.environment.background = vec3(1.0F);
   for (const float color : {0.0F, 0.25F, 0.5F}) add_board(scene, 0.0F, make_blending(vec3(color), 0.5F));
@@ -184,7 +186,7 @@ TEST_F(AlphaTest, MirrorsSeeBacksAsTheCameraDoes) {
     Material behind_camera = make_unlit(vec3(0.25F), AlphaMode::kOpaque);
     behind_camera.is_double_sided = is_double_sided;
     add_board(scene, 3.0F, behind_camera);
-    // Its front faces away from the mirror.
+    // The front of the surface faces away from the mirror.
     EXPECT_THAT(reds(scene, 2), testing::Each(is_double_sided ? 0.25F : 1.0F));
   }
 }
@@ -213,13 +215,13 @@ TEST_F(AlphaTest, EveryWayOfTracingGivesTheSameBits) {
   }
 }
 
-// More sources than a turn of the stream takes.
+// There are more light sources than a turn of the stream takes.
 TEST_F(AlphaTest, ManySourcesLightWhatBlends) {
   world::Scene scene = make_scene_of_alpha();
   const View view = make_view({48, 36});
   const Light light = scene.lights[0];
   const Image expected = make_renderer(device(), scene, TunedRendererOptions()).render(view).image;
-  // Dark ones first, so that those that light come in the next turn.
+  // The dark sources come first, so that those that give light come in the next turn.
   Light dark = light;
   dark.diffuse = dark.specular = vec3(0.0F);
   scene.lights.insert(scene.lights.begin(), layout::STREAM_SOURCES, dark);

@@ -47,7 +47,8 @@ struct Subject {
   View view;
 };
 
-/// Scenes in which each part of light is there in some pixel. The first ones hold everything that the last one does.
+/// Returns scenes in which each part of light is present in some pixel. The first scenes together have everything that
+/// the last one has.
 std::vector<Subject> subjects() {
   const View view = make_view(uvec2(48, 36));
   View deep = view;
@@ -60,7 +61,7 @@ std::vector<Subject> subjects() {
     subject.scene.materials[0].emissive = vec3(0.2F, 0.1F, 0.05F);
     subject.scene.environment.ambient = vec3(0.1F);
     subject.scene.environment.background = vec3(0.3F, 0.4F, 0.5F);
-    // More than a turn of the stream takes, so that a bounce takes several.
+    // There are more sources than a turn of the stream takes, so that a bounce takes several turns.
     while (subject.scene.lights.size() < 18) {
       const auto number = static_cast<float>(subject.scene.lights.size());
       subject.scene.lights.push_back(test::make_sun(vec3(-1.0F, -2.0F, 0.1F * number), 0.05F));
@@ -106,10 +107,10 @@ TEST_F(AovsTest, PartsOfLightSumToTheImage) {
   }
 }
 
-// Each part is what the picture is of when all other light is out.
+// Each part equals the picture without all other light.
 TEST_F(AovsTest, EachPartIsThePictureWithoutTheOthers) {
   for (Subject& subject : subjects()) {
-    // Its rays that are not followed see the surroundings.
+    // Rays in glass that are not followed see the surroundings.
     if (std::string_view(subject.name) == "glass") continue;
     View view = subject.view;
     view.max_depth = 0;
@@ -153,7 +154,7 @@ TEST_F(AovsTest, EachPartIsThePictureWithoutTheOthers) {
   }
 }
 
-// A board that mirrors a quarter and lets a half through, one behind it and one behind the camera.
+// Returns a board that mirrors a quarter and transmits a half, with one board behind it and one behind the camera.
 TEST_F(AovsTest, MirrorsAndGlassTellWhatTheyBring) {
   Scene scene;
   Phong glass;
@@ -212,7 +213,7 @@ TEST_F(AovsTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
   }
 }
 
-// Against places and normals that follow from the scene alone.
+// The AOVs are compared with places and normals that follow from the scene alone.
 TEST_F(AovsTest, SurfacesAreWhereTheyAre) {
   Scene scene;
   scene.materials.emplace_back();
@@ -261,13 +262,13 @@ TEST_F(AovsTest, TextureCoordinatesAreThoseOfTheMesh) {
       const vec2 share((static_cast<float>(x) + 0.5F) / 16.0F, 1.0F - (static_cast<float>(y) + 0.5F) / 16.0F);
       const vec2 expected = vec2(0.25F, 0.125F) + share * vec2(0.5F, 0.375F);
       const vec2 off = aovs.uv[size_t{y} * 16 + x] - expected;
-      // But for whole numbers.
+      // The coordinates are right except for whole numbers.
       EXPECT_LT(std::abs(off.x - std::round(off.x)) + std::abs(off.y - std::round(off.y)), 1e-5F) << x << " " << y;
     }
   }
 }
 
-// Against the hits of rays that are cast through the same places.
+// The AOVs are compared with the hits of rays that are cast through the same places.
 TEST_F(AovsTest, CoverageIsTheShareOfRaysThatHit) {
   const world::Scene world_scene = make_scene_of_everything(60);
   View view = make_view(uvec2(40, 30));
@@ -278,7 +279,8 @@ TEST_F(AovsTest, CoverageIsTheShareOfRaysThatHit) {
   Renderer renderer = make_renderer(device(), world_scene, options);
   const Aovs aovs = renderer.render(view).aovs;
   std::vector<std::map<uint32_t, uint32_t>> counts(aovs.object.size());
-  // A picture of a sample each: moving the crop's centre by a sample's place is a larger picture's pixel.
+  // Pictures with one sample a pixel show each sample: if the crop's centre moves to a sample's place, that place is a
+  // pixel of a larger picture.
   View fine = view;
   fine.size = view.size * 21U;
   fine.samples_per_pixel = 1;
@@ -303,7 +305,7 @@ TEST_F(AovsTest, CoverageIsTheShareOfRaysThatHit) {
       ASSERT_LE(covered.share, before);
       before = covered.share;
       if (covered.id == Coverage::kNoId) continue;
-      // Rays that are rounded otherwise may miss at an edge.
+      // Rays that are rounded differently may miss at an edge.
       differing += covered.share != static_cast<float>(counts[i][covered.id]) / 21.0F ? 1 : 0;
     }
     float objects = 0.0F;
@@ -373,12 +375,12 @@ TEST_F(AovsTest, RefinedPicturesHaveThemToo) {
   }
 }
 
-// With steps they are told by rays of their own.
+// With step counts, separate rays find the hits.
 TEST_F(AovsTest, SurfacesAreTheSameBesideSteps) {
   for (const Subject& subject : test::cases_of(subjects(), 1)) {
     View view = subject.view;
     view.samples_per_pixel = 4;
-    // Whose kernels compile soon.
+    // The kernels of this debug view compile fast.
     view.mode.debug_view = DebugView::kNormals;
     TunedRendererOptions options;
     options.with_aovs = true;
@@ -396,7 +398,7 @@ TEST_F(AovsTest, SurfacesAreTheSameBesideSteps) {
   }
 }
 
-// The heat map of a debug view, which counts the same steps.
+// The heat map is a debug view that counts the same steps.
 TEST_F(AovsTest, StepsAreThoseOfTheDebugView) {
   const world::Scene scene = make_scene_of_everything(60);
   View view = make_view(uvec2(40, 30));

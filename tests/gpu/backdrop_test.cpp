@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A backdrop (docs/model.md, "Backdrop"): what the camera, glass and mirrors see of it, and what is shown as it is.
+// These tests check a backdrop (docs/model.md, "Backdrop"): how the camera, glass and mirrors see it, and which pixels
+// are shown unchanged.
 #include <gtest/gtest.h>
 
 #include "gpu/device_fixture.h"
@@ -15,7 +16,7 @@ const vec3 kColor(0.25F, 0.5F, 0.75F);
 constexpr float kFactor = 4.0F;
 constexpr uint32_t kColumns = 5;
 
-/// The board in a column of the picture that make_columns_view shows.
+/// Adds a board in one column of the picture that make_columns_view shows.
 void add_column(Scene& scene, uint32_t column, const Material& material) {
   Mesh board = make_board();
   for (vec3& position : board.positions) {
@@ -31,7 +32,8 @@ Material make_phong(const Phong& phong) {
   return material;
 }
 
-/// From the left: nothing, what is lit, a quarter of that before nothing, a mirror of half, and a pane of clear glass.
+/// Returns columns from the left: nothing, a lit board, a quarter of it before nothing, a mirror of half, and a pane of
+/// clear glass.
 Scene make_columns() {
   const Phong lit{.ambient = vec3(0.0F), .diffuse = vec3(0.5F)};
   Scene scene;
@@ -98,7 +100,7 @@ TEST_F(BackdropTest, NoFormOfThePictureChangesABit) {
   EXPECT_EQ(same.aovs.unlit, result.aovs.unlit);
   EXPECT_TRUE(has_same_bits(same.image, result.image));
   EXPECT_TRUE(has_same_bits(make_renderer(device(), scene_, {}).render(view).image, result.image));
-  // Its own light is no surface's, and without a backdrop nothing is shown as it is.
+  // The backdrop's own light is not that of a surface; without a backdrop no pixel is shown unchanged.
   Scene plain = scene_;
   plain.environment.backdrop.reset();
   plain.environment.background = kColor;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Boards in the manner of Khronos' sample models: rows of patches, each of which should be as green as it is told to
-// be. What is wrong counts as red. Each board is also drawn by shaders with a fault in them (tests/faults), which must
-// turn it red: so each can fail.
+// Boards like those of Khronos' sample models: rows of patches with an expected green each. Red light in a patch is an
+// error. Shaders with a fault (tests/faults) also draw each board, and must turn it red; this shows that each board can
+// fail.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,11 +26,11 @@ constexpr uint32_t kPatchPixels = 8;
 constexpr uint32_t kGreen = 0xFF00FF00U;
 constexpr uint32_t kRed = 0xFF0000FFU;
 
-/// A board of patches side by side, the patch i from x = i to i + 1, seen along -z from z = 2.
+/// A board of patches side by side. The patch i lies from x = i to i + 1 and is seen along -z from z = 2.
 class Board {
  public:
   Scene scene;
-  /// What each patch should show.
+  /// The expected colour of each patch.
   std::vector<vec3> expected;
 
   float left() const { return static_cast<float>(expected.size()); }
@@ -40,7 +40,7 @@ class Board {
     return static_cast<uint32_t>(scene.materials.size() - 1);
   }
 
-  /// Over the patch to come, at the height z; `uv` at its corners from the lower left on.
+  /// Adds a mesh over the next patch at the height z; `uv` is at its corners, from the lower left one on.
   Mesh& add(float z, const Material& material,
             const std::vector<vec4>& uvs = {{0, 1, 0, 1}, {1, 1, 1, 1}, {1, 0, 1, 0}, {0, 0, 0, 0}}) {
     Mesh mesh;
@@ -94,7 +94,7 @@ Board make_wraps() {
   return board;
 }
 
-// The second set sees green where the first sees red, and transforms lead there.
+// The second set shows green at the points where the first set shows red, and transforms lead to green as well.
 Board make_coordinates() {
   Board board;
   const uint32_t texture = board.add_image({4, 4}, {kRed, kRed, kRed, kRed,    //
@@ -109,7 +109,7 @@ Board make_coordinates() {
   }
   board.add(0, second, uvs);
   board.end_patch();
-  // KHR_texture_transform, translation, rotation and scale: (s, t) of the patch go to the green texel.
+  // KHR_texture_transform moves, rotates and scales (s, t) of the patch to the green texel.
   const auto add = [&](const vec3& to_u, const vec3& to_v) {
     Material material = make_textured(texture);
     TextureSlot& slot = std::get<Unlit>(material.model).color_texture;
@@ -119,14 +119,14 @@ Board make_coordinates() {
     board.end_patch();
   };
   add({0.25F, 0, 0.5F}, {0, 0.25F, 0.25F});
-  // A quarter turn: u = s_v t + o_u, v = -s_u s + o_v.
+  // A quarter turn gives u = s_v t + o_u and v = -s_u s + o_v.
   add({0, 0.25F, 0.5F}, {-0.25F, 0, 0.5F});
-  // A shear, as a rotation of unequal scales makes one.
+  // This is a shear, as a rotation with unequal scales gives it.
   add({0.125F, 0.125F, 0.5F}, {0.0625F, 0.125F, 0.25F});
   return board;
 }
 
-// Half of a bright texel is half of its light: between codes 0 and 255 lies 188, not 128.
+// Half of a bright texel is half of its light: halfway between the codes 0 and 255 is 188, not 128.
 Board make_srgb() {
   Board board;
   const uint32_t texture = board.add_image({2, 1}, {0xFF000000U, kGreen});
@@ -139,7 +139,7 @@ Board make_srgb() {
   return board;
 }
 
-/// The cutoff in the middle column of the texture: there it is, left of it nothing is.
+/// The cutoff is in the middle column of the texture: the surface is present there and absent to the left of it.
 Board make_masks() {
   Board board;
   for (const uint32_t cutoff : {64U, 128U, 191U}) {
@@ -154,7 +154,7 @@ Board make_masks() {
       board.end_patch();
     }
   }
-  // Opaque materials have no alpha.
+  // Opaque materials ignore alpha.
   board.add(0, make_textured(board.add_image({1, 1}, {0x0000FF00U})));
   board.add(-1, make_unlit(kRedLight));
   board.end_patch();
@@ -175,7 +175,7 @@ Board make_blends() {
   add({0.0F}, 0.1F);
   add({0.5F}, 0.1F);
   add({0.5F, 0.25F}, 0.1F);
-  // In one place.
+  // These surfaces are in one place.
   add({0.5F, 0.25F, 0.75F}, 0.0F);
   board.add(0, make_unlit(kGreenLight, AlphaMode::kBlend, 0.25F));
   board.add(-1, make_unlit(vec3(0)));
@@ -207,7 +207,7 @@ Material make_matt() {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Behind the camera hang curtains with holes, and what blends.
+// Curtains with holes and blending ones hang behind the camera.
 Board make_shadows() {
   Board board;
   board.scene.lights = {make_sun(vec3(0, 0, -1), kPi)};
@@ -221,14 +221,14 @@ Board make_shadows() {
     add(make_textured(board.add_image({1, 1}, {0x33FFFFFFU}), mode), mode == AlphaMode::kMask ? 1.0F : 0.8F);
     add(make_textured(board.add_image({1, 1}, {0xFFFFFFFFU}), mode), 0.0F);
   }
-  // Backs cast shadows too.
+  // The backs of surfaces cast shadows, too.
   Material one_sided = make_unlit(vec3(1));
   one_sided.is_double_sided = false;
   add(one_sided, 0.0F);
   return board;
 }
 
-// A texture of normals looks as geometry does that is tilted so.
+// A texture of normals has the look of geometry that is tilted by the same angle.
 Board make_normals() {
   Board board;
   const vec3 sun(1, -2, -3);
@@ -243,7 +243,7 @@ Board make_normals() {
     model.normal_texture.texture = board.add_image({1, 1}, {texel}, ImageUse::kNormal);
     model.normal_scale = scale;
     board.add(0, material).normals.assign(4, vec3(0, 0, 1));
-    // Green goes up where v goes down (glTF 2.0, 3.9.3), and v goes down as y goes up.
+    // The normal's green component goes up as v goes down (glTF 2.0, 3.9.3), and v goes down as y goes up.
     board.end_patch(lit(vec3(scale * component(0), scale * component(8), component(16))));
   };
   add(0xFFFF8080U, 1.0F);
@@ -254,7 +254,7 @@ Board make_normals() {
   return board;
 }
 
-// Occlusion is of light from everywhere alone.
+// Occlusion reduces only light from everywhere.
 Board make_occlusion() {
   Board board;
   board.scene.lights = {make_sun(vec3(0, 0, -1), 0.5F * kPi)};
@@ -269,8 +269,8 @@ Board make_occlusion() {
   return board;
 }
 
-// What is under a coat may have a texture of normals; the coat stays flat. Its mirror ray sees the board behind the
-// camera, whose weight Schlick's factor gives.
+// The layers under a coat may have a texture of normals; the coat stays flat. Its mirror ray sees the board behind the
+// camera with the weight of Schlick's factor.
 Board make_coats() {
   Board board;
   for (const bool has_normals : {false, true}) {
@@ -311,7 +311,7 @@ void PrintTo(const BoardCase& board, std::ostream* out) {
 
 class BoardsTest : public DeviceTest, public testing::WithParamInterface<BoardCase> {
  protected:
-  /// How many pixels are wrong, by more than a byte of a picture shows in its darks.
+  /// Returns the number of wrong pixels: those that differ by more than a byte of a picture shows in its dark parts.
   size_t count_red(const Board& board, const TunedRendererOptions& options = {}) {
     EXPECT_TRUE(validate(board.scene).empty());
     const Image image = make_renderer(device(), board.scene, options).render(board.view()).image;

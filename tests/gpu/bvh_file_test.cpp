@@ -20,7 +20,7 @@
 namespace promin {
 namespace {
 
-/// A device and a folder.
+/// A test with a device and a folder.
 class BvhFileOnDevice : public test::DeviceTest {
  protected:
   void SetUp() override {

@@ -69,7 +69,7 @@ TEST_F(CasterTest, AnswersAsTheOracle) {
   EXPECT_GT(hit_count, rays.size() / 2);
 }
 
-/// A camera's in pixel order: towards the scene of everything, in rows of 64.
+/// Returns a camera's rays in pixel order, in rows of 64, towards the scene of everything.
 std::vector<Ray> make_rows(uint32_t rows) {
   std::vector<Ray> rays;
   for (uint32_t y = 0; y < rows; ++y) {
@@ -81,10 +81,11 @@ std::vector<Ray> make_rows(uint32_t rows) {
   return rays;
 }
 
-// On lavapipe rays in rows are traced in packets and tile by tile; the same ones shuffled are sorted and traced alone.
+// On lavapipe, rays in rows are traced in packets and tile by tile. The same rays in random order are sorted and traced
+// one by one.
 TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
   const world::Scene scene = test::make_scene_of_everything();
-  // No multiple of a packet's size; some without direction, some empty.
+  // The number of rays is not a multiple of a packet's size; some rays have no direction, some are empty.
   std::vector<Ray> rays = make_rows(63);
   rays.pop_back();
   rays[77].direction = vec3(0.0F);
@@ -107,7 +108,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
   }
 }
 
-// Rays of a packet are of several octants, and some of them are done before others.
+// The rays of a packet belong to several octants, and some finish before others.
 TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
   const world::Scene scene = test::make_scene_of_everything();
   const PackedScene packed = pack_scene(scene, "sah");
@@ -125,7 +126,7 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
       std::vector<layout::HitRecord> records(rays.size());
       RayKernel(device(), device_scene, options).run(rays, records);
       if (expected.empty()) expected = records;
-      // Of any hits only whether there is one is told: which one it is may depend on the packet.
+      // For an any-hit query, the answer only says whether there is a hit; which hit it is may depend on the packet.
       size_t differences = 0;
       for (size_t i = 0; i < rays.size(); ++i) {
         const bool is_same = query == HitQuery::kAny
@@ -138,7 +139,7 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
   }
 }
 
-// What suits one driver runs on another too, so all forms are held on each.
+// What suits one driver also runs on another, so the test compares all forms on each driver.
 TEST_F(CasterTest, EveryFormOfTraversalGivesTheSameBits) {
   const world::Scene scene = test::make_scene_of_everything();
   const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), pack_scene(scene, "sah"));
@@ -185,7 +186,7 @@ TEST_F(CasterTest, SolidsWaitWhereTrianglesAreAtLeastAsMany) {
 }
 
 TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
-  // Its own device, on which nothing has been compiled.
+  // The test opens its own device, on which nothing has been compiled.
   const gpu::DeviceHandle own = gpu::open_device();
   RayKernelOptions options;
   options.features = layout::FEATURE_SPHERES | layout::FEATURE_STEP_COUNTS;
@@ -201,7 +202,7 @@ TEST_F(CasterTest, CompilesOnceWhateverTheScene) {
   EXPECT_EQ(compile(200), before + 2);
 }
 
-// Triangles of a square of 32 x 32 cells, all corners at whole numbers, z = 0.
+// Returns the triangles of a square of 32 x 32 cells; all corners are at integers, with z = 0.
 Mesh make_grid() {
   constexpr uint32_t kSide = 32;
   Mesh mesh;
@@ -220,7 +221,7 @@ Mesh make_grid() {
 
 class AnyHitTest : public CasterTest {
  protected:
-  /// Expects any hit where there is a nearest one; returns the part of the rays that have one.
+  /// Expects that any-hit queries hit exactly when nearest-hit queries do. Returns the fraction of rays that hit.
   static double part_of_hits(const world::Scene& scene, std::span<const Ray> rays) {
     const std::vector<Hit> nearest = cast(scene, rays);
     const std::vector<Hit> any = cast(scene, rays, HitQuery::kAny);
@@ -236,11 +237,12 @@ class AnyHitTest : public CasterTest {
   }
 };
 
-// Where a glance cannot tell: edges and corners, and ends of the ray on the triangle.
+// The fast test cannot decide for these rays: they meet edges and corners, or end on the triangle.
 TEST_F(AnyHitTest, IsFoundAtEdgesAndEnds) {
   std::vector<Ray> rays;
   for (const float z : {8.0F, 7.3F, 1024.0F, 1.0e6F}) {
-    // Straight down and askew, through halves, which are corners, edges and diagonals, and through what is none.
+    // The rays go straight down or at an angle, through multiples of 1/2, which are corners, edges and diagonals, and
+    // through other points.
     for (const vec3 lean : {vec3(0.0F), vec3(0.5F, 0.25F, 0.0F), vec3(-0.3F, 0.7F, 0.0F)}) {
       for (int i = 0; i < 65 * 65; ++i) {
         const int column = i % 65;
@@ -275,11 +277,11 @@ TEST_F(AnyHitTest, IsFoundOnSlivers) {
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     const vec3 target = (a + b + c) / 3.0F;
     const vec3 origin = 3.0F * random();
-    // There, up to there, and from there on.
+    // Of three rays, one goes through the point, one ends there, and one starts there.
     rays.push_back({origin, 0.0F, target - origin, kInfinity});
     rays.push_back({origin, 0.0F, target - origin, 1.0F});
     rays.push_back({target, 0.0F, target - origin, kInfinity});
-    // In its plane, as far as that can be told.
+    // This ray lies in the triangle's plane, as exactly as fp32 allows.
     rays.push_back({a + 3.0F * (b - a), 0.0F, target - (a + 3.0F * (b - a)), kInfinity});
   }
   const double part = part_of_hits(scene_of({mesh}), rays);
@@ -287,19 +289,19 @@ TEST_F(AnyHitTest, IsFoundOnSlivers) {
   EXPECT_LT(part, 0.9);
 }
 
-// What the second look is at is the triangle, not what comes after it in the leaf.
+// The second test looks at the undecided triangle, not at the one that follows in the leaf.
 TEST_F(AnyHitTest, IsFoundBesideSolids) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
   mesh.triangles = {{0, 1, 2}};
-  // All in one leaf.
+  // All shapes are in one leaf.
   const world::Scene scene = scene_of({mesh, world::Sphere{vec3(0.5F, 0.5F, 0.0F), 0.01F},
                                        world::Cylinder{vec3(0.5F, 0.5F, 0.1F), vec3(0, 0, 1), 0.01F, 0.02F}});
   std::vector<Ray> rays;
   for (const float z : {4.0F, 4.0e3F, 4.0e6F}) {
     for (int i = 0; i <= 64; ++i) {
       const float x = static_cast<float>(i) / 64.0F;
-      // Along the sides, and inside up to the triangle and a little beyond.
+      // The rays go along the sides, and inside up to the triangle and a little beyond.
       rays.push_back({vec3(x, 0, z), 0.0F, vec3(0, 0, -1), kInfinity});
       rays.push_back({vec3(0, x, z), 0.0F, vec3(0, 0, -1), kInfinity});
       rays.push_back({vec3(0.3F * x, 0.3F, z), 0.0F, vec3(0, 0, -1), z});
@@ -309,7 +311,7 @@ TEST_F(AnyHitTest, IsFoundBesideSolids) {
   EXPECT_NEAR(part_of_hits(scene, rays), 0.75, 0.01);
 }
 
-// Products overflow in a glance that do not in the whole test.
+// In the fast test, products overflow that do not in the whole test.
 TEST_F(AnyHitTest, IsFoundInVastScenes) {
   const float size = 6.0e12F;
   Mesh mesh;
@@ -320,7 +322,7 @@ TEST_F(AnyHitTest, IsFoundInVastScenes) {
   EXPECT_DOUBLE_EQ(part_of_hits(scene_of({mesh}), rays), 0.5);
 }
 
-// In units of so short a direction t would be 10^40.
+// With so short a direction as its unit, t would be 10^40.
 TEST_F(CasterTest, HitsWithoutATAreNone) {
   Mesh mesh;
   mesh.positions = {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0)};
@@ -339,11 +341,11 @@ TEST_F(CasterTest, HitsWithoutATAreNone) {
   }
 }
 
-// llvmpipe ends a lane's loops after 65535 turns: what it then has is no answer.
+// llvmpipe ends a lane's loops after 65535 turns: the result at that point is not an answer.
 TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
   constexpr int kSlivers = 40000;
   Mesh mesh;
-  // Slivers along a diagonal, whose boxes the ray meets and they not, and behind them a triangle.
+  // The slivers lie along a diagonal. The ray meets their boxes, but not the slivers; behind them is a triangle.
   for (int i = 0; i < kSlivers; ++i) {
     const auto z = static_cast<float>(i + 1);
     const auto first = static_cast<uint32_t>(mesh.positions.size());
@@ -378,7 +380,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
   EXPECT_TRUE(has_same_bits(apart, together));
 }
 
-// Directions that fp32 arithmetic alone would lose: denormal, and near the largest number.
+// fp32 arithmetic alone would lose these directions: they are denormal, or near the largest number.
 TEST_F(CasterTest, DirectionsHaveAnyLength) {
   const world::Scene scene = scene_of({world::Sphere{vec3(0.0F), 1e-3F}});
   const vec3 origin(0, 0, 2e-3F);
@@ -387,12 +389,12 @@ TEST_F(CasterTest, DirectionsHaveAnyLength) {
                                    {origin, 0.0F, vec3(0, 0, length), kInfinity}};
     const std::vector<Hit> hits = cast(scene, rays);
     EXPECT_EQ(hits[0].object, 0) << length;
-    // The step between denormal t, of which the longest directions make one.
+    // The step between denormal values of t; the longest directions have such a t.
     const double step = 0x1p-149 * static_cast<double>(length);
     EXPECT_NEAR(static_cast<double>(hits[0].t) * static_cast<double>(length), 1e-3, 1e-9 + step) << length;
     EXPECT_EQ(hits[1].object, -1) << length;
   }
-  // t would be 1e42, which no float holds: a miss, for tmax is at most infinite.
+  // t would be 1e42, which no float holds; the ray misses, because tmax is at most infinite.
   world::Scene far = scene;
   far.objects[0].shape = world::Sphere{vec3(0, 0, -1e4F), 1.0F};
   EXPECT_EQ(cast(far, std::vector<Ray>{{origin, 0.0F, vec3(0, 0, -1e-38F), kInfinity}})[0].object, -1);
@@ -403,7 +405,7 @@ TEST_F(CasterTest, ObjectsWithoutPrimitivesTakeANumber) {
   scene.materials.resize(1);
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
-  mesh.triangles = {{0, 1, 1}, {0, 1, 2}};  // the first is degenerate
+  mesh.triangles = {{0, 1, 1}, {0, 1, 2}};  // the first triangle is degenerate
   scene.objects = {
       {"", world::NotDrawn{}, 0}, {"", Mesh{}, 0}, {"", mesh, 0}, {"", world::NotDrawn{}, 0}, {"", world::Sphere{}, 0}};
   scene.objects[4].shape = world::Sphere{vec3(0, 0, 9), 1.0F};
@@ -416,7 +418,7 @@ TEST_F(CasterTest, ObjectsWithoutPrimitivesTakeANumber) {
   EXPECT_EQ(hits[1].primitive, 0);
 }
 
-// Two ways to the same memory: the words of a storage buffer, and texels.
+// The same memory can be read in two ways: as words of a storage buffer, and as texels.
 TEST_F(CasterTest, TexelsAndStorageBuffersGiveTheSameBits) {
   const PackedScene packed = pack_scene(test::make_scene_of_everything(2000), "sah");
   const std::shared_ptr<const DeviceScene> scene = upload_scene(device(), packed);
@@ -437,7 +439,7 @@ TEST_F(CasterTest, UnknownBuildersAreRefused) {
   EXPECT_THROW(make_caster(device(), test::make_scene_of_everything(), CasterOptions{.builder = "shah"}), UsageError);
 }
 
-// AOVs are what a cast of the pixel's ray tells, and leave the picture's bits alone.
+// AOVs have the values of a cast of the pixel's ray, and do not change the picture's bits.
 TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
   const world::Scene scene = test::make_scene_of_everything();
   View view = test::make_view(uvec2(150, 100));
@@ -478,7 +480,7 @@ TEST_F(CasterTest, AovsAreTheHitsOfThePixels) {
   }
   EXPECT_LE(other_ids, 3U);
 
-  // The middle sample of an odd number is the centre; a crop has the values of the whole.
+  // If the number of samples is odd, the middle one is the centre; a crop has the values of the whole picture.
   view.samples_per_pixel = 3;
   EXPECT_EQ(renderer.render(view).aovs.depth, with.aovs.depth);
   view.crop = PixelWindow{uvec2(13, 29), uvec2(14, 71)};

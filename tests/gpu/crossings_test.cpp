@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Counts and lists of all crossings of a ray.
+// These tests check counts and lists of all crossings of a ray.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +101,8 @@ world::Scene make_scene_with_open_shapes() {
   return scene;
 }
 
-// Rays that are aimed at nothing: none of them passes an edge by some u S, so the lists are the same, one by one.
+// These rays are random, and none passes an edge at a distance of a few u S. Therefore the lists are the same, one by
+// one.
 TEST_F(CrossingsTest, ListsAreTheOracles) {
   const world::Scene scene = make_scene_with_open_shapes();
   const std::vector<Ray> rays = test::make_rays(test::is_thorough() ? 10000 : 3000);
@@ -115,13 +116,13 @@ TEST_F(CrossingsTest, ListsAreTheOracles) {
     std::vector<oracle::Hit> expected = oracle::find_all_hits(scene, ray);
     ASSERT_EQ(lists.of_ray(i).size(), expected.size()) << "ray " << i;
     const Hit first = expected.empty() ? Hit{} : lists.of_ray(i)[0];
-    // What is listed first is what is cast, to the bit.
+    // The first crossing of the list equals the cast hit, to the bit.
     ASSERT_EQ(std::memcmp(&first, &nearest[i], sizeof(Hit)), 0) << "ray " << i;
     const auto in_order = [](const auto& a, const auto& b) {
       return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
     };
     ASSERT_TRUE(std::ranges::is_sorted(lists.of_ray(i), in_order)) << "ray " << i;
-    // Where surfaces go through each other rounding may exchange them: here they are compared primitive by primitive.
+    // If surfaces intersect, rounding may exchange their crossings; these lists are compared primitive by primitive.
     const auto by_primitive = [](const auto& a, const auto& b) {
       return std::tie(a.object, a.primitive, a.t) < std::tie(b.object, b.primitive, b.t);
     };
@@ -145,7 +146,7 @@ TEST_F(CrossingsTest, ListsAreTheOracles) {
   EXPECT_GT(2 * lists.hits.size(), 3 * rays.size());
 }
 
-/// Triangles of a square of n x n cells at z = 0, all corners at whole numbers, with diagonals of both ways.
+/// Returns the triangles of a square of n x n cells at z = 0; all corners are at integers, and diagonals go both ways.
 Mesh make_grid(uint32_t n) {
   Mesh mesh;
   for (uint32_t y = 0; y <= n; ++y) {
@@ -163,8 +164,9 @@ Mesh make_grid(uint32_t n) {
   return mesh;
 }
 
-// Of exact numbers: which triangle a ray crosses at a corner or an edge is the one that it crosses where it is moved
-// aside a little, to the right and much less down, as the plane across its longest axis has them. The rim is half open.
+// Numbers are exact here. If a ray crosses a corner or an edge, the triangle that it crosses is the one that it would
+// cross after a small move: to the right and much less downwards, in the plane across its longest axis. The rim is half
+// open.
 TEST_F(CrossingsTest, AtEdgesTheOneIsCrossedBesideWhichTheRayWouldPass) {
   constexpr uint32_t kCells = 8;
   for (const int turn : {0, 1, 2}) {
@@ -202,7 +204,7 @@ TEST_F(CrossingsTest, AtEdgesTheOneIsCrossedBesideWhichTheRayWouldPass) {
   }
 }
 
-/// The surface of the cube from -1 to 1, each face in n x n cells.
+/// Returns the surface of the cube from -1 to 1; each face has n x n cells.
 Mesh make_box_mesh(uint32_t n) {
   Mesh mesh;
   for (uint32_t face = 0; face < 6; ++face) {
@@ -210,7 +212,7 @@ Mesh make_box_mesh(uint32_t n) {
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     const float side = face % 2 == 0 ? 1.0F : -1.0F;
     for (const vec3& p : grid.positions) {
-      // The same numbers on either side of an edge.
+      // The numbers are the same on either side of an edge.
       const float a = 2.0F * p.x / static_cast<float>(n) - 1.0F;
       const float b = 2.0F * p.y / static_cast<float>(n) - 1.0F;
       const vec3 local = side > 0.0F ? vec3(a, b, 1) : vec3(b, a, -1);
@@ -252,7 +254,7 @@ Mesh make_icosphere(int subdivisions) {
   return mesh;
 }
 
-/// Two flat cones of many slivers, base to base, around the z axis.
+/// Returns two flat cones of many slivers, base to base, around the z axis.
 Mesh make_bipyramid(uint32_t sides, double height) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, height), vec3(0, 0, -height)};
@@ -269,10 +271,11 @@ Mesh make_bipyramid(uint32_t sides, double height) {
   return mesh;
 }
 
-/// The coarse box with a corner of one face's triangles in the middle of an edge, joined by a triangle without area.
+/// Returns the coarse box with one more corner, in the middle of an edge: only one face's triangles have it, and a
+/// triangle without area joins it to the edge.
 Mesh make_stitched_box() {
   Mesh mesh = make_box_mesh(1);
-  // The first triangle is in two, its side from the first corner to the second halved.
+  // The first triangle is cut in two: its side from the first corner to the second is halved.
   const uvec3 whole = mesh.triangles[0];
   const auto middle = static_cast<uint32_t>(mesh.positions.size());
   mesh.positions.push_back(0.5F * (mesh.positions[whole.x] + mesh.positions[whole.y]));
@@ -287,8 +290,8 @@ Mesh moved(Mesh mesh, const vec3& offset) {
   return mesh;
 }
 
-/// At corners, the middles of sides and of faces, and along sides; from inside where `is_inside`: from points within
-/// 0.3 of the centre, else from 2.5 to 5 of it.
+/// Returns rays at corners, at the middles of sides and of faces, and along sides. If `is_inside` is true, they start
+/// within 0.3 of the centre, else at 2.5 to 5 from it.
 std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_inside, size_t count, uint64_t seed) {
   Random random(seed);
   std::vector<Ray> rays;
@@ -303,11 +306,11 @@ std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_i
     const vec3 at(target);
     const size_t kind = rays.size() / 3 % 8;
     if (!is_inside && kind == 0) {
-      // In the planes of faces and along sides.
+      // This ray lies in the planes of faces and along sides.
       const dvec3 way = glm::normalize(corners[1] - corners[0]);
       rays.push_back({vec3(target - 6.0 * way), 0.0F, vec3(way), kInfinity});
     } else if (!is_inside && kind == 1) {
-      // Along an axis of space, through numbers that the mesh has.
+      // This ray goes along an axis of space, through numbers that the mesh has.
       const int axis = static_cast<int>(rays.size() % 9 / 3);
       vec3 from = at;
       from[axis] -= 6.0F;
@@ -315,14 +318,14 @@ std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_i
       direction[axis] = 1.0F;
       rays.push_back({from, 0.0F, direction, kInfinity});
     } else {
-      // From the rounded origin, so that the direction is as near as it can be.
+      // The direction is computed from the rounded origin, so that it is as exact as possible.
       rays.push_back({origin, 0.0F, vec3(target - dvec3(origin)), kInfinity});
     }
   }
   return rays;
 }
 
-/// In all; many in the test of the label `long`.
+/// Returns the number of rays in all; a test with the label `long` takes many.
 size_t aimed_ray_count() {
   const char* word = std::getenv("PROMIN_TEST_AIMED_RAYS");
   return word == nullptr ? 150'000 : static_cast<size_t>(std::strtoull(word, nullptr, 10));
@@ -358,8 +361,8 @@ TEST_F(CrossingsTest, ParityTellsInsideFromOutside) {
   }
 }
 
-// Where many slivers meet in a corner, and seen edge-on some of them turn over in rounding: areas without rounding keep
-// the sides of the corner apart.
+// Many slivers meet in a corner. Seen edge-on, some of them turn over in rounding. Areas without rounding tell the
+// sides of the corner apart.
 TEST_F(CrossingsTest, ParityHoldsAmongSliversSeenEdgeOn) {
   for (const double height : {0.3, 1e-3, 1e-6, 1e-8}) {
     const Mesh mesh = make_bipyramid(3000, height);
@@ -378,8 +381,8 @@ TEST_F(CrossingsTest, ParityHoldsAmongSliversSeenEdgeOn) {
   }
 }
 
-// Slivers on a line through the ray, where areas that are rounded are 0 or have the sign of their neighbours': closed
-// surfaces one below the other, each between an apex near the ray, a ring around and a point below.
+// Slivers lie on a line through the ray; their rounded areas are 0 or have the sign of their neighbours'. They form
+// closed surfaces one below the other, each between an apex near the ray, a ring around it and a point below.
 TEST_F(CrossingsTest, ParityHoldsWhereAreasDrownInRounding) {
   constexpr uint32_t kSurfaces = 4000;
   constexpr float kGap = 16.0F;
@@ -393,7 +396,7 @@ TEST_F(CrossingsTest, ParityHoldsWhereAreasDrownInRounding) {
     mesh.positions.emplace_back(apex, z + 1.0F);
     mesh.positions.emplace_back(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), z - 1.0F);
     for (int i = 0; i < 6; ++i) {
-      // On the line through apex and ray, on either side, but for some steps between floats.
+      // The corner lies on the line through apex and ray, on either side, up to some steps between floats.
       const auto scale = static_cast<float>((random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(1.1, 1.9));
       const auto jitter = [&] { return static_cast<float>(1.0 + 0x1p-23 * std::floor(random.uniform(-2.0, 3.0))); };
       mesh.positions.emplace_back(scale * apex.x * jitter(), scale * apex.y * jitter(), z);
@@ -413,11 +416,11 @@ TEST_F(CrossingsTest, ParityHoldsWhereAreasDrownInRounding) {
   EXPECT_GT(std::accumulate(counts.begin(), counts.end(), 0), static_cast<int32_t>(kSurfaces));
 }
 
-// So far away that all corners of a triangle are seen in one place, though the triangle has an area.
+// The origin is so far away that all corners of a triangle are seen in one place, though the triangle has an area.
 TEST_F(CrossingsTest, WhatIsSeenAsAPointIsNotCrossedTwice) {
   Mesh mesh = make_icosphere(2);
   for (vec3& position : mesh.positions) position *= 0.02F;
-  // What else there is makes the scene so large that rays are not moved nearer.
+  // The other shape makes the scene so large that rays are not moved nearer.
   const world::Scene scene = scene_of({mesh, world::Sphere{vec3(0, 0, -1e5F), 1.0F}});
   Random random(31);
   std::vector<Ray> rays;
@@ -428,7 +431,7 @@ TEST_F(CrossingsTest, WhatIsSeenAsAPointIsNotCrossedTwice) {
   EXPECT_EQ(count_wrong(count(scene, rays), false), 0U);
 }
 
-// The sum over the way through a closed mesh: it enters as often as it leaves.
+// Along a ray through a closed mesh, the entries minus the exits must be 0.
 TEST_F(CrossingsTest, RaysEnterAsOftenAsTheyLeave) {
   const Mesh mesh = make_icosphere(3);
   for (const bool is_inside : {false, true}) {
@@ -449,7 +452,7 @@ TEST_F(CrossingsTest, RaysEnterAsOftenAsTheyLeave) {
   }
 }
 
-/// Points of creases, as near as fp64 has them, and unit vectors along which a ray there grazes the shape.
+/// Points of creases, as exact as fp64 allows, and unit vectors along which a ray there touches the shape.
 struct Aim {
   dvec3 target{0.0};
   dvec3 graze{0.0};
@@ -470,7 +473,7 @@ Aim aim_at(const world::Cone& c, Random& random) {
   const bool is_top = random.uniform() < 0.5;
   Aim aim = aim_at_rim(c.center, c.axis, is_top ? c.half_height : -c.half_height,
                        is_top ? c.radius_top : c.radius_bottom, random);
-  // Along a generator as well.
+  // Some rays also go along a generator.
   if (random.uniform() < 0.5) {
     const dvec3 axis = glm::normalize(dvec3(c.axis));
     const dvec3 radial = random.perpendicular(axis);
@@ -482,7 +485,7 @@ Aim aim_at(const world::Cone& c, Random& random) {
 Aim aim_at(const world::Capsule& c, Random& random) {
   const double s =
       std::clamp((double{c.radius_bottom} - c.radius_top) / std::max(2.0 * c.half_height, 1e-30), -1.0, 1.0);
-  // Where one sphere holds the other, at the large one's silhouette.
+  // If one sphere contains the other, the point is on the large one's silhouette.
   const bool is_top = std::abs(s) < 1.0 ? random.uniform() < 0.5 : s < 0.0;
   const double radius = is_top ? c.radius_top : c.radius_bottom;
   const double along = std::abs(s) < 1.0 ? s : 0.0;
@@ -493,7 +496,7 @@ Aim aim_at(const world::Box& box, Random& random) {
   dvec3 local(box.half_size);
   for (int i = 0; i < 3; ++i) local[i] *= random.uniform() < 0.5 ? -1.0 : 1.0;
   const int along = static_cast<int>(random.uniform(0.0, 3.0));
-  // Corners too.
+  // Corners are aimed at, too.
   if (random.uniform() < 0.7) local[along] *= random.uniform();
   dvec3 target(box.center);
   for (int i = 0; i < 3; ++i) target += local[i] * dvec3(oracle::axis_of(box, i));
@@ -543,7 +546,8 @@ TEST_F(CrossingsTest, ASolidIsEnteredAndLeftOnceOrNotAtAll) {
 #include "promin/kinds/primitives.def"
 }
 
-// Of what is exact: touching is no crossing, though cast() meets it; planes have one crossing, none along them.
+// Shapes are exact here: touching one is not a crossing, though cast() meets it. A plane has one crossing, and none
+// along it.
 TEST_F(CrossingsTest, WhatIsTouchedIsNotCrossed) {
   const auto expect = [&](const world::Shape& shape, const Ray& ray, int32_t expected, bool is_cast) {
     const world::Scene scene = scene_of({shape});
@@ -561,7 +565,7 @@ TEST_F(CrossingsTest, WhatIsTouchedIsNotCrossed) {
   expect(world::Capsule{vec3(0.0F), vec3(0, 1, 0), 1.0F, 1.0F, 1.0F}, along_z(1, 0.5F), 0, true);
   expect(world::Plane{vec3(0.0F), vec3(0, 0, 1)}, along_z(1, 0), 1, true);
   expect(world::Plane{vec3(0.0F), vec3(0, 1, 0)}, along_z(1, 0), 0, false);
-  // Through the sides of tubes: once, twice, and along the axis never.
+  // Rays through the side of a tube cross it once or twice; a ray along the axis never does.
   const world::Cylinder tube{vec3(0.0F), vec3(0, 1, 0), 1.0F, 1.0F, true};
   expect(tube, along_z(0, 0), 2, true);
   expect(tube, {vec3(0, 2, 0), 0.0F, vec3(0, -1, 0), kInfinity}, 0, false);
@@ -572,7 +576,7 @@ TEST_F(CrossingsTest, WhatIsTouchedIsNotCrossed) {
 TEST_F(CrossingsTest, TheIntervalIsOpen) {
   const world::Scene scene = scene_of({make_grid(4), world::Box{vec3(2, 2, 4), vec3(0.5F)}});
   const auto ray = [](float tmin, float tmax) { return Ray{vec3(1.75F, 2.25F, 8), tmin, vec3(0, 0, -1), tmax}; };
-  // At t = 3.5, 4.5 and 8.
+  // The crossings are at t = 3.5, 4.5 and 8.
   const std::vector<Ray> rays = {ray(0, kInfinity),
                                  ray(3.5F, 8),
                                  ray(3.4F, 4.5F),
@@ -591,9 +595,9 @@ TEST_F(CrossingsTest, TheIntervalIsOpen) {
   EXPECT_EQ(lists.hits[1].normal, vec3(0, 0, -1));
 }
 
-// In units that no float has to spare, from beyond 1024 radii, and without a t that a float has.
+// The ray's unit, its start beyond 1024 radii, and its t are at the limits of floats.
 TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
-  // A thousandth of the unit.
+  // The mesh's size is a thousandth of a world unit.
   Mesh mesh = make_icosphere(2);
   for (vec3& position : mesh.positions) position *= 1e-3F;
   const world::Scene scene = scene_of({mesh, world::Sphere{vec3(0.0F), 5e-4F}});
@@ -617,7 +621,7 @@ TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
     ASSERT_EQ(lists.of_ray(i).size(), static_cast<size_t>(counts[i])) << i;
     ASSERT_TRUE(std::ranges::is_sorted(lists.of_ray(i), {}, &Hit::t)) << i;
   }
-  // From any hit on, and up to any, in the units that are given, denormal ones too.
+  // The ray is cut at each hit: parts begin at it or end at it. Units may be denormal.
   std::vector<Ray> parts;
   std::vector<int32_t> expected;
   for (const float length : {1.1e37F, 3.3e37F, 0.7e38F, 0.9e38F, 1.3e38F, 1.6e38F}) {
@@ -637,7 +641,7 @@ TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
     }
   }
   EXPECT_EQ(parts.size(), 2 * 4 * 17U);
-  // Those whose directions the host scales are counted apart.
+  // Rays whose directions the host scales are counted separately.
   std::vector<Ray> alone(1);
   for (size_t i = 0; i < parts.size(); ++i) {
     alone[0] = parts[i];
@@ -645,7 +649,7 @@ TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
   }
 }
 
-// At the same t by object and primitive, whatever the tree; all of them.
+// Crossings at the same t are in the order of object and primitive, whatever the tree, and all are listed.
 TEST_F(CrossingsTest, CoincidentTrianglesAreAllListedInOrder) {
   Mesh mesh;
   mesh.positions = {vec3(-1, -1, 0), vec3(2, -1, 0), vec3(-1, 2, 0)};
@@ -660,7 +664,7 @@ TEST_F(CrossingsTest, CoincidentTrianglesAreAllListedInOrder) {
   }
 }
 
-/// Triangles one behind the other, and a ray through all.
+/// Returns triangles one behind the other, and a ray through all of them.
 std::pair<world::Scene, Ray> make_stack(uint32_t count) {
   Mesh mesh;
   for (uint32_t i = 0; i < count; ++i) {
@@ -671,7 +675,7 @@ std::pair<world::Scene, Ray> make_stack(uint32_t count) {
   return {scene_of({mesh}), {vec3(0.1F, 0.1F, 0), 0.0F, vec3(0, 0, 1), kInfinity}};
 }
 
-// More than the budget: a ray's hits come together.
+// There are more crossings than the budget: the hits of one ray stay together.
 TEST_F(CrossingsTest, RaysMayHaveManyHits) {
   constexpr uint32_t kCount = 4000;
   const auto [scene, ray] = make_stack(kCount);
@@ -690,7 +694,7 @@ TEST_F(CrossingsTest, RaysMayHaveManyHits) {
   EXPECT_EQ(parts, 3U);
 }
 
-// llvmpipe ends a lane's loops after 65535 turns: what it then has is no answer.
+// llvmpipe ends a lane's loops after 65535 turns: the result at that point is not an answer.
 TEST_F(CrossingsTest, TooManyHitsAreRefusedOrTraced) {
   constexpr uint32_t kCount = 100'000;
   const auto [scene, ray] = make_stack(kCount);
@@ -702,7 +706,7 @@ TEST_F(CrossingsTest, TooManyHitsAreRefusedOrTraced) {
     EXPECT_TRUE(device().profile().may_cut_loops);
     EXPECT_THAT(list_problems(error), HasProblem("device.loops.cut"));
   }
-  // Part by part, whatever the device.
+  // The list can be made part by part on every device.
   size_t total = 0;
   for (float begin = 0.5F; begin < 100'000.0F; begin += 1000.0F) {
     const std::vector<Ray> part = {{ray.origin, begin, ray.direction, begin + 1000.0F}};
@@ -715,7 +719,7 @@ class SameCrossingsTest : public TempFolder {
  protected:
   static const gpu::Device& device() { return test::SharedDevice::open({.pixel_packet_size = 1}); }
 
-  /// Aimed at a closed mesh, and at all else.
+  /// Returns rays that are aimed at a closed mesh, and rays that are aimed at everything else.
   static std::vector<Ray> make_rays() {
     std::vector<Ray> rays = test::make_rays(3001);
     const std::vector<Ray> aimed = make_aimed_rays(make_icosphere(2), vec3(0.0F), false, 2000, 5);
@@ -725,7 +729,7 @@ class SameCrossingsTest : public TempFolder {
   static world::Scene make_scene() {
     world::Scene scene = make_scene_with_open_shapes();
     scene.objects.push_back({"", make_icosphere(2), 0});
-    // Long and thin, so that a builder splits it.
+    // The mesh has long thin triangles, so that a builder splits them.
     scene.objects.push_back({"", measure::make_needles(2000).objects[0].shape, 0});
     return scene;
   }
@@ -751,7 +755,7 @@ TEST_F(SameCrossingsTest, WhateverTheTreeAndItsFile) {
     write_bvh_file(file, pack_scene(scene, builder).tree());
     expect_same("file of " + std::string(builder), {.bvh = file});
   }
-  // One of them refers to primitives more than once, or nothing is dropped here.
+  // One of the trees refers to primitives more than once; otherwise this test would drop nothing.
   const PackedScene split = pack_scene(scene, "spatial");
   EXPECT_GT(split.references.size(), split.bounded_count);
   EXPECT_GT(expected->hits.size(), 2 * rays.size());
@@ -780,8 +784,8 @@ TEST_F(SameCrossingsTest, WhateverTheBudgetTheOrderAndTheCompany) {
   EXPECT_EQ(differences, 0U);
 }
 
-// Rays in rows come in packets, but where a tree has a primitive twice a packet meets it otherwise than its rays alone,
-// as which a part of the rays may be listed.
+// Rays in rows are traced in packets. If a tree has a primitive twice, a packet meets it in another order than single
+// rays, and some rays may be listed as single ones.
 TEST_F(SameCrossingsTest, WhateverHangsTogetherInPackets) {
   const world::Scene scene = measure::make_needles(20000);
   const Bounds bounds = world::bounds_of(scene);
@@ -802,7 +806,7 @@ TEST_F(SameCrossingsTest, WhateverHangsTogetherInPackets) {
   }
 }
 
-// Packets, forms of traversal, and the two ways to the same memory.
+// The test varies packets, forms of traversal, and the two ways to read the same memory.
 TEST_F(SameCrossingsTest, WhateverTheKernel) {
   const world::Scene scene = make_scene();
   const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), pack_scene(scene, "sah"));

@@ -24,9 +24,9 @@ class SharedDevice : public testing::Environment {
 };
 inline testing::Environment* const kSharedDevice = testing::AddGlobalTestEnvironment(new SharedDevice);
 
-/// Gives a test the shared device, and fails the test if the validation layers spoke during it. Pictures are traced by
-/// single pixels, whose kernels compile sooner. Packets give the same bits: the goldens and the tests of packets hold
-/// that.
+/// Gives a test the shared device, and fails the test if the validation layers report something during it. Pictures are
+/// traced by single pixels, whose kernels compile faster. Packets give the same bits, as the goldens and the tests of
+/// packets check.
 class DeviceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { open({.pixel_packet_size = 1}); }

@@ -10,7 +10,7 @@ namespace {
 
 TEST(DeviceOptionsTest, ADeviceHasNothingOptional) {
   const DeviceHandle device = open_device();
-  // Vulkan requires this one of programs that use a layered driver.
+  // Vulkan requires this extension if a program uses a layered driver.
   EXPECT_THAT(device->enabled_extensions(), testing::Each(testing::StrEq("VK_KHR_portability_subset")));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Pictures with an error target: whether they are as exact as they claim, and the same however they are made.
+// These tests check pictures with an error target: they must be as exact as they claim, and equal however they are
+// made.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +37,7 @@ View view_of(const Scene& scene, const uvec2& size) {
   return view;
 }
 
-/// Wires of a quarter of a pixel and more before a dark wall, lit from the front.
+/// Returns wires with a width of a quarter of a pixel and more before a dark wall, lit from the front.
 world::Scene make_wires() {
   world::Scene scene;
   scene.materials = {make_unlit(vec3(0.9F, 0.6F, 0.2F))};
@@ -50,7 +51,7 @@ world::Scene make_wires() {
   return scene;
 }
 
-/// A board of squares of all colors that lies flat, seen to the horizon.
+/// Returns a flat board of squares of all colors, seen to the horizon.
 Scene make_floor() {
   Scene scene;
   std::vector<uint32_t> texels;
@@ -65,11 +66,12 @@ Scene make_floor() {
 
 class ErrorTargetTest : public DeviceTest {
  protected:
-  /// Holds a picture's claims against one of many samples of a lattice, in linear light and as the picture is shown.
+  /// Compares a picture's claims with a picture of many samples on a lattice, in linear light and as the picture is
+  /// shown.
   static void expect_honest(Renderer& renderer, View view, const char* name, const DisplayTransform& display) {
     View fine = view;
     fine.error_target.reset();
-    // Errors of the truth itself count too, so it has many times the samples that the target takes.
+    // The reference picture has errors of its own, so it takes many times the samples that the target takes.
     fine.samples_per_pixel = view.error_target->error < 1.0F / 32.0F ? 1024 : 256;
     const Image truth = renderer.render(fine).image;
     expect_honest(renderer, view, name, truth);
@@ -112,7 +114,8 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
     light_scene(scene, LightChoice::kAuto);
     Renderer renderer = make_renderer(device(), scene, options);
     expect_honest(renderer, with_target(view_of(scene, uvec2(48, 36)), 1.0F / 64.0F), name, display_of(scene));
-    // As promin render begins coarse pictures: from few samples, by chance, claims are small soonest.
+    // This is how promin render begins coarse pictures. With few samples a claim is most likely to be too small by
+    // chance.
     const uvec2 size = is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
     const View coarse = with_target(view_of(scene, size), 1.0F / 16.0F, kMinRefinedSamples);
     expect_honest(renderer, coarse, name, display_of(scene));
@@ -128,7 +131,7 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
   expect_honest(floor, with_target(view, 1.0F / 64.0F), "a floor's texture", {.tone_mapping = ToneMapping::kAgx});
 }
 
-// Of pixels that are estimated to be off at all; what is flat as far as is known, is.
+// Only pixels with an estimated error are counted; a pixel that seems flat is exact as far as the renderer knows.
 TEST_F(ErrorTargetTest, EstimatesOfFixedSamplesHoldOf90In100Pixels) {
   TunedRendererOptions options;
   options.aovs.error = true;
@@ -226,7 +229,7 @@ TEST_F(ErrorTargetTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
   }
 }
 
-// Surfaces that blend, from behind which camera rays go on.
+// Camera rays go on behind surfaces that blend.
 TEST_F(ErrorTargetTest, AgreesWithManySamplesWhereRaysGoOn) {
   View view = make_view(uvec2(40, 30));
   view.samples_per_pixel = 256;
@@ -242,7 +245,7 @@ TEST_F(ErrorTargetTest, AgreesWithManySamplesWhereRaysGoOn) {
   EXPECT_LT(sum / static_cast<double>(truth.pixels.size()), 1.0 / 32.0);
 }
 
-// The parts that a large picture is refined in leave no seam.
+// A large picture is refined in parts, which leave no seam.
 TEST_F(ErrorTargetTest, LargePicturesAreRefinedInParts) {
   const world::Scene scene = make_wires();
   Renderer renderer = make_renderer(device(), scene);
@@ -256,7 +259,7 @@ TEST_F(ErrorTargetTest, LargePicturesAreRefinedInParts) {
   }
 }
 
-// What is left is foretold anew after each stage, and may grow.
+// The remaining work is forecast anew after each stage, and may grow.
 TEST_F(ErrorTargetTest, ProgressNeverRunsBackwards) {
   Renderer renderer = make_renderer(device(), make_wires());
   View view = with_target(make_board_view(uvec2(300)), 1.0F / 64.0F, 4, 64);
@@ -275,7 +278,7 @@ TEST_F(ErrorTargetTest, ProgressNeverRunsBackwards) {
   }
 }
 
-// Where no time is left there is one sample a pixel; where there is plenty, the view's error.
+// If no time is left, each pixel has one sample; if there is plenty, the picture has the view's error.
 TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheSamplesOrTheErrorThatItNames) {
   const world::Scene scene = make_scene_of_everything(20);
   Renderer renderer = make_renderer(device(), scene);
@@ -305,7 +308,7 @@ TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheSamplesOrTheErrorThatItNam
   }
 }
 
-// They are of rays through the centres, whatever the error.
+// These AOVs are of rays through the pixels' centres, whatever the error.
 TEST_F(ErrorTargetTest, AovsAreThoseOfOneSample) {
   const world::Scene scene = make_scene_of_everything(20);
   RendererOptions options;
@@ -321,7 +324,7 @@ TEST_F(ErrorTargetTest, AovsAreThoseOfOneSample) {
   EXPECT_EQ(expected.samples, std::vector<uint32_t>(2400, 1U));
   EXPECT_EQ(*std::ranges::min_element(result.aovs.samples), 4U);
   EXPECT_GT(*std::ranges::max_element(result.aovs.samples), 4U);
-  // And the next picture of a fixed number of samples is as ever.
+  // The next picture with a fixed number of samples is the same as before.
   EXPECT_TRUE(has_same_bits(renderer.render(view).image, make_renderer(device(), scene).render(view).image));
 }
 

@@ -45,10 +45,10 @@ void expect_same_hit(const Hit& a, const Hit& b) {
 
 class ExplainTest : public test::DeviceTest {
  protected:
-  /// Holds explanations of pixels all over the picture against it, against cast rays and against themselves.
+  /// Compares explanations of pixels all over the picture with the picture, with cast rays and with one another.
   static void check(const world::Scene& scene, const View& view) {
     TunedRendererOptions options;
-    // With these a scene has the same kernels without lights as with a headlight.
+    // With these features, a scene without lights has the same kernels as one with a headlight.
     options.more_features = layout::FEATURE_HEADLIGHT | layout::FEATURE_SHADOWS | layout::FEATURE_SPECULAR;
     Renderer renderer = make_renderer(device(), scene, options);
     Caster caster = make_caster(device(), scene);
@@ -65,8 +65,8 @@ class ExplainTest : public test::DeviceTest {
     }
   }
 
-  /// What the mirror ray behind this one weighs. That of a metallic-roughness material hangs on the angle; here it only
-  /// takes from what it is a part of.
+  /// Returns the weight of the mirror ray that follows. For a metallic-roughness material it depends on the angle; here
+  /// it is only checked to be no larger than `weight`.
   static vec3 next_weight(const ExplainedSample& sample, size_t i, const vec3& weight, const world::Scene& scene) {
     const ExplainedRay& ray = sample.rays[i];
     if (ray.hit.object < 0) return weight;
@@ -80,7 +80,7 @@ class ExplainTest : public test::DeviceTest {
     return next;
   }
 
-  /// The colour is what its parts add up to, in fp32 and to the bit.
+  /// The colour is the sum of its parts, in fp32 and to the bit.
   static void expect_sums(const Explanation& explanation, const world::Scene& scene) {
     vec3 sum(0.0F);
     for (const ExplainedSample& sample : explanation.samples) {
@@ -149,7 +149,7 @@ TEST_F(ExplainTest, EverythingAddsUpToThePicture) {
   check(test::make_scene_of_everything(), view);
 }
 
-// Of what blends casts see the nearest surface alone, so hits are not compared with theirs.
+// A cast sees only the nearest surface, also if that blends, so hits are not compared with casts.
 TEST_F(ExplainTest, WhatBlendsAddsUpToThePicture) {
   const world::Scene scene = test::make_scene_of_alpha();
   const View view = test::make_view(uvec2(48, 36));
@@ -200,7 +200,7 @@ TEST_F(ExplainTest, GlassIsATreeWithParents) {
           EXPECT_EQ(ray.ray.origin, parent.ray.origin);
           continue;
         }
-        // It leaves the parent's hit.
+        // The ray leaves the parent's hit.
         EXPECT_LT(glm::distance(ray.ray.origin, parent.position), 1e-3F);
         ++(ray.kind == RayKind::kReflection ? reflected : refracted)[ray.parent];
       }

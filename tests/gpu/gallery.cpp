@@ -60,7 +60,7 @@ uint32_t Gallery::add_noise(const uvec2& size, ImageUse use, uint32_t low) {
     for (int channel = 0; channel < 4; ++channel) {
       texel |= (low + static_cast<uint32_t>(generator() >> 8) % (256 - low)) << 8 * channel;
     }
-    // Normals lean by up to 45 degrees or so.
+    // Normals are tilted by up to about 45 degrees.
     if (use == ImageUse::kNormal) texel = ((texel >> 1 & 0x7F7F7F7FU) + 0x00404040U) | 0x00E00000U;
     image.texels.push_back(texel);
   }
@@ -127,7 +127,7 @@ world::Scene make_gallery_of_metallic_roughness() {
   add(0.5F, 0.6F, 0.2F, [&](Material&, MetallicRoughness& model) { model.base_color_texture.texture = color; });
   add(1.0F, 0.9F, -0.3F,
       [&](Material&, MetallicRoughness& model) { model.metallic_roughness_texture.texture = numbers; });
-  // Tangents are given: along the board, and one that is mirrored.
+  // These boards have tangents: one along the board, and one that is mirrored.
   add(0.0F, 0.5F, 0.0F, [&](Material&, MetallicRoughness& model) {
     model.normal_texture.texture = normals;
     model.normal_scale = 0.7F;
@@ -145,7 +145,7 @@ world::Scene make_gallery_of_metallic_roughness() {
     material.emissive = vec3(0.4F, 0.3F, 0.2F);
     material.emissive_texture = {.texture = odd_color, .to_u = {1.2F, 0.5F, 0.1F}, .to_v = {-0.6F, 0.9F, 0.3F}};
   });
-  // Its back is seen.
+  // The back of this board is seen.
   add(0.3F, 0.5F, kPi - 0.3F, [&](Material&, MetallicRoughness& model) {
     model.base_color_texture.texture = odd_color;
     model.normal_texture.texture = normals;
@@ -163,7 +163,7 @@ world::Scene make_gallery_of_metallic_roughness() {
     model.clearcoat_normal_texture.texture = normals;
     model.clearcoat_normal_scale = 0.5F;
   });
-  // A mirror that a texture of normals bends.
+  // This board is a mirror that a texture of normals bends.
   add(1.0F, 0.15F, 0.1F, [&](Material&, MetallicRoughness& model) {
     model.normal_texture = {.texture = normals, .to_u = {0.3F, 0, 0}, .to_v = {0, 0.3F, 0}};
     model.normal_scale = 0.05F;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Glass (docs/model.md, "Glass") where its light has a closed form, and that no bit of it hangs on how it is traced.
+// These tests check glass (docs/model.md, "Glass") in scenes whose light has a closed form. They also check that no bit
+// depends on how the picture is traced.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ Material make_clear(const MetallicRoughness& model) {
   return material;
 }
 
-/// Glass that lets all through, but for what it reflects.
+/// Returns glass that transmits all light except for what it reflects.
 MetallicRoughness clear_model() {
   MetallicRoughness model;
   model.metallic = 0.0F;
@@ -43,7 +44,7 @@ Material make_classic(float transmission, float ior, float reflection = 0.0F) {
   return material;
 }
 
-/// One orthographic pixel that looks down on the origin from y = 4, and is told how to look.
+/// Returns a view of one orthographic pixel, whose eye is above the origin at y = 4, with this direction.
 View look_down(const vec3& look = vec3(0, -1, 0)) {
   View view;
   view.size = uvec2(1);
@@ -91,7 +92,7 @@ TEST_F(GlassTest, WithoutBouncesNoRayIsTraced) {
   EXPECT_EQ(result.rays.total(), 1U);
 }
 
-// In place of rays that are not followed the environment is seen, so a ball without colour stays as light as it.
+// A ray that is not followed sees the environment, so a ball without colour stays as light as the environment.
 TEST_F(GlassTest, BeyondTheDepthTheEnvironmentIsSeen) {
   MetallicRoughness model = clear_model();
   model.thickness = 1.0F;
@@ -114,7 +115,7 @@ TEST_F(GlassTest, AMediumAbsorbsByTheWayThroughIt) {
   model.attenuation_distance = 2.0F;
   world::Scene scene = make_scene(kSlab, make_clear(model));
   scene.environment.ambient = vec3(1.0F);
-  // Half of the base colour at each face, and a way of 1.
+  // Each face has half of the base colour; the way in the glass is 1.
   const vec3 seen = see(scene, look_down());
   EXPECT_NEAR(seen.r, 0.81F * std::sqrt(0.5F), 32 * kU);
   EXPECT_NEAR(seen.g, 0.25F * 0.5F, 32 * kU);
@@ -126,7 +127,7 @@ TEST_F(GlassTest, AThinWallBendsNothingAndTintsOnce) {
   model.specular = 0.0F;
   model.base_color = vec3(0.5F, 0.25F, 1.0F);
   const world::Scene scene = make_scene(world::Plane{vec3(0.0F), vec3(0, 1, 0)}, make_clear(model));
-  // What is neither bent nor blurred sees the background.
+  // A ray that is neither bent nor blurred sees the background.
   const vec3 seen = see(scene, look_down(glm::normalize(vec3(0.6F, -0.8F, 0.0F))));
   EXPECT_NEAR(seen.r, 0.5F, 8 * kU);
   EXPECT_NEAR(seen.g, 0.25F, 8 * kU);
@@ -139,7 +140,7 @@ TEST_F(GlassTest, FresnelsShareIsThatOfTheFormula) {
   world::Scene scene = make_scene(kSlab, material);
   scene.materials.push_back(Material());
   scene.materials[1].model = Unlit{vec3(0.0F)};
-  // Nothing comes from below.
+  // No light comes from below.
   scene.objects.push_back({"floor", world::Plane{vec3(0, -2, 0), vec3(0, 1, 0)}, 1});
   for (const double cosine : {1.0, 0.7, 0.3, 0.2}) {
     View view =
@@ -152,7 +153,7 @@ TEST_F(GlassTest, FresnelsShareIsThatOfTheFormula) {
   }
 }
 
-// KHR_materials_dispersion: n of blue and red are off by 0.025 (n - 1) dispersion.
+// In KHR_materials_dispersion, n of blue and red differ by 0.025 (n - 1) dispersion from n.
 TEST_F(GlassTest, EachColorIsBentByItsOwnIndex) {
   MetallicRoughness model = clear_model();
   model.thickness = 1.0F;
@@ -178,13 +179,13 @@ TEST_F(GlassTest, EachColorIsBentByItsOwnIndex) {
   }
 }
 
-// From within, beyond its own angle of total reflection each color stays.
+// From within, each color is reflected totally beyond its own critical angle.
 TEST_F(GlassTest, EachColorIsReflectedTotallyAtItsOwnAngle) {
   MetallicRoughness model = clear_model();
   model.thickness = 1.0F;
   model.ior = 1.5F;
   model.dispersion = 8.0F;
-  // Between 1 / 1.6 and 1 / 1.5: blue is reflected totally.
+  // The sine is between 1 / 1.6 and 1 / 1.5, so that blue is reflected totally.
   const float sine = 0.65F;
   View view = look_down(vec3(sine, -std::sqrt(1.0F - sine * sine), 0.0F));
   view.camera.projection = Projection::kPerspective;
@@ -213,7 +214,7 @@ TEST_F(GlassTest, ShadowsAreTinted) {
   sun.direction = vec3(0, -1, 0);
   scene.lights = {sun};
   View view = look_down();
-  // From below the slab.
+  // The eye is below the slab.
   view.camera.eye.y = -1.0F;
   const RenderResult result = trace(scene, view);
   EXPECT_EQ(result.image.pixels.front(), vec3(0.25F, 0.0625F, 1.0F));
@@ -235,7 +236,7 @@ TEST_F(GlassTest, EveryWayOfTracingGivesTheSameBits) {
   }
 }
 
-// More sources than a turn of the stream takes: rays are traced again while others wait.
+// There are more light sources than a turn of the stream takes: rays are traced again while others wait.
 TEST_F(GlassTest, ManySourcesLightWhatIsBehindGlass) {
   world::Scene scene = make_scene_of_glass();
   View view = make_view({48, 36});

@@ -83,7 +83,7 @@ const Layout kLayouts[] = {
 struct Shader {
   const char* name;
   std::span<const uint32_t> spirv;
-  /// Fewer would say that the module is read wrongly.
+  /// If there were fewer operations, the test would read the module wrongly.
   uint32_t least_float_operation_count;
 };
 
@@ -138,12 +138,13 @@ TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
 
 class ShaderTest : public testing::TestWithParam<Shader> {};
 
-// A driver may contract and reassociate what is not `precise`: bits and watertightness would depend on its taste.
+// A driver may contract and reorder operations that are not `precise`; bits and watertightness would then depend on the
+// driver.
 TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   const test::SpirvModule module(GetParam().spirv);
   EXPECT_GE(module.float_operation_count, GetParam().least_float_operation_count);
   EXPECT_THAT(module.contractible, IsEmpty());
-  // Nor does it lose that where the scene lacks features.
+  // The module also stays `precise` if the scene lacks features.
   const gpu::SpecializationConstant constants[] = {{layout::CONSTANT_FEATURES, 1}, {layout::CONSTANT_MORE_FEATURES, 0}};
   const test::SpirvModule left(gpu::specialize(GetParam().spirv, constants));
   EXPECT_THAT(left.contractible, IsEmpty());
@@ -151,7 +152,8 @@ TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   EXPECT_THAT(left.float_operation_count, AllOf(Gt(50U), Lt(module.float_operation_count)));
 }
 
-// The test above can fail: a lavapipe that does not contract by itself would give the same pictures without `precise`.
+// This shows that the test above can fail. Pictures cannot show it: a lavapipe that does not contract by itself would
+// give the same ones without `precise`.
 TEST(SpirvTest, RemovedPreciseIsSeen) {
   const std::vector<uint32_t> words = read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / "nothing_precise/cast.spv");
   EXPECT_THAT(test::SpirvModule(words).contractible, Contains(HasSubstr("shear_triangle")));

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Levels of detail (docs/model.md, "Textures"): which a device takes, and what of a mask it sees by them, against the
-// oracle. Textures are meters: an image each of whose texels differs from the one over it on the next level by the same
-// step, up or down, in each channel. So a colour tells the level to a step's share, and a level that is off by little
-// shows everywhere.
+// These tests compare levels of detail (docs/model.md, "Textures") and masks on a device with the oracle. Textures
+// are meters: images in which a texel and the one over it on the next level differ by the same step, up or down, in
+// each channel. A colour therefore gives the level to a fraction of a step, and a slightly wrong level shows
+// everywhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,17 +31,17 @@ namespace {
 using oracle::Real;
 
 constexpr uint32_t kMeterLevels = 7;
-/// Of a code of 8 bits; kMeterLevels of them to either side of the middle fit.
+/// The step between the meter's levels in an 8-bit code; kMeterLevels of them fit on either side of the middle.
 constexpr int kMeterStep = 16;
 constexpr int kMeterMiddle = 128;
 
-/// Of alpha the finest levels differ most, so that little of a mask would be left on the next ones did they not keep
-/// their share.
+/// The steps of alpha. They are largest at the finest levels; without scaling, little of a mask would be left on the
+/// coarser levels.
 constexpr std::array<int, kMeterLevels> kAlphaSteps{48, 32, 16, 12, 8, 6, 4};
 
-/// The meter's code in a channel at a texel of a level. Of the four texels under one two are a step above it and two a
-/// step below: by their column in red, by their row in green, by both in blue, by their column again in alpha, and by a
-/// hash whether the first ones are above.
+/// Returns the meter's code in a channel at a texel of a level. Of the four texels under one texel, two are a step
+/// above it and two a step below. In red this depends on their column, in green on their row, in blue on both, in alpha
+/// on the column again. A hash decides whether the first ones are above.
 int meter_code(uint32_t level, uint32_t x, uint32_t y, uint32_t channel, bool is_line) {
   int code = kMeterMiddle;
   for (; level < kMeterLevels; ++level, x >>= 1U, y >>= 1U) {
@@ -55,7 +55,7 @@ int meter_code(uint32_t level, uint32_t x, uint32_t y, uint32_t channel, bool is
   return code;
 }
 
-/// A square of 2^kMeterLevels texels a side, or a line of as many.
+/// Returns a square of 2^kMeterLevels texels on each side, or a line of as many.
 std::shared_ptr<const TextureImage> make_meter(bool is_line = false) {
   TextureImage image{.name = "", .size = uvec2(1U << kMeterLevels), .texels = {}, .use = ImageUse::kData};
   if (is_line) image.size.y = 1;
@@ -69,9 +69,9 @@ std::shared_ptr<const TextureImage> make_meter(bool is_line = false) {
   return std::make_shared<TextureImage>(image);
 }
 
-/// Whose levels are told apart, not blurred.
+/// This texture shows one level at a time, without blur.
 constexpr Texture kMeter{.is_magnified_linearly = false, .is_minified_linearly = false};
-/// As masks are used.
+/// This texture is filtered as masks are.
 constexpr Texture kSoftMeter{};
 
 Mesh make_quad(const std::array<vec3, 4>& corners, const std::array<vec2, 4>& places, uint32_t cuts = 1) {
@@ -92,14 +92,15 @@ Mesh make_quad(const std::array<vec3, 4>& corners, const std::array<vec2, 4>& pl
   return mesh;
 }
 
-/// The same from `lo` to `hi`.
+/// Returns the same quad with texture coordinates from `lo` to `hi`.
 Mesh make_quad(const std::array<vec3, 4>& corners, const vec2& lo, const vec2& hi, uint32_t cuts = 1) {
   return make_quad(corners, std::array<vec2, 4>{lo, vec2(hi.x, lo.y), hi, vec2(lo.x, hi.y)}, cuts);
 }
 
-/// A floor to the horizon, a board of triangles smaller than pixels, a wall seen at a grazing angle, one of two huge
-/// triangles far behind, on which texels are long and turned; of all a plane mirror and a round one bring another view.
-/// All show the meter, and with a mask it cuts them, over ground that the sun lights through the floor.
+/// Returns a scene with a floor to the horizon, a board of triangles smaller than pixels, a wall seen at a grazing
+/// angle, and far behind a wall of two huge triangles, on which texels are long and turned. A plane mirror and a round
+/// one show all of it from another direction. All surfaces show the meter; with a mask it cuts them, and the sun lights
+/// the ground below through the floor.
 world::Scene make_scene_of_levels(bool is_mask) {
   world::Scene scene;
   scene.images = {make_meter()};
@@ -149,7 +150,7 @@ world::Scene make_scene_of_levels(bool is_mask) {
   return scene;
 }
 
-/// From the place `number`; 0 is before all of it.
+/// Returns the view from the place `number`; place 0 is in front of everything.
 View make_view_of_levels(const uvec2& size, uint32_t number) {
   View view;
   view.size = size;
@@ -164,23 +165,24 @@ View make_view_of_levels(const uvec2& size, uint32_t number) {
   return view;
 }
 
-/// Pictures of how many places, and how large: more with the label `long`.
+/// Returns the number of places from which pictures are taken; there are more with the label `long`.
 uint32_t view_count() {
   const char* word = std::getenv("PROMIN_TEST_LEVEL_VIEWS");
   return word == nullptr ? 1 : static_cast<uint32_t>(std::stoul(word));
 }
 constexpr uvec2 kSize(80, 60);
 
-/// A level is off by what its logarithms are, 0.64e-3, and by what rounding makes of cosines and lengths.
+/// The error of a level: 0.64e-3 from its logarithms, and the rounding of cosines and lengths.
 constexpr Real kLevelBound = 1e-3L;
 
-/// The meter's level that a device shows at a place as `seen`: the nearest to `level` at which all channels agree.
+/// Returns the meter's level that a device shows at a place as the color `seen`: the level nearest to `level` at which
+/// all channels agree.
 std::optional<Real> read_meter(const oracle::Textures& textures, const TextureSlot& slot, const oracle::Vector2& place,
                                Real level, const vec3& seen) {
   std::optional<Real> nearest;
   const int below = static_cast<int>(std::floor(level));
   for (int number = std::max(below - 1, 0); number <= std::min<int>(below + 1, kMeterLevels - 1); ++number) {
-    // Exactly 0 is the largest texels of all.
+    // The level 0 is exactly that of the image's own texels.
     const oracle::Texel first = textures.filter(slot, place, std::max<Real>(number, 1e-12L));
     const oracle::Texel second = textures.filter(slot, place, number + 1);
     std::array<Real, 3> parts{};
@@ -209,12 +211,12 @@ class LevelsTest : public DeviceTest {
   }
 };
 
-/// What is left of a difference where place and level are as sure as they are told to be: rounding. No pixel may be
-/// off, in mirrors neither.
+/// Bounds of the differences that remain if place and level are as exact as the oracle says: those are rounding. No
+/// pixel may be wrong, not even in mirrors.
 constexpr oracle::PictureBounds kOfLevels{
     .color_error = 1e-5L, .color_mean = 1e-6L, .color_share = 0, .color_share_with_mirrors = 0, .unsure_share = 1};
-/// What a mask hides is another thing altogether. Where alpha is as near to its cutoff as it may be off nothing is
-/// held.
+/// Bounds of masks. A mask that hides something changes the pixel entirely. If alpha is nearer to its cutoff than its
+/// error, the pixel is not compared.
 constexpr oracle::PictureBounds kOfMasks{
     .color_error = 0.005L, .color_mean = 1e-4L, .color_share = 0, .color_share_with_mirrors = 0, .unsure_share = 0.25};
 
@@ -233,7 +235,7 @@ TEST_F(LevelsTest, LevelsOfCameraRaysAreTheOracles) {
       const oracle::Pixel& pixel = truth.pixels[i];
       if (!pixel.hit.exists() || result.aovs.object[i] != static_cast<uint32_t>(pixel.hit.object)) continue;
       const auto* unlit = std::get_if<Unlit>(&material_of(scene, pixel.hit).model);
-      // Beside a texel's edge it is not told which is seen.
+      // At a texel's edge it is not certain which texel is seen.
       if (unlit == nullptr || pixel.explained_error > 0.01L) continue;
       oracle::TrianglePoint point;
       point.mesh = std::get_if<Mesh>(&scene.objects[static_cast<size_t>(pixel.hit.object)].shape);
@@ -290,7 +292,7 @@ TEST_F(LevelsTest, MasksAreTheOracles) {
   }
 }
 
-// Each of these, when it happens, is a picture that fails: so the three tests above can.
+// Each of these faults makes a picture wrong, so the three tests above can fail.
 TEST_F(LevelsTest, EachFaultDisagreesWithTheOracle) {
   const View view = make_view_of_levels({48, 36}, 0);
   for (const bool is_mask : {false, true}) {
@@ -309,9 +311,9 @@ TEST_F(LevelsTest, EachFaultDisagreesWithTheOracle) {
   }
 }
 
-// Boards one above the other, on which a pixel is a texel wide and more or less high, so that all of its samples lie in
-// one texel and have one level. Of N samples each takes one of the two levels, and so many take the upper one that the
-// mean is at most half a sample off.
+// Boards lie one above the other. On each, a pixel is a texel wide and has another height, so that all samples of a
+// pixel lie in one texel and have one level. Each of N samples takes one of the two neighbouring levels. The number of
+// samples that take the upper one is such that the mean is at most half a sample off.
 TEST_F(LevelsTest, EachOfManySamplesTakesOneLevel) {
   constexpr uint32_t kSide = 1U << kMeterLevels;
   constexpr uint32_t kRows = 16;
@@ -326,9 +328,9 @@ TEST_F(LevelsTest, EachOfManySamplesTakesOneLevel) {
     scene.geometries.clear();
     levels.clear();
     for (uint32_t row = 0; row < kRows; ++row) {
-      // Away from where a sample's level changes, which is at odd numbers of 2 * samples.
+      // These levels are away from those at which a sample's level changes, which are at odd values of 2 * samples.
       levels.push_back((row * (kMeterLevels * samples - 1) / (kRows - 1)) / static_cast<double>(samples));
-      // 1/2 log2(w^2 W H A_uv / A), with w a sample's side, H = 1.
+      // The level is 1/2 log2(w^2 W H A_uv / A), where w is the width of a sample, and H = 1.
       const double side = 2.0 / kSide / std::sqrt(samples);
       const double height = 2.0 / kRows;
       const double coverage = std::exp2(2.0 * levels.back()) * (2.0 * height) / (side * side * kSide);

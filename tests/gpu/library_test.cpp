@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// What the public headers promise of wrong arguments, of work that is broken off and of changes of a scene.
+// These tests check the promises of the public headers on wrong arguments, on interrupted work and on changes of a
+// scene.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ namespace {
 
 using test::has_same_bits;
 
-/// A mirroring ball on a floor, with a light.
+/// Returns a mirroring ball on a floor, with a light.
 Scene make_scene() {
   Mesh floor;
   floor.positions = {{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}};
@@ -117,7 +118,7 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
 }
 
-// The tree has one of these copies: as glass each would show.
+// The tree has only one of these copies; as glass, each copy would show.
 TEST_F(LibraryTest, MaterialsOfManyCopiesStayOpaque) {
   Scene scene = scene_;
   auto& floor = std::get<Mesh>(scene.geometries[0]);
@@ -134,12 +135,13 @@ TEST_F(LibraryTest, MaterialsOfManyCopiesStayOpaque) {
   EXPECT_THROW(renderer.set_materials(materials), InputError);
 }
 
-// In a process of its own (tests/CMakeLists.txt: each suite on a device is), because Mesa 25.0.7 counts memory that it
-// has refused as its own: what it gives out later lies beyond the end of its file, where writing is a bus error.
+// This test needs a process of its own (in tests/CMakeLists.txt each suite on a device has one). Mesa 25.0.7 counts
+// memory that it has refused as allocated: the memory that it gives out later lies beyond the end of its file, where
+// writing is a bus error.
 class LibraryOutOfMemoryTest : public LibraryTest {};
 
-// A change that there is no memory for is refused while the scene is still as it was. Lavapipe from Mesa 24.3 on has
-// its memory in a file, whose size can be limited; other drivers take the change.
+// A change for which there is no memory is refused before the scene changes. Lavapipe from Mesa 24.3 on has its memory
+// in a file, whose size can be limited; other drivers accept the change.
 TEST_F(LibraryOutOfMemoryTest, AChangeThatFailsChangesNothing) {
   Renderer renderer(device(), scene_);
   const Image before = renderer.render(view_).image;
@@ -157,7 +159,7 @@ TEST_F(LibraryOutOfMemoryTest, AChangeThatFailsChangesNothing) {
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
 }
 
-// A mesh that is mirrored is wound the other way on the device; its corners are told as the mesh has them.
+// The device reverses the corners of a mirrored mesh; hits give them in the mesh's order.
 TEST_F(LibraryTest, WeightsAreThoseOfTheMeshsOwnCorners) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -225,7 +227,7 @@ TEST_F(LibraryTest, ABrokenOffConstructorLeavesTheDeviceUsable) {
 
 TEST_F(LibraryTest, ABrokenOffPictureStopsAtTheNextDispatchAndTheRendererStays) {
   const View view = make_view(scene_, 256);
-  // Little enough a dispatch that there are several.
+  // A dispatch takes so few rays that there are several dispatches.
   TunedRendererOptions options;
   options.blocks_per_dispatch = 1;
   Renderer renderer = make_renderer(device(), scene_, options);
@@ -271,7 +273,7 @@ TEST_F(LibraryTest, ProgressivePicturesEndWhereTheyAreToldAndHaveTheBitsOfOthers
 TEST_F(LibraryTest, OcclusionIsWhetherAnythingIsHit) {
   Caster caster(device(), scene_);
   std::vector<Ray> rays;
-  // With directions that are taken as they are, and of a length that is scaled.
+  // Some directions are used unchanged; some have a length that is scaled.
   for (const float length : {1.0F, 0x1p127F}) {
     for (int i = 0; i < 3000; ++i) {
       const float x = static_cast<float>(i * 7919 % 3000) / 200.0F - 7.5F;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The models of materials on a device, where their light is known without a picture to compare with.
+// These tests check the models of materials on a device, in cases whose light is known without another picture.
 #include "promin/materials.h"
 
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ Material make_metallic_roughness(const MetallicRoughness& model) {
   return material;
 }
 
-/// Without lights, the same light from everywhere, in rays that leave the scene too.
+/// Returns a scene without lights and with the same light from everywhere, also for rays that leave the scene.
 world::Scene make_furnace(float radiance = 1.0F) {
   world::Scene scene;
   scene.environment.ambient = scene.environment.background = vec3(radiance);
   return scene;
 }
 
-/// One orthographic pixel that looks along `look` at the origin.
+/// Returns a view of one orthographic pixel that looks along `look` at the origin.
 View look_along(const vec3& look) {
   View view;
   view.size = uvec2(1);
@@ -48,7 +48,7 @@ View look_along(const vec3& look) {
   return view;
 }
 
-/// In the plane of x and y, by its cosine to +y.
+/// Returns the direction in the plane of x and y with this cosine to +y.
 vec3 direction_at(float cosine) {
   return {std::sqrt(1.0F - cosine * cosine), cosine, 0.0F};
 }
@@ -61,7 +61,7 @@ Light make_sun(const vec3& to_light, float power = 1.0F) {
   return light;
 }
 
-/// The largest difference of a channel from a number.
+/// Returns the largest difference of a channel from a number.
 float largest_difference(const Image& image, float wanted) {
   float largest = 0.0F;
   for (const vec3& pixel : image.pixels) {
@@ -77,7 +77,7 @@ class MaterialsTest : public test::DeviceTest {
     return make_renderer(device(), scene).render(view).image;
   }
 
-  /// A floor of one material, seen at an angle of this cosine.
+  /// Returns the colour of a floor of one material, seen at an angle of this cosine.
   static vec3 color_of_floor(const Material& material, float cosine, world::Scene scene) {
     scene.materials = {material};
     scene.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
@@ -85,7 +85,7 @@ class MaterialsTest : public test::DeviceTest {
   }
 };
 
-/// Three rows of eleven spheres: metallic 0, .5 and 1, roughness 0 to 1, far apart.
+/// Returns three rows of eleven spheres, far apart: metallic is 0, .5 and 1, roughness goes from 0 to 1.
 world::Scene make_spheres(const vec3& base_color) {
   world::Scene scene = make_furnace();
   for (int row = 0; row < 3; ++row) {
@@ -110,7 +110,7 @@ View look_at_spheres() {
   return view;
 }
 
-// A white furnace: what the table holds cancels, so it is not the table that makes it 1.
+// In a white furnace the numbers of the table cancel, so the result is 1 whatever the table contains.
 TEST_F(MaterialsTest, WhiteSpheresVanishInAWhiteFurnace) {
   Renderer renderer = make_renderer(device(), make_spheres(vec3(1.0F)));
   View view = look_at_spheres();
@@ -131,7 +131,7 @@ TEST_F(MaterialsTest, ColoredSpheresSendNoMoreThanTheyGet) {
   EXPECT_GT(darker, image.pixels.size() / 4);
 }
 
-// What a sheen does not send is left for what is below it.
+// The light that a sheen does not reflect is left for the layers below it.
 TEST_F(MaterialsTest, WhiteSpheresUnderWhiteSheensVanishInAWhiteFurnace) {
   for (const float roughness : {0.0F, 0.1F, 0.3F, 1.0F}) {
     world::Scene scene = make_spheres(vec3(1.0F));
@@ -144,7 +144,7 @@ TEST_F(MaterialsTest, WhiteSpheresUnderWhiteSheensVanishInAWhiteFurnace) {
   }
 }
 
-// What leaves on the other side is taken from what is scattered on this one.
+// The light that leaves on the other side is subtracted from the light scattered on this side.
 TEST_F(MaterialsTest, WhiteSpheresThatScatterThroughVanishInAWhiteFurnace) {
   world::Scene scene = make_spheres(vec3(1.0F));
   std::optional<Renderer> renderer;
@@ -158,8 +158,9 @@ TEST_F(MaterialsTest, WhiteSpheresThatScatterThroughVanishInAWhiteFurnace) {
   }
 }
 
-// KHR_materials_diffuse_transmission: of what a matt wall gets from the front 1 - f goes back in the base colour, and
-// of what it gets from behind f comes through in the other colour, times the cosine over pi.
+// KHR_materials_diffuse_transmission: of the light on the front of a matt wall, the fraction 1 - f is reflected in the
+// base colour; of the light on its back, the fraction f comes through in the other colour. Both are multiplied by the
+// cosine over pi.
 TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   const vec3 color(0.25F, 0.5F, 1.0F);
   MetallicRoughness model{.base_color = vec3(0.5F), .metallic = 0.0F, .roughness = 1.0F, .specular = 0.0F};
@@ -170,7 +171,7 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   wall.positions = {{-2, 0, -2}, {0, 0, 3}, {2, 0, -2}};
   wall.triangles = {{0, 1, 2}};
   scene.objects = {{"", wall, 0}};
-  // It stands in the way of light from the left, on either side.
+  // This box blocks light from the left, on either side of the wall.
   scene.objects.push_back({"", world::Box{.center = vec3(-9, 0, 0), .half_size = vec3(1, 8, 8)}, 0});
   scene.materials = {make_metallic_roughness(model)};
   scene.lights = {make_sun(vec3(0, 1, 0))};
@@ -186,7 +187,8 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   EXPECT_EQ(seen_under(vec3(-9, 0.5F, 0)), vec3(0));
   EXPECT_EQ(seen_under(vec3(-9, -0.5F, 0)), vec3(0));
   EXPECT_EQ(seen_under(vec3(1, 0, 0)), vec3(0));
-  // A metal scatters nothing, nor does what has no share, here beside the other wall.
+  // A metal does not scatter light, and neither does a material whose fraction is 0; here it stands beside the other
+  // wall.
   for (const bool is_metal : {true, false}) {
     MetallicRoughness other = model;
     if (is_metal) other.metallic = 1.0F;
@@ -198,8 +200,8 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   }
 }
 
-// Whatever a film adds to the reflection, the body gets the remainder: of the colour that is reflected most all is
-// sent.
+// Whatever a film adds to the reflection, the body gets the remainder: with the colour that is reflected most, all
+// light is sent back.
 TEST_F(MaterialsTest, AWhiteFloorUnderAFilmSendsAllOfOneColorInAWhiteFurnace) {
   for (const float thickness : {0.0F, 130.0F, 420.0F, 5000.0F}) {
     for (const float cosine : {1.0F, 0.4F, 0.01F}) {
@@ -212,7 +214,8 @@ TEST_F(MaterialsTest, AWhiteFloorUnderAFilmSendsAllOfOneColorInAWhiteFurnace) {
   }
 }
 
-// Waves interfere no longer where a film is thick: light that goes to and fro in it adds up, a geometric series.
+// In a thick film waves no longer interfere: the light that is reflected to and fro in the film adds up to a geometric
+// series.
 TEST_F(MaterialsTest, ThickFilmsReflectWithoutInterference) {
   const dvec3 base(0.9, 0.5, 0.04);
   const double ior = 1.8;
@@ -230,7 +233,7 @@ TEST_F(MaterialsTest, ThickFilmsReflectWithoutInterference) {
   }
 }
 
-/// A wall across y with a grain along x, and a view of it from above.
+/// Returns a wall across y with a grain along x, and a view of it from above.
 world::Scene make_grain(float strength, float rotation, float roughness) {
   world::Scene scene;
   Mesh wall;
@@ -245,7 +248,8 @@ world::Scene make_grain(float strength, float rotation, float roughness) {
   return scene;
 }
 
-// Where eye and source are above, l D V is 1 / (4 pi at ab); elsewhere the extension's text has D and V.
+// If eye and source are above, l D V is 1 / (4 pi at ab); for other directions D and V are those of the extension's
+// text.
 TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   const float roughness = 0.3F;
   const float strength = 0.6F;
@@ -266,8 +270,8 @@ TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   const double before = seen_under(vec3(0.5F, 1, 0.2F));
   renderer.set_materials(make_grain(strength, std::numbers::pi_v<float> / 2, roughness).materials);
   EXPECT_NEAR(seen_under(vec3(-0.2F, 1, 0.5F)), before, 1e-4 * before);
-  // Of two materials alike in all else the heights are as the products of their alphas, but for what facets reflect
-  // more than once: K of white is 1 / E1.
+  // If two materials differ only in the grain, the heights of their highlights differ as the products of their alphas,
+  // except for light that facets reflect more than once: K of white is 1 / E1.
   renderer.set_materials(make_grain(0.0F, 0.0F, roughness).materials);
   const double round = seen_under(vec3(0, 1, 0));
   const auto e1 = [](double mean_roughness) {
@@ -277,7 +281,7 @@ TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   EXPECT_NEAR(above / round, across / along * e1(static_cast<double>(roughness)) / e1(mean), 1e-4);
 }
 
-// A source straight behind a matt wall has no half vector and no cosine: nothing of it is undefined.
+// A source straight behind a matt wall has no half vector and no cosine: nothing of it may be undefined.
 TEST_F(MaterialsTest, ASourceStraightBehindAGrainIsScatteredThrough) {
   world::Scene scene = make_grain(0.5F, 0.0F, 0.3F);
   auto& model = std::get<MetallicRoughness>(scene.materials[0].model);
@@ -290,7 +294,7 @@ TEST_F(MaterialsTest, ASourceStraightBehindAGrainIsScatteredThrough) {
   EXPECT_EQ(seen, vec3(seen.x));
 }
 
-// Of light from everywhere a white metal reflects all, whatever its grain.
+// A white metal reflects all light from everywhere, whatever its grain.
 TEST_F(MaterialsTest, AWhiteGrainVanishesInAWhiteFurnace) {
   std::optional<Renderer> renderer;
   for (const float roughness : {0.0F, 0.2F, 1.0F}) {
@@ -303,7 +307,7 @@ TEST_F(MaterialsTest, AWhiteGrainVanishesInAWhiteFurnace) {
   }
 }
 
-// A coat gives nothing back of what facets reflect more than once, so a rough one may only lose light.
+// A coat has no term for light that facets reflect more than once, so a rough one may only lose light.
 TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
   for (const float roughness : {0.0F, 0.05F, 0.3F, 1.0F}) {
     world::Scene scene = make_spheres(vec3(1.0F));
@@ -317,12 +321,12 @@ TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
       ASSERT_LE(max_component(pixel), 1.0F + 16.0F * kU) << roughness;
       least = std::min({least, pixel.x, pixel.y, pixel.z});
     }
-    // Facets that lie flat lose nothing; the table has them to 0.0003 but at the rim.
+    // Smooth facets lose nothing; the table is exact to 0.0003 except at the rim.
     EXPECT_GT(least, roughness == 0.0F ? 0.9F : 0.4F) << roughness;
   }
 }
 
-// The same light by 4096 sources: so many show a lobe of this roughness as if they were everywhere.
+// 4096 sources give the same light: for a lobe of this roughness so many are like light from everywhere.
 TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
   constexpr int kCount = 4096;
   world::Scene scene;
@@ -349,7 +353,8 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
       }
     }
   }
-  // A sheen takes from what is below on the way in and on the way out, so some light is lost, and none is made.
+  // A sheen takes light from the layers below on the way in and on the way out, so some light is lost, and none is
+  // added.
   for (const float roughness : {0.3F, 0.6F, 1.0F}) {
     MetallicRoughness model;
     model.metallic = 0.0F;
@@ -364,7 +369,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
   }
 }
 
-/// The highlight of a light on a floor with black diffuse light, by the device and by the oracle.
+/// The highlight of a light on a floor with black diffuse light, computed by the device and by the oracle.
 struct Highlight {
   float got = 0.0F;
   oracle::Real wanted = 0;
@@ -392,7 +397,7 @@ class HighlightTest : public MaterialsTest {
     scene_.lights = {make_sun(to_light)};
     renderer_->set_lights(scene_.lights);
     View view = look_along(-to_eye);
-    // Any direction across will do.
+    // Any direction that is perpendicular to the view is suitable.
     view.camera.up = glm::normalize(glm::cross(to_eye, vec3(0.3F, 0.1F, 1.0F)));
     return {renderer_->render(view).image.pixels[0].x, oracle::render(scene_, view).at(0, 0).color.x};
   }
@@ -401,7 +406,8 @@ class HighlightTest : public MaterialsTest {
   std::optional<Renderer> renderer_;
 };
 
-// Density, visibility and Fresnel's factor around the mirrored direction, to 64 u + 8 u / alpha of themselves.
+// Density, visibility and Fresnel's factor near the mirrored direction are exact to a relative error of 64 u + 8 u /
+// alpha.
 TEST_F(HighlightTest, LobesAreTheOraclesButForRounding) {
   for (const float metallic : {0.0F, 1.0F}) {
     for (const float roughness : {0.0F, 0.1F, 0.3F, 0.6F, 1.0F}) {
@@ -423,8 +429,8 @@ TEST_F(HighlightTest, LobesAreTheOraclesButForRounding) {
   }
 }
 
-// With eye and light exchanged a surface sends the same, but for the cosine to the light, which is of the source, and
-// for what facets reflect more than once, which is of the eye.
+// If eye and light are exchanged, a surface reflects the same light, except for the cosine to the light, which belongs
+// to the source, and for light that facets reflect more than once, which depends on the eye.
 TEST_F(HighlightTest, TheLobeIsReciprocal) {
   for (const float roughness : {0.2F, 0.5F, 0.9F}) {
     set_model(1.0F, roughness);
@@ -435,7 +441,7 @@ TEST_F(HighlightTest, TheLobeIsReciprocal) {
       const float b = 0.95F - 0.07F * static_cast<float>(i);
       const vec3 there = glm::normalize(direction_at(a));
       const vec3 back = glm::normalize(direction_at(b) * vec3(-1, 1, 1) + vec3(0, 0, 0.3F));
-      // What hangs on the direction to the eye alone.
+      // Returns the factor that depends only on the direction to the eye.
       const auto share_of = [&](const vec3& to_eye, const vec3& to_light) {
         const oracle::LobeAngles angles = oracle::angles_of({0, 1, 0}, glm::normalize(oracle::Vector(to_eye)),
                                                             glm::normalize(oracle::Vector(to_light)));
@@ -450,14 +456,14 @@ TEST_F(HighlightTest, TheLobeIsReciprocal) {
   }
 }
 
-// KHR_materials_ior: an index of 0 reflects everything, from every side.
+// In KHR_materials_ior, an index of 0 reflects everything, from every side.
 TEST_F(MaterialsTest, AnIndexOfZeroIsAMirror) {
   MetallicRoughness model{.base_color = vec3(0.0F), .metallic = 0.0F, .roughness = 0.0F, .ior = 0.0F};
   for (const float cosine : {1.0F, 0.5F, 0.1F}) {
     const vec3 color = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
     EXPECT_LE(max_abs_component(color - vec3(1.0F)), 8.0F * kU) << cosine;
   }
-  // KHR_materials_specular dyes it, and takes it away: then all light is the body's.
+  // KHR_materials_specular colours the reflection or removes it; without it all light is the body's.
   model.specular_color = vec3(1.0F, 0.5F, 0.0F);
   EXPECT_LE(
       max_abs_component(color_of_floor(make_metallic_roughness(model), 1.0F, make_furnace()) - model.specular_color),
@@ -483,12 +489,12 @@ TEST_F(MaterialsTest, BlackMetalReflectsFromTheSideAlone) {
   const MetallicRoughness model{.base_color = vec3(0.0F), .metallic = 1.0F, .roughness = 0.0F};
   for (const float cosine : {1.0F, 0.7F, 0.3F, 0.05F}) {
     const vec3 color = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
-    // The table's error.
+    // The tolerance is the table's error.
     EXPECT_NEAR(color.x, std::pow(1.0F - cosine, 5.0F), 0.005F) << cosine;
   }
 }
 
-/// A triangle across the view from +y, all corners of one colour.
+/// Returns a triangle across the view from +y, with the same colour at all corners.
 Mesh make_colored_mesh(const vec3& color) {
   Mesh mesh;
   mesh.positions = {{-2, 0, -2}, {0, 0, 3}, {2, 0, -2}};
@@ -514,7 +520,7 @@ TEST_F(MaterialsTest, VertexColorsAreFactorsOfTheBaseColor) {
     const vec3 by_base = color_of(make_metallic_roughness(model), vec3(1));
     EXPECT_LE(max_abs_component(by_vertices - by_base), 32.0F * kU) << metallic;
     EXPECT_GT(plain.x, 1.5F * by_base.x) << metallic;
-    // A base colour of more than 1 would send more than it gets.
+    // With a base colour of more than 1, the surface would reflect more light than it gets.
     model.base_color = vec3(1);
     const vec3 white = color_of(make_metallic_roughness(model), vec3(1));
     EXPECT_LE(max_abs_component(color_of(make_metallic_roughness(model), vec3(4)) - white), 32.0F * kU) << metallic;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The project's scenes and one of everything against the oracle's pictures, pixel by pixel: ids, depth, normals and
-// colour. Mismatching pixels are printed with their margins.
+// These tests compare the project's scenes and a scene of everything with the oracle's pictures, pixel by pixel: ids,
+// depth, normals and colour. Pixels that differ are printed with their margins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,14 +38,15 @@ uvec2 make_size() {
   return test::is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
 }
 
-/// Brute force takes primitives times rays: smaller pictures of larger scenes.
+/// Returns the size of a scene's picture. Brute force takes time in proportion to primitives times rays, so larger
+/// scenes get smaller pictures.
 uvec2 size_for(const world::Scene& scene) {
   const uint64_t count = count_primitives(scene);
   if (count <= 2000) return make_size();
   return count <= 10000 ? uvec2(48, 36) : uvec2(20, 15);
 }
 
-/// The view that `promin render` has of a scene, with the lights that stand in.
+/// Returns the view that `promin render` has of a scene, and adds the default lights if the scene needs them.
 View view_of(world::Scene& scene) {
   View view;
   view.size = size_for(scene);
@@ -75,7 +76,7 @@ class OraclePictureTest : public test::DeviceTest, public testing::WithParamInte
                                        const oracle::PictureBounds& bounds = {}) {
     return compare_with(oracle::render(scene, view), scene, view, bounds);
   }
-  /// By kernels that have the features of several scenes that are made from that of everything.
+  /// Uses kernels with the features of several scenes that are made from the scene of everything.
   static bool agrees_with_oracle(const world::Scene& scene, const View& view) {
     using namespace layout;
     const FeatureMask more = features_of(test::make_scene_of_everything()) | FEATURE_OPEN_SHAPES | FEATURE_FRESNEL |
@@ -99,7 +100,7 @@ class OraclePictureTest : public test::DeviceTest, public testing::WithParamInte
   }
 };
 
-/// All scenes of the project, those first that have most of what a scene can have.
+/// Returns all scenes of the project. Those with the most features come first.
 std::vector<std::string> scene_names() {
   std::vector<std::string> names = {"all_primitives.gltf",     "glass.gltf",        "light_physical.gltf",
                                     "metallic_roughness.gltf", "mirrors.gltf",      "showcase.gltf",
@@ -120,7 +121,7 @@ TEST_P(OraclePictureTest, AgreesWithTheOracle) {
   oracle::PictureBounds bounds;
   if (std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); })) {
     view.max_depth = kMaxDepthOfGlass;
-    // Where total reflection is near, little is sure.
+    // Near the angle of total reflection, the oracle is not sure.
     bounds.unsure_share = 0.1;
   }
   EXPECT_TRUE(compare(scene, view, bounds).passes());
@@ -146,7 +147,7 @@ TEST_F(OraclePictureTest, OpenShapesAgreeWithTheOracle) {
         },
         object.shape);
   }
-  // Into the frustum, which is wide open.
+  // The view looks into the frustum through its wide open end.
   View view = test::make_view(make_size());
   view.camera.eye = vec3(-1.6F, 3.2F, 2.6F);
   view.camera.look = glm::normalize(vec3(0.25F, -1.0F, -0.2F));
@@ -162,13 +163,13 @@ TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
 TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
   View view = test::make_view(make_size());
   view.max_depth = kMaxDepthOfGlass;
-  // Where total reflection is near, little is sure.
+  // Near the angle of total reflection, the oracle is not sure.
   EXPECT_TRUE(
       compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1})
           .passes());
 }
 
-// Each of these formulas, when wrong, is a picture that fails: GlassAgreesWithTheOracle can.
+// A fault in any of these formulas makes a picture wrong, so GlassAgreesWithTheOracle can fail.
 TEST_F(OraclePictureTest, EachFaultOfGlassDisagreesWithTheOracle) {
   const world::Scene scene = test::make_scene_of_glass();
   View view = test::make_view(uvec2(48, 36));
@@ -176,7 +177,7 @@ TEST_F(OraclePictureTest, EachFaultOfGlassDisagreesWithTheOracle) {
   const oracle::PictureBounds bounds{.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1};
   const oracle::Picture truth = oracle::render(scene, view);
   ASSERT_TRUE(compare_with(truth, scene, view, bounds).passes());
-  // Each is three kernels more to compile.
+  // Each fault takes the compilation of three more kernels.
   for (const char* fault : test::cases_of<const char*>(
            {"refraction_inverted", "media_kept", "shadows_untinted", "absorption_per_face", "colors_swapped",
             "glass_seen_from_outside", "nested_faces_bend", "total_reflection_dark", "through_unweighted"},
@@ -201,7 +202,7 @@ TEST_F(OraclePictureTest, ACameraInGlassAgreesWithTheOracle) {
   View view = test::make_view(uvec2(64, 48));
   view.max_depth = kMaxDepthOfGlass;
   view.camera.yfov = 1.5F;
-  // In two that overlap, in one within another, in one that absorbs, in a mesh.
+  // The eye is in two overlapping solids, in one inside another, in one that absorbs, and in a mesh.
   for (const vec3& eye : test::cases_of<vec3>(
            {vec3(0.95F, 1.55F, 3.05F), vec3(-0.8F, 1.75F, 3.4F), vec3(0.5F, 1.5F, 3.1F), vec3(0.1F, 0.6F, 3.95F)}, 2)) {
     view.camera.eye = eye;
@@ -238,10 +239,10 @@ TEST_F(OraclePictureTest, SheensAgreeWithTheOracle) {
   EXPECT_TRUE(agrees_with_oracle(scene, test::make_view(make_size())));
 }
 
-/// Textures are held to bounds that belong to pixels of this size.
+/// The bounds for textures are chosen for pixels of this size.
 constexpr uvec2 kSizeOfTextures(96, 72);
 
-/// Texels differ from pixel to pixel, so a place or a level that is a little wrong shows nearly everywhere.
+/// Bounds for textures. Texels differ from pixel to pixel, so a slightly wrong place or level shows nearly everywhere.
 constexpr oracle::PictureBounds kOfTextures{
     .color_error = 0.005L, .color_mean = 1e-5L, .plain_mean = 5e-5L, .unsure_share = 0.002};
 
@@ -258,8 +259,8 @@ TEST_F(OraclePictureTest, TexturesOfAlphaAgreeWithTheOracle) {
   EXPECT_TRUE(compare(test::make_gallery_of_alpha(), test::make_gallery_view(kSizeOfTextures), kOfTextures).passes());
 }
 
-/// Boards that light shines through, with films and grains, and the textures of all of these. They are lit from behind
-/// too, mirrored in the wall, and stand under a sky that is not the same from everywhere.
+/// Returns boards that transmit light, with films and grains, and with textures of all these properties. Light also
+/// comes from behind, the wall mirrors the boards, and the sky above them is not uniform.
 world::Scene make_gallery_of_rare_layers() {
   world::Scene scene = test::make_gallery_of_metallic_roughness();
   const auto texture_of = [&](ImageUse use) {
@@ -298,9 +299,9 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   const View view = test::make_gallery_view(kSizeOfTextures);
   const oracle::Picture truth = oracle::render(scene, view);
   oracle::PictureBounds bounds = kOfTextures;
-  // Across a grain highlights are narrow, so little is sure at their edges.
+  // Highlights are narrow across a grain, so the oracle is not sure at their edges.
   bounds.unsure_share = 0.015;
-  // What is explained includes what the maps of the sky may be off.
+  // The explained error includes the errors of the sky's maps.
   bounds.plain_mean = 1e-3L;
   EXPECT_TRUE(compare_with(truth, scene, view, bounds).passes());
   for (const char* fault : test::cases_of<const char*>(
@@ -311,11 +312,11 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   }
 }
 
-// What the device has of a sky are maps, of texels and of a few roughnesses. White metals show P and nothing else.
+// The device stores a sky as maps, with texels and a few roughnesses. White metals show P and nothing else.
 TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   constexpr float kRoughnesses[] = {0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.27F, 0.35F, 0.47F, 0.6F, 0.8F, 1.0F};
   const uint32_t side = test::is_thorough() ? 24 : 12;
-  // With the largest root of the mean square of a roughness, of the range.
+  // The member rms is the largest root mean square error at one roughness, as a fraction of the sky's range.
   const struct {
     const char* name;
     Environment environment;
@@ -355,7 +356,8 @@ TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   }
 }
 
-// The largest errors that maps may have explain most of what these pictures are off, the rest is little in the mean.
+// The largest possible errors of the maps explain most of the differences of these pictures; the mean of the rest is
+// small.
 TEST_F(OraclePictureTest, AGradientAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_under_sky(test::make_gradient());
   EXPECT_TRUE(
@@ -374,8 +376,9 @@ TEST_F(OraclePictureTest, APanoramaAgreesWithTheOracle) {
       compare(scene, test::make_gallery_view(make_size()), {.color_mean = 1e-5L, .plain_mean = 5e-4L}).passes());
 }
 
-// Far from the origin the same bounds hold: intersections work in coordinates of the primitive. What is moved is
-// rounded, for device and oracle alike; colour is not asked, as secondary rays start farther off the surface there.
+// The same bounds hold far from the origin, because intersections use coordinates relative to the primitive. The moved
+// scene is rounded in the same way for device and oracle. Colours are not compared, because secondary rays start
+// farther off the surface there.
 TEST_F(OraclePictureTest, PrimaryHitsHoldFarFromTheOrigin) {
   world::Scene scene = test::make_scene_of_everything();
   View view = test::make_view(make_size());

@@ -20,7 +20,7 @@ namespace {
 
 class PipelineTest : public test::DeviceTest {
  protected:
-  /// Returns what branches.comp makes of the numbers from 0.
+  /// Returns the numbers that branches.comp computes from 0, 1, 2, …
   std::vector<uint32_t> run(std::span<const uint32_t> branches, const test::BranchConstants& constants) {
     std::vector<uint32_t> numbers(500);
     std::iota(numbers.begin(), numbers.end(), 0U);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Filters of pixels where what they give has a closed form: beside a straight edge.
+// These tests check pixel filters beside a straight edge, where their results have a closed form.
 #include <gtest/gtest.h>
 
 #include "device_scene/sampling.h"
@@ -15,7 +15,7 @@ constexpr float kEdge = 0.25F;
 
 class PixelFilterTest : public DeviceTest {
  protected:
-  /// White to the right of an edge at x = kEdge, black to the left.
+  /// Returns a scene that is white to the right of an edge at x = kEdge and black to the left.
   static world::Scene make_edge() {
     world::Scene scene;
     Mesh mesh;
@@ -25,7 +25,7 @@ class PixelFilterTest : public DeviceTest {
     scene.materials = {make_unlit(vec3(1.0F), AlphaMode::kOpaque, 1.0F)};
     return scene;
   }
-  /// Pixels of a side of 1, whose centres are at -3.5...3.5.
+  /// Returns a view whose pixels have sides of 1 and centres at -3.5...3.5.
   static View look_at_it(PixelFilter filter, float width) {
     View view;
     view.camera.eye = vec3(0, 0, 2);

@@ -29,11 +29,11 @@ namespace {
 using test::has_same_bits;
 using test::make_scene_of_everything;
 
-const uvec2 kSize(150, 100);  // neither is a multiple of the block
+const uvec2 kSize(150, 100);  // neither number is a multiple of the block's size
 
 class RendererTest : public test::DeviceTest {
  protected:
-  /// A renderer with the features of most scenes here, so that they share their kernels.
+  /// Returns a renderer with the features of most scenes here, so that they share their kernels.
   static Renderer make(const world::Scene& scene, TunedRendererOptions options = {}) {
     options.more_features |= features_of(make_scene_of_everything()) | layout::FEATURE_HEADLIGHT;
     return make_renderer(device(), scene, options);
@@ -88,7 +88,7 @@ TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
 }
 
 TEST_F(RendererTest, FewSamplesAreTracedBySinglePixels) {
-  // Of its own, so that nothing else has been compiled.
+  // This test opens its own device, on which nothing has been compiled.
   const gpu::DeviceHandle own = gpu::open_device();
   if (own->profile().pixel_packet_size == 1) GTEST_SKIP() << "the device takes no packets";
   const world::Scene scene = make_scene_of_everything();
@@ -108,7 +108,7 @@ TEST_F(RendererTest, FewSamplesAreTracedBySinglePixels) {
   EXPECT_EQ(compiled_by(many), 1U) << "not the camera stage by packets";
 }
 
-// Two ways to the same memory: the words of a storage buffer, and texels.
+// The same memory can be read in two ways: as words of a storage buffer, and as texels.
 TEST_F(RendererTest, TexelsAndStorageBuffersGiveTheSameBits) {
   constexpr uint64_t kEnough = uint64_t{1} << 26;
   if (device().profile().most_texel_bytes < kEnough) GTEST_SKIP() << "the device's texel buffers are too small";
@@ -165,7 +165,7 @@ TEST_F(RendererTest, BitsDoNotDependOnTheBuilder) {
   }
 }
 
-// The mask costs nothing but time: what a scene does not use changes no bit.
+// Features that a scene does not use cost only time, and change no bit.
 TEST_F(RendererTest, SpecialisationChangesNoBit) {
   world::Scene spheres = make_scene_of_everything();
   std::erase_if(spheres.objects,
@@ -220,7 +220,7 @@ TEST_F(RendererTest, CountsRays) {
   const RenderResult dull = render(scene, view);
   EXPECT_EQ(dull.rays.primary, 64U * 64U * 4U);
   EXPECT_EQ(dull.rays.reflection, 0U);
-  // Every hit faces the headlight, so each sends one shadow ray: the disk's share of the picture.
+  // Every hit faces the headlight and sends one shadow ray. Their number is the disk's fraction of the picture.
   const double radius = std::tan(std::asin(1.0 / 3.0)) / std::tan(0.35) * 32.0;
   EXPECT_NEAR(static_cast<double>(dull.rays.shadow), 3.14159 * radius * radius * 4.0, 150.0);
 
@@ -248,7 +248,7 @@ TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
 TEST_F(RendererTest, TheSkyIsBehindAllWhereItIsShown) {
   world::Scene scene;
   scene.materials.resize(1);
-  // Light that is the same from everywhere, so that any way to hold a sky has it.
+  // The light is the same from everywhere, so that every representation of a sky can hold it.
   const vec3 color(0.5F, 0.25F, 0.125F);
   scene.environment.ambient = color;
   scene.environment.sky = GradientSky{.top = color, .horizon = color, .bottom = color};
@@ -272,7 +272,7 @@ TEST_F(RendererTest, TheSkyIsBehindAllWhereItIsShown) {
   }
 }
 
-/// Mirrors that lose nothing and send 1/1024 each; sources that light neither of them.
+/// Returns mirrors that lose no light and send 1/1024 each, and sources that light neither mirror.
 world::Scene make_facing_mirrors(uint32_t light_count) {
   world::Scene scene;
   scene.materials.resize(1);
@@ -286,7 +286,7 @@ world::Scene make_facing_mirrors(uint32_t light_count) {
   return scene;
 }
 
-// Facing mirrors: each bounce multiplies by kr and the last brings nothing.
+// With facing mirrors each bounce multiplies by kr, and the last bounce adds nothing.
 TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
   world::Scene scene;
   scene.materials.resize(1);
@@ -305,13 +305,13 @@ TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
   }
 }
 
-// llvmpipe ends a lane's loops after 65535 turns: a lane traces one ray at a time.
+// llvmpipe ends a lane's loops after 65535 turns; therefore a lane traces one ray at a time.
 TEST_F(RendererTest, ManyBouncesAreTracedToTheEnd) {
   View view;
   view.size = uvec2(128, 144);
   view.max_depth = 100;
   TunedRendererOptions options;
-  options.target_dispatch_ms = 1e5;  // the second dispatch takes all that the first has left
+  options.target_dispatch_ms = 1e5;  // the second dispatch takes all that the first one has left
   const float expected = 101.0F / 1024.0F;
   const RenderResult result = make_renderer(device(), make_facing_mirrors(60), options).render(view);
   for (const vec3& pixel : result.image.pixels) ASSERT_EQ(pixel, vec3(expected));
@@ -325,8 +325,8 @@ TEST_F(RendererTest, TheGreatestDepthIsTracedWithManySources) {
   EXPECT_EQ(make_renderer(device(), make_facing_mirrors(60)).render(view).image.pixels[0], vec3(1001.0F / 1024.0F));
 }
 
-// A turn of the stream takes the shadow rays to at most STREAM_SOURCES: here they are fewer, as many, one more, and
-// several turns'.
+// A turn of the stream takes the shadow rays to at most STREAM_SOURCES sources. Here there are fewer, as many, one
+// more, and several turns of sources.
 TEST_F(RendererTest, AMirrorShowsWhatAnyNumberOfSourcesLights) {
   for (const uint32_t count : {1U, layout::STREAM_SOURCES, layout::STREAM_SOURCES + 1, 3 * layout::STREAM_SOURCES}) {
     SCOPED_TRACE(testing::Message() << count << " sources");
@@ -340,7 +340,7 @@ TEST_F(RendererTest, AMirrorShowsWhatAnyNumberOfSourcesLights) {
     }
     View view = test::make_view(uvec2(48, 32));
     view.max_depth = 4;
-    // It is the sum over the sources of what each gives alone, but for rounding.
+    // The picture is the sum of the pictures with each source alone, except for rounding.
     const RenderResult all = render(scene, view);
     EXPECT_GT(all.rays.reflection, 0U);
     world::Scene part = scene;
@@ -369,7 +369,7 @@ TEST_F(RendererTest, NothingNearerThanTheNearPlaneIsDrawn) {
   View view;
   view.size = uvec2(3, 3);
   view.camera.yfov = 2.0F;
-  view.camera.near = 1.999F;  // a distance along the view, not along the ray
+  view.camera.near = 1.999F;  // near is a distance along the view, not along the ray
   for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(1.0F));
   view.camera.near = 2.001F;
   for (const vec3& pixel : render(scene, view).image.pixels) EXPECT_EQ(pixel, vec3(0.0F));
@@ -381,7 +381,7 @@ TEST_F(RendererTest, PicturesLargerThanAFilmComeInBands) {
   scene.materials[0].emissive = vec3(1.0F, 0.5F, 0.25F);
   scene.objects = {{"", world::Sphere{vec3(0, 0, -3), 1.0F}, 0}};
   View view;
-  view.size = uvec2(2048, 2304);  // 4.7 million pixels; a film holds 4.2 million
+  view.size = uvec2(2048, 2304);  // the picture has 4.7 million pixels; a film holds 4.2 million
   view.max_depth = 0;
   const Image large = render(scene, view).image;
   for (uint32_t y = 0; y < view.size.y; y += 64) {

@@ -93,7 +93,7 @@ TEST_F(ShadingTest, NormalsAndDepthAreThoseOfTheAovs) {
   const Image depth = show(DebugView::kDepth);
   for (size_t i = 0; i < normals.pixels.size(); ++i) {
     ASSERT_EQ(normals.pixels[i], is_miss(i) ? vec3(0.0F) : 0.5F + 0.5F * aovs_.normal[i]) << i;
-    // Division may round its own way on a device.
+    // A device may round division in its own way.
     const float nearness = is_miss(i) ? 0.0F : size / (size + aovs_.depth[i]);
     ASSERT_NEAR(depth.pixels[i].x, nearness * nearness, 1e-6F) << i;
     ASSERT_EQ(depth.pixels[i], vec3(depth.pixels[i].x)) << i;
@@ -119,7 +119,7 @@ TEST_F(ShadingTest, ColorsTellObjectsAndPrimitivesApart) {
   }
   for (const auto& [id, colors] : of_object) EXPECT_EQ(colors.size(), 1U) << id;
   for (const auto& [id, colors] : of_primitive) EXPECT_EQ(colors.size(), 1U) << id.first << " " << id.second;
-  // Of 2^15 colours two may be the same.
+  // With 2^15 colours, two may be the same.
   EXPECT_GE(object_colors.size() + 1, of_object.size());
   EXPECT_GE(primitive_colors.size() + 1, of_primitive.size());
   EXPECT_GT(of_primitive.size(), of_object.size());
@@ -150,9 +150,9 @@ TEST_F(ShadingTest, UvAreTheHits) {
   EXPECT_GT(triangles, 1U);
 }
 
-// Against the counts of cast rays, and lighter with each step.
+// The heat map is compared with the counts of cast rays; more steps must be lighter.
 TEST_F(ShadingTest, StepsAreAHeatMapOfTheCounts) {
-  // With so many spheres steps reach beyond the scale's first half, where colours out of order would show.
+  // With so many spheres, the number of steps exceeds half of the scale, where a wrong order of colours would show.
   scene_ = test::make_scene_of_everything(5000);
   renderer_.emplace(make_renderer(device(), scene_));
   const Image picture = show(DebugView::kSteps);

@@ -32,7 +32,7 @@ Material make_mirror() {
   return material;
 }
 
-/// A row of balls, one for each material.
+/// Returns a row of balls, one for each material.
 world::Scene make_balls(const std::vector<Material>& materials) {
   world::Scene scene;
   scene.materials = materials;
@@ -51,7 +51,8 @@ View make_view(const vec3& eye, const vec3& look, const vec3& up, uvec2 size) {
   return view;
 }
 
-/// What is seen of the unit ball around the origin along an axis: the middle pixel, whose mirror ray comes back.
+/// Returns a view of the unit ball around the origin along an axis. The mirror ray of the middle pixel comes straight
+/// back.
 View look_from(const vec3& axis) {
   const vec3 up = axis.y == 0.0F ? vec3(0, 1, 0) : vec3(0, 0, 1);
   return make_view(5.0F * axis, -axis, up, uvec2(1));
@@ -74,7 +75,8 @@ struct Patch {
 constexpr Patch kPatches[] = {{{1, 0, 0}, {1, 0, 0}},  {{-1, 0, 0}, {0, 1, 1}}, {{0, 1, 0}, {0, 1, 0}},
                               {{0, -1, 0}, {1, 0, 1}}, {{0, 0, 1}, {0, 0, 1}},  {{0, 0, -1}, {1, 1, 0}}};
 
-/// A picture as a person would draw it: top and bottom rows, and in between what is behind, left, ahead, right.
+/// Returns a picture as a person would draw it: its rows are top and bottom, and between them are behind, left, ahead
+/// and right.
 Panorama make_patches() {
   return make_panorama({64, 32}, [](uint32_t x, uint32_t y) {
     if (y < 8) return kPatches[2].color;
@@ -86,7 +88,7 @@ Panorama make_patches() {
 
 class SkyPictureTest : public test::DeviceTest {
  protected:
-  /// By kernels that have the features of all scenes here.
+  /// Uses kernels that have the features of all scenes here.
   static Image render(const world::Scene& scene, const View& view) {
     using namespace layout;
     TunedRendererOptions options;
@@ -99,7 +101,7 @@ class SkyPictureTest : public test::DeviceTest {
   }
 };
 
-// A white metal in a white sky is not to be seen.
+// A white metal in a white sky is invisible.
 TEST_F(SkyPictureTest, AWhiteFurnaceIsWhite) {
   std::vector<Material> metals;
   for (const float roughness : kRoughnesses) metals.push_back(make_metal(roughness));
@@ -165,7 +167,7 @@ TEST_F(SkyPictureTest, CamerasSeeTheSkyWhereItIsShown) {
     scene.environment.shows_sky = false;
     EXPECT_EQ(render(scene, view).pixels[0], scene.environment.background);
     if (patch.axis.x <= 0.0F) continue;
-    // With all features, which take long to compile, once.
+    // This case has all features once, because they take long to compile.
     EXPECT_EQ(render_with(scene, view, forced).pixels[0], scene.environment.background);
   }
 }
@@ -197,7 +199,7 @@ TEST_F(SkyPictureTest, RotationAndIntensityAreSeen) {
   scene.environment.sky = make_patches();
   scene.environment.rotation = 0.5F * std::numbers::pi_v<float>;
   scene.environment.intensity = 4.0F;
-  // What was at +Z is at +X.
+  // What was at +Z is now at +X.
   EXPECT_LT(glm::distance(render(scene, look_from(vec3(1, 0, 0))).pixels[0], 4.0F * kPatches[4].color), 4e-3F);
   EXPECT_LT(glm::distance(render(scene, look_from(vec3(0, 0, -1))).pixels[0], 4.0F * kPatches[0].color), 4e-3F);
 }
@@ -218,20 +220,20 @@ TEST_F(SkyPictureTest, AmbientLightIsTheIrradiance) {
   }
 }
 
-// Between the levels, too, a rough metal shows the mean over its lobe.
+// Also between the levels, a rough metal shows the mean over its lobe.
 TEST_F(SkyPictureTest, RoughMetalsShowTheLevelBetween) {
   for (const float roughness : {0.45F, 0.6F, 0.8F, 1.0F}) {
     world::Scene scene = make_balls({make_metal(roughness)});
     scene.environment.sky = Studio{};
     const Image at_once = render(scene, look_from(vec3(0, 0, 1)));
-    // The same by hand: the levels at both sides.
+    // The test computes the same from the levels at both sides.
     const float lower = roughness < 0.6F ? 0.35F : 0.6F;
     const float upper = roughness < 0.6F ? 0.6F : 1.0F;
     const auto seen_at = [&](float r) {
       world::Scene level = scene;
       level.materials = {make_metal(r)};
       View view = look_from(vec3(0, 0, 1));
-      // No mirror ray, so that all comes from the level.
+      // There is no mirror ray, so that all light comes from the level.
       view.max_depth = 0;
       return render(level, view).pixels[0].x;
     };

@@ -15,17 +15,17 @@ namespace promin::test {
 struct SpirvModule {
   explicit SpirvModule(std::span<const uint32_t> words);
 
-  /// Byte offsets of the named struct's members, in order; every variant of the struct that carries offsets.
+  /// Returns byte offsets of the named struct's members, in order, for every variant of the struct that has offsets.
   std::vector<std::vector<uint32_t>> offsets_of(const std::string& struct_name) const;
 
   /// SpecId of each specialisation constant, by name.
   std::map<std::string, uint32_t> spec_ids;
-  /// Float additions, subtractions, products and quotients without NoContraction: "opcode in function".
+  /// Float additions, subtractions, products and quotients without NoContraction, each as "opcode in function".
   std::vector<std::string> contractible;
   uint32_t float_operation_count = 0;
-  /// glslang adds the parameters' types after a parenthesis, which are left out here.
+  /// Names of the functions, without the parenthesis and the parameters' types that glslang adds.
   std::set<std::string> functions;
-  /// Bindings by kind: storage buffer variables' distinct binding numbers.
+  /// Distinct binding numbers of the storage buffer variables.
   std::set<uint32_t> storage_bindings;
 
  private:

@@ -30,7 +30,7 @@ Material make_metallic_roughness(const vec3& color, float metallic, float roughn
   return material;
 }
 
-/// A coarse octahedron whose vertex normals make it look round, with a colour a vertex.
+/// Returns a coarse octahedron that looks round because of its vertex normals, with a colour for each vertex.
 Mesh make_smooth_mesh(const vec3& center, float radius) {
   Mesh mesh;
   for (const vec3& n : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)}) {
@@ -116,7 +116,7 @@ world::Scene make_scene_of_alpha() {
     const vec3 center(x, 1.3F, 3.0F + 0.2F * static_cast<float>(i));
     add(make_pane(center, 0.3F * static_cast<float>(i)),
         blending(scene.materials[i], 0.15F + 0.1F * static_cast<float>(i)));
-    // In the same place.
+    // The pane is in the same place as the last one.
     if (i == 2) add(make_pane(center, 0.6F), blending(scene.materials[4], 0.5F));
   }
   add(world::Sphere{vec3(0.6F, 1.4F, 2.6F), 0.5F}, blending(scene.materials[4], 0.3F));
@@ -165,23 +165,23 @@ world::Scene make_scene_of_glass() {
     material.model = model;
     return material;
   };
-  // One within another, and a bubble in it.
+  // One ball is inside another, and has a bubble in it.
   add(world::Sphere{vec3(-0.9F, 1.5F, 3.2F), 0.7F}, make_phong(1.5F, vec3(0.9F, 0.85F, 0.8F), 0.1F, false));
   add(world::Sphere{vec3(-0.8F, 1.6F, 3.2F), 0.4F}, make_phong(1.2F, vec3(0.9F), 0.05F, true));
   add(world::Sphere{vec3(-0.7F, 1.6F, 3.3F), 0.15F}, make_phong(1.0F, vec3(1.0F), 0.0F, false));
-  // Overlapping.
+  // These two solids overlap.
   Material flint = make_clear(1.5F, 0.9F, 1.0F, 0.0F, 0.5F);
   std::get<MetallicRoughness>(flint.model).dispersion = 0.6F;
   add(world::Sphere{vec3(0.7F, 1.5F, 3.0F), 0.5F}, flint);
   add(world::Sphere{vec3(1.2F, 1.6F, 3.1F), 0.45F}, make_clear(1.33F, 1.0F, 1.0F, 0.05F, 2.0F));
   add(world::Cylinder{vec3(1.9F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.3F}, make_phong(1.8F, vec3(0.8F), 1.0F, true));
   add(world::Cone{vec3(-2.0F, 0.7F, 3.0F), vec3(0, 1, 0), 0.6F, 0.5F, 0.1F}, make_clear(2.4F, 0.7F, 0.1F, 0.2F, 0.3F));
-  // Of one side, which volumes do not heed.
+  // The material has one side, which volumes ignore.
   Material gem = make_clear(1.5F, 1.0F, 1.0F, 0.0F, 1.0F);
   gem.is_double_sided = false;
   std::get<MetallicRoughness>(gem.model).dispersion = 2.0F;
   add(make_smooth_mesh(vec3(0.1F, 0.6F, 3.9F), 0.4F), gem);
-  // What blends within glass that absorbs.
+  // This surface blends within glass that absorbs.
   Mesh leaf;
   leaf.positions = {vec3(0.5F, 1.4F, 3.1F), vec3(0.75F, 1.35F, 3.2F), vec3(0.65F, 1.75F, 3.0F)};
   leaf.triangles = {{0, 1, 2}};
@@ -189,12 +189,12 @@ world::Scene make_scene_of_glass() {
   blending.alpha_mode = AlphaMode::kBlend;
   blending.alpha = 0.5F;
   add(leaf, blending);
-  // Thin.
+  // This pane is thin.
   Mesh pane;
   pane.positions = {vec3(-0.4F, 2.0F, 3.4F), vec3(1.6F, 2.1F, 3.5F), vec3(1.6F, 2.9F, 3.1F), vec3(-0.4F, 2.8F, 3.0F)};
   pane.triangles = {{0, 1, 2}, {0, 2, 3}};
   add(pane, make_clear(1.5F, 0.8F, 0.0F, 0.3F, 1.0F));
-  // A mirror that hangs on the angle, and lets nothing through.
+  // This mirror depends on the angle, and transmits no light.
   add(world::Sphere{vec3(-2.3F, 2.0F, 2.0F), 0.4F}, make_phong(1.6F, vec3(0.0F), 1.0F, true));
   return scene;
 }

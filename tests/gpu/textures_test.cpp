@@ -16,12 +16,12 @@
 namespace promin::test {
 namespace {
 
-/// IEC 61966-2-1.
+/// Decodes as in IEC 61966-2-1.
 double decode_srgb(double code) {
   return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
 }
 
-/// A board that is unlit, so that the picture shows the texture alone.
+/// Returns an unlit board, so that the picture shows only the texture.
 Scene make_textured_board(const TextureImage& image, const vec2& lo = vec2(0), const vec2& hi = vec2(1)) {
   Scene scene;
   scene.materials = {make_unlit(vec3(1.0F))};
@@ -82,7 +82,7 @@ TEST_F(TexturesTest, TexelsLieWhereTheyBelong) {
 }
 
 TEST_F(TexturesTest, EdgesRepeatMirrorOrHold) {
-  // Four texels along u, which goes from -2 to 3: 20 of them, each a pixel.
+  // The texture has four texels along u, which goes from -2 to 3: these are 20 texels, each a pixel.
   const struct {
     TextureWrap wrap;
     const char* row;
@@ -99,14 +99,15 @@ TEST_F(TexturesTest, EdgesRepeatMirrorOrHold) {
       const Image image = render(scene, view);
       std::string codes;
       for (int x = 0; x < 20; ++x) codes += static_cast<char>('0' + std::lround(255.0F * image.pixels[x].r / 60.0F));
-      // Pixels lie at the texels' middles, so both filters give the same.
+      // Pixel centres are texel centres, so both filters give the same.
       EXPECT_EQ(codes, row) << is_linear;
     }
   }
 }
 
 TEST_F(TexturesTest, BilinearBetweenTexels) {
-  // Of two texels, 0 and 1, clamped: u = 0 ... 1 gives 0 up to 1/4, 1 from 3/4 on, and a line between.
+  // The texture has two texels, 0 and 1, and clamps: for u = 0 ... 1 it gives 0 up to 1/4, 1 from 3/4 on, and a line
+  // between them.
   Scene scene = make_textured_board(make_image({2, 1}, [](uint32_t x, uint32_t) { return grey(255 * x); }));
   scene.textures[0].wrap_u = TextureWrap::kClampToEdge;
   const uint32_t width = 64;
@@ -118,13 +119,14 @@ TEST_F(TexturesTest, BilinearBetweenTexels) {
 }
 
 TEST_F(TexturesTest, SmallTexelsAreAveraged) {
-  // A checkerboard of 256 texels a side in 16 pixels: each covers 16 * 16 of them, light and dark alike.
+  // A checkerboard of 256 x 256 texels is seen in 16 x 16 pixels: each pixel covers 16 * 16 texels, as many light as
+  // dark ones.
   const TextureImage checkers = make_image(
       {256, 256}, [](uint32_t x, uint32_t y) { return grey((x + y) % 2 == 0 ? 255 : 0); }, ImageUse::kColor);
   Scene scene = make_textured_board(checkers);
   for (const uint32_t samples : {1U, 4U}) {
     const Image image = render(scene, make_board_view({16, 16}, samples));
-    // The code of one half is 188, of which this is the light.
+    // The code of 1/2 is 188, and this is its light.
     for (const vec3& pixel : image.pixels) EXPECT_NEAR(static_cast<double>(pixel.r), decode_srgb(188 / 255.0), 1e-4);
   }
   scene.textures[0].has_levels = false;
@@ -135,7 +137,7 @@ TEST_F(TexturesTest, SmallTexelsAreAveraged) {
 }
 
 TEST_F(TexturesTest, TheLevelFollowsTheDistance) {
-  // A texture of noise fades to its mean where texels are smaller than pixels.
+  // A texture of noise fades to its mean if texels are smaller than pixels.
   const TextureImage noise = make_image(
       {64, 64}, [](uint32_t x, uint32_t y) { return grey(((x * 2654435761U) ^ (y * 2246822519U)) >> 13 & 255); });
   const auto contrast = [&](float distance, const std::function<void(Scene&)>& change) {
@@ -155,13 +157,13 @@ TEST_F(TexturesTest, TheLevelFollowsTheDistance) {
     return most - least;
   };
   const auto nothing = [](Scene&) {};
-  // The square fills the picture from any distance, so a pixel covers as many texels.
+  // The square fills the picture from any distance, so a pixel always covers the same number of texels.
   EXPECT_NEAR(contrast(2.0F, nothing), contrast(100.0F, nothing), 0.02);
   const auto without_levels = [](Scene& scene) { scene.textures[0].has_levels = false; };
   EXPECT_GT(contrast(2.0F, without_levels), contrast(2.0F, nothing) + 0.1);
 }
 
-/// A metallic-roughness board with the studio's absence made up for by one light from the upper left.
+/// Returns a metallic-roughness board that is lit by one light from the upper left in place of the studio.
 Scene make_lit_board(const TextureImage& image) {
   Scene scene = make_textured_board(image);
   MetallicRoughness material;
@@ -186,7 +188,7 @@ TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
   const float dimmed_alone = center();
   material.occlusion_texture = {};
   const float open_alone = center();
-  // A fifth of the environment is left, and all of the source.
+  // A fifth of the environment's light is left, and all of the source's.
   EXPECT_NEAR(dimmed_alone, 0.2F * open_alone, 1e-6F);
   EXPECT_NEAR(dimmed - dimmed_alone, open - open_alone, 1e-6F);
   scene.materials[0].model = [&] {
@@ -199,7 +201,7 @@ TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
 }
 
 TEST_F(TexturesTest, PhongMaterialsHaveFactorsToo) {
-  // Red is a fifth, green and blue are whole.
+  // Red is a fifth; green and blue are 1.
   const auto shaded = [&](const std::function<void(Phong&)>& change) {
     Scene scene = make_lit_board(make_image({1, 1}, [](uint32_t, uint32_t) { return 0xFFFFFF33U; }));
     scene.environment.background = vec3(1.0F);
@@ -225,7 +227,7 @@ TEST_F(TexturesTest, PhongMaterialsHaveFactorsToo) {
   EXPECT_GT(whole.r, matt.r + 0.6F);
   EXPECT_NEAR(part.r - matt.r, 0.2F * (whole.r - matt.r), 1e-6F);
   EXPECT_EQ(part.g, whole.g);
-  // The texel leans towards -u and -v, which goes up here.
+  // The texel's normal leans towards -u and -v; -v goes up here.
   const vec3 turned = shaded([](Phong& phong) { phong.normal_texture.texture = 0; });
   const vec3 to_light = glm::normalize(vec3(-1, 1, 1));
   const vec3 normal = glm::normalize(vec3(-0.6F, -1.0F, 1.0F));
@@ -233,7 +235,7 @@ TEST_F(TexturesTest, PhongMaterialsHaveFactorsToo) {
 }
 
 TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
-  // What lies below sends nothing.
+  // A light below the surface adds nothing.
   uint32_t texel = 0xFFFF80C0U;
   const auto shaded = [&](const std::function<void(MetallicRoughness&)>& change) {
     Scene scene = make_lit_board(make_image(
@@ -254,13 +256,13 @@ TEST_F(TexturesTest, ACoatHasItsOwnNormalAndFactors) {
   EXPECT_NEAR(shaded([](MetallicRoughness& m) { m.clearcoat_texture.texture = 0; }), bare * 192.0F / 255.0F, 1e-6F);
   const float smoother = shaded([](MetallicRoughness& m) { m.clearcoat_roughness = 0.5F * 128.0F / 255.0F; });
   EXPECT_NEAR(shaded([](MetallicRoughness& m) { m.clearcoat_roughness_texture.texture = 0; }), smoother, 1e-6F);
-  // Turned away from the light, to +x and -y.
+  // The normal is turned away from the light, to +x and -y.
   texel = 0xFF90FFFFU;
   EXPECT_EQ(shaded([](MetallicRoughness& m) { m.normal_texture.texture = 0; }), bare);
 }
 
 TEST_F(TexturesTest, ASheenHasItsOwnFactors) {
-  // Roughness is in alpha.
+  // Alpha holds the roughness.
   const auto shaded = [&](const vec3& color, float roughness, const std::function<void(MetallicRoughness&)>& change) {
     Scene scene = make_lit_board(make_image(
         {1, 1}, [](uint32_t, uint32_t) { return 0x60FF8000U; }, ImageUse::kData));
@@ -304,7 +306,7 @@ TEST_F(TexturesTest, WhatADielectricReflectsHasFactors) {
   const vec3 colored = shaded([](MetallicRoughness& m) { m.specular_color = vec3(0.0F, kHalf, 1.0F); });
   EXPECT_LT(colored.r, 0.9F * colored.b);
   EXPECT_TRUE(near(shaded([](MetallicRoughness& m) { m.specular_color_texture.texture = 0; }), colored));
-  // What is above 1 is cut only after the texture.
+  // Values above 1 are cut only after the texture.
   const vec3 strong = shaded([](MetallicRoughness& m) { m.specular_color = vec3(0.0F, 40.0F * kHalf, 40.0F); });
   EXPECT_TRUE(near(shaded([](MetallicRoughness& m) {
                      m.specular_color = vec3(40.0F);
@@ -314,7 +316,8 @@ TEST_F(TexturesTest, WhatADielectricReflectsHasFactors) {
 }
 
 TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {
-  // +X of the texture goes along +u, +Y against +v, as images have their first row at v = 0; the board's v goes up.
+  // The texture's +X goes along +u. Its +Y goes against +v, as images have their first row at v = 0; on the board v
+  // goes up.
   const auto shaded = [&](uint32_t texel, bool has_tangents, float turn) {
     Scene scene = make_lit_board(make_image(
         {1, 1}, [&](uint32_t, uint32_t) { return texel; }, ImageUse::kNormal));
@@ -324,12 +327,12 @@ TEST_F(TexturesTest, ANormalTextureTurnsTheNormal) {
     if (texel != 0) std::get<MetallicRoughness>(scene.materials[0].model).normal_texture.texture = 0;
     return render(scene, make_board_view({8, 8})).pixels[27].r;
   };
-  // x = 204 / 255 * 2 - 1 = 0.6, z = 0.8.
+  // The normal has x = 204 / 255 * 2 - 1 = 0.6 and z = 0.8.
   const uint32_t to_the_right = 204 | 127 << 8 | 230 << 16;
   for (const bool has_tangents : {false, true}) {
     EXPECT_NEAR(shaded(to_the_right, has_tangents, 0.0F), shaded(0, false, 0.6F), 0.01F);
     EXPECT_LT(shaded(to_the_right, has_tangents, 0.0F), shaded(0, false, 0.0F) - 0.05F);
-    // Green points up in the picture's space, down along v here: away from the light above.
+    // Green points up in the picture's space, which is down along v here: away from the light above.
     const uint32_t along_green = 127 | 204 << 8 | 230 << 16;
     EXPECT_LT(shaded(along_green, has_tangents, 0.0F), shaded(0, false, 0.0F) - 0.05F);
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kRays = 50'000;
 
-/// Chords of a ball around the unit cube.
+/// Returns chords of a ball around the unit cube.
 std::vector<layout::RayRecord> make_chords() {
   std::mt19937 generator(2);
   const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
@@ -60,7 +60,7 @@ class TreeSteps : public test::DeviceTest {
   }
 };
 
-// The tree that the offline builder is for, against the default.
+// The tree of the offline builder is compared with the default builder's.
 TEST_F(TreeSteps, SpatialSplitsTakeFewerStepsThroughPipesToTheSameHits) {
   world::Scene scene;
   scene.materials.resize(1);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"), beside lit ones, through what blends
-// and in a mirror.
+// These tests check what the camera sees of unlit surfaces (Aovs::unlit; docs/model.md, "Unlit"): beside lit ones,
+// through blending ones and in a mirror.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 const vec3 kColor(0.25F, 0.5F, 0.75F);
 constexpr uint32_t kStripes = 5;
 
-/// A stripe of the board that fills the picture, `index` from the left.
+/// Adds a stripe to the board that fills the picture; `index` counts from the left.
 void add_stripe(Scene& scene, uint32_t index, float z, const Material& material) {
   Mesh board = make_board(z);
   for (vec3& position : board.positions) {
@@ -33,8 +33,8 @@ Material make_lit(AlphaMode mode = AlphaMode::kOpaque, float alpha = 1.0F) {
   return material;
 }
 
-/// From the left: unlit, lit, unlit behind a quarter of what is lit, lit behind a quarter of what is unlit, and a
-/// mirror of what is unlit.
+/// Returns stripes, from the left: unlit, lit, unlit behind a quarter of a lit surface, lit behind a quarter of an
+/// unlit surface, and a mirror of an unlit surface.
 Scene make_stripes() {
   Scene scene;
   add_stripe(scene, 0, 0.0F, make_unlit(kColor));
@@ -51,7 +51,7 @@ Scene make_stripes() {
   return scene;
 }
 
-/// A view that the stripes fill from left to right.
+/// Returns a view that the stripes fill from left to right.
 View make_stripes_view(const uvec2& size, uint32_t samples = 1) {
   View view = make_board_view(size, samples);
   view.camera.ymag = static_cast<float>(size.y) / static_cast<float>(size.x);
@@ -96,7 +96,7 @@ TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
       EXPECT_EQ(shown[0], kColor);
       EXPECT_EQ(shown[1], apply(display, result.image.pixels[1]));
       EXPECT_EQ(shown[4], apply(display, result.image.pixels[4]));
-      // The light on what blends is that of the stripe beside; shadows fall through it.
+      // The light on the blending surface is that on the stripe beside it; shadows go through it.
       const vec3 lit = apply(display, result.image.pixels[1]);
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(shown[2][c], 0.75F * kColor[c] + 0.25F * lit[c], 1e-5F * (1.0F + lit[c]));
@@ -105,14 +105,14 @@ TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
   }
 }
 
-// Edges through all pixels: 3 for 5 stripes.
+// Edges go through all pixels: 3 pixels show 5 stripes.
 TEST_F(UnlitTest, EdgesCountByTheirShare) {
   View view = make_stripes_view(uvec2(3, 2), 16);
   const RenderResult result = trace(view);
   EXPECT_NEAR(result.aovs.unlit[0].w, 0.6F, 0.1F);
   const vec4 expected = result.aovs.unlit[0].w * vec4(kColor, 1.0F);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(result.aovs.unlit[0][c], expected[c], 1e-6F);
-  // Packets change no bit, and the picture is the same if the share is not requested.
+  // Packets change no bit, and the picture is the same if the fraction is not requested.
   TunedRendererOptions single;
   single.packet_size = 1;
   const RenderResult same = trace(view, single);

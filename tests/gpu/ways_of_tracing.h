@@ -10,7 +10,7 @@
 namespace promin::test {
 
 /// Options that change how a picture is traced, but none of its bits: without texel buffers, with packets and pieces of
-/// other sizes, with the trees of all builders. Packets of 2 are for thorough tests and RendererTest, because their
+/// other sizes, with the trees of all builders. Only thorough tests and RendererTest use packets of 2, because their
 /// kernels take as long to compile as those of 4.
 inline std::vector<TunedRendererOptions> ways_of_tracing() {
   std::vector<TunedRendererOptions> ways(1);

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the renderer's secondary rays would start: for each ray that hits, a record of
+// Computes the start of the renderer's secondary rays, with the renderer's own code. Writes a record for each ray:
 //   a  bits of the lifted origin; bits of the lift
 //   b  bits of the mirror direction; the primitive's number in order, NO_ORDER on a miss
-// by the renderer's own code.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -17,18 +17,18 @@ namespace promin::hard {
 struct Bounce {
   bool is_hit = false;
   PrimitiveId id;
-  /// `lift` above the surface, on the side that the ray comes from.
+  /// The ray's start, `lift` above the surface on the side that the ray comes from.
   vec3 origin{0.0F};
   float lift = 0.0F;
   vec3 mirrored{0.0F};
 };
 
-/// The renderer's secondary rays in a scene: its own lift and mirror direction, by tests/hard/bounce.comp.
+/// Makes the renderer's secondary rays in a scene, with its own lift and mirror direction (tests/hard/bounce.comp).
 class Bouncer {
  public:
   Bouncer(const gpu::Device& device, const world::Scene& scene);
 
-  /// One for each ray.
+  /// Returns one bounce for each ray.
   std::vector<Bounce> bounce(std::span<const Ray> rays);
 
  private:

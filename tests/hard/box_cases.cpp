@@ -12,7 +12,8 @@
 namespace promin::hard {
 namespace {
 
-/// Adds an axis-aligned rectangle as two triangles: across `axis`, at `low` + (2 size along it if `is_high`).
+/// Adds an axis-aligned rectangle as two triangles. It is perpendicular to `axis`, at `low`, or at `low` + 2 size along
+/// the axis if `is_high`.
 void add_quad(Mesh& mesh, const dvec3& low, double size, int axis, bool is_high) {
   dvec3 right(0.0);
   dvec3 up(0.0);
@@ -26,7 +27,7 @@ void add_quad(Mesh& mesh, const dvec3& low, double size, int axis, bool is_high)
   mesh.triangles.emplace_back(first, first + 2, first + 3);
 }
 
-/// Where an axis-aligned box begins, and its edge.
+/// The lowest corner of an axis-aligned box, and the length of its edge.
 struct Block {
   dvec3 low;
   double size;
@@ -44,11 +45,11 @@ BlockScene make_blocks(double offset, Random& random) {
   std::vector<world::Shape> shapes;
   for (int i = 0; i < 48; ++i) {
     const dvec3 cell(i % 4, (i / 4) % 4, i / 16);
-    // Odd fractions, which rounding moves.
+    // These odd fractions are changed by rounding.
     const Block block{dvec3(offset, -offset, offset) + 1.7 * cell + 0.3 * random.uniform(),
                       1.0 + 0.3 * random.uniform()};
     if (i % 3 == 2) {
-      // Sphere and block in fp32, so that they touch where they are said to.
+      // Sphere and block are computed in fp32, so that they really touch.
       const float radius = 0.5F * static_cast<float>(block.size);
       shapes.emplace_back(world::Sphere{vec3(block.low + 0.5 * block.size), radius});
     } else {
@@ -66,7 +67,8 @@ BlockScene make_blocks(double offset, Random& random) {
   return result;
 }
 
-/// At corners, edges and middles of the sides, exactly or a few roundings beside them; every fourth along an edge.
+/// Returns a ray at corners, edges and middles of the sides, exactly or a few roundings beside them; every fourth ray
+/// goes along an edge.
 Ray ray_at_block(const Block& block, double distance, Random& random, size_t index) {
   dvec3 target = block.low;
   for (int axis = 0; axis < 3; ++axis) target[axis] += block.size * std::floor(3.0 * random.uniform()) * 0.5;
@@ -123,7 +125,7 @@ void run_axis_parallel(Lab& lab) {
       const Block& block = blocks.blocks[i % blocks.blocks.size()];
       Ray ray{vec3(0.0F), 0.0F, vec3(0.0F), std::numeric_limits<float>::infinity()};
       for (int axis = 0; axis < 3; ++axis) {
-        // On a side's plane, in the middle between two, or off them.
+        // The plane is that of a side, lies in the middle between two, or elsewhere.
         const double place = i % 2 == 0 ? std::floor(3.0 * random.uniform()) * 0.5 : random.uniform(-0.5, 1.5);
         ray.origin[axis] = static_cast<float>(block.low[axis] + block.size * place);
         constexpr std::array kSteps{0.0F, 1e-39F, 1e-30F, 1.0F};

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no numbers for what is not finite.
+/// Returns a text for a number that is not finite, because JSON has no number for it.
 Json number_of(double figure) {
   if (std::isnan(figure)) return "nan";
   if (std::isinf(figure)) return figure > 0.0 ? "inf" : "-inf";
@@ -41,7 +41,7 @@ Json json_of(const PrimitiveFigures& primitive) {
           {"leaks", primitive.leaks}};
 }
 
-/// Names of the tests that failed, such as "Row24_DegenerateTriangles".
+/// Returns the names of the tests that failed, such as "Row24_DegenerateTriangles".
 Json list_failed() {
   Json names = Json::array();
   const testing::UnitTest& all = *testing::UnitTest::GetInstance();
@@ -56,7 +56,7 @@ Json list_failed() {
   return names;
 }
 
-/// Writes the figures when all tests have run.
+/// Writes the figures after all tests have run.
 class FigureWriter : public testing::Environment {
  public:
   void TearDown() override {

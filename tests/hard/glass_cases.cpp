@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Refracted rays, one by one as the renderer explains them, against closed forms in long double.
+// These cases compare refracted rays, one by one as the renderer explains them, with closed forms in long double.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using oracle::Vector;
 
 constexpr Real kU = kUnitRoundoff;
 
-/// Glass that lets all through, without Fresnel's factor: a mirror ray leads on where it reflects totally alone.
+/// Returns glass that transmits all light, without Fresnel's factor: a mirror ray goes on only after total reflection.
 Material clear_glass(float ior) {
   Phong phong;
   phong.ambient = phong.diffuse = vec3(0.0F);
@@ -47,7 +47,8 @@ class GlassScene {
   world::Scene scene_;
 };
 
-/// The rays of a sample that begins at `origin` along `direction`, which is rounded: read it of the first.
+/// Returns the rays of a sample that begins at `origin` along `direction`. The direction is rounded; the first ray has
+/// the rounded one.
 class GlassTracer {
  public:
   GlassTracer(const Lab& lab, const GlassScene& scene) : renderer_(make_renderer(lab.device(), scene.scene())) {}
@@ -73,12 +74,12 @@ Vector direction_of(const ExplainedRay& ray) {
   return glm::normalize(Vector(ray.ray.direction));
 }
 
-/// By how much the sine of an angle beyond a face moves with that before it, where its cosines are these.
+/// Returns how much the sine of an angle beyond a face changes with the sine of the angle before it, at these cosines.
 Real spread_of(Real from, Real to, Real cosine, Real cosine_beyond) {
   return from * cosine / (to * std::max(cosine_beyond, Real(1e-9L)));
 }
 
-/// A ray that goes through a sphere is turned by 2 (i - r), in the plane of its centre.
+/// A ray through a sphere is turned by 2 (i - r), in the plane of the ray and the centre.
 void run_spheres(Lab& lab) {
   Random random(45);
   const vec3 center(0.3F, -0.2F, 0.1F);
@@ -105,7 +106,7 @@ void run_spheres(Lab& lab) {
         const Real turn = 2 * (std::asin(b) - std::asin(b / Real(ior)));
         const Vector inward = b > 0 ? -nearest / b : Vector(0);
         const Vector expected = std::cos(turn) * d + std::sin(turn) * inward;
-        // The place of the hit is off by u S / cos i along the sphere, and so is its normal.
+        // The error of the hit's place is u S / cos i along the sphere, and so is that of its normal.
         const Real scale = glm::length(origin) + 2 + glm::length(Vector(center));
         const Real unit = kU * scale / std::sqrt(std::max(1 - b * b, Real(1e-6L)));
         worst = std::max(worst, glm::distance(direction_of(rays[2]), expected) / unit);
@@ -117,8 +118,8 @@ void run_spheres(Lab& lab) {
   }
 }
 
-/// A slab of thickness d keeps a ray's direction and shifts it by d sin(i - r) / cos r. Each face's lift shifts it,
-/// too.
+/// A slab of thickness d keeps a ray's direction and shifts the ray by d sin(i - r) / cos r. Each face's lift shifts
+/// it, too.
 void run_slabs(Lab& lab) {
   Random random(46);
   for (const double thickness : {1e-3, 1.0}) {
@@ -159,8 +160,8 @@ void run_slabs(Lab& lab) {
   }
 }
 
-/// From within glass, next to the angle from which on nothing leaves it, and into it at grazing angles, where that is
-/// the angle inside.
+/// From within glass, rays go close to the critical angle, beyond which no light leaves it. Rays into the glass have
+/// grazing angles, for which the angle inside is the critical one.
 void run_critical_angles(Lab& lab) {
   constexpr float kIor = 1.5F;
   GlassScene scene;
@@ -174,7 +175,7 @@ void run_critical_angles(Lab& lab) {
       const auto rays = tracer.follow(dvec3(-0.5, 0.2, 0.1), dvec3(sine, std::sqrt(1.0 - sine * sine), 0.0), 1);
       const Vector d = direction_of(rays[0]);
       const Real beyond2 = 1 - Real(kIor) * Real(kIor) * (1 - d.y * d.y);
-      // Nearer to it than that rounding decides.
+      // The angle is so near to the critical one that rounding decides.
       if (rays.size() != 2 || std::abs(beyond2) < 16 * kU) {
         wrong += rays.size() != 2 ? 1 : 0;
         continue;
@@ -216,14 +217,14 @@ void run_wedges(Lab& lab) {
     GlassScene scene;
     scene.add(mesh, 1.5F);
     GlassTracer tracer(lab, scene);
-    // The faces as the mesh has them.
+    // The angle is that of the mesh's faces.
     const Real a = std::atan(Real(x));
     const Real incidence = std::asin(1.5L * std::sin(a));
     const auto climb = static_cast<double>(incidence - a);
     const dvec3 along(std::cos(climb), std::sin(climb), 0.0);
     const auto rays = tracer.follow(dvec3(-0.25 * static_cast<double>(x), 0.5, 0.1) - along, along);
     const Vector d = direction_of(rays[0]);
-    // Near the symmetric way the turn is at its least, so that of the rounded ray is the same.
+    // Near the symmetric path the turn has its minimum, so the rounded ray has the same turn.
     const Real turn = 2 * incidence - 2 * a;
     const Vector expected(d.x * std::cos(turn) + d.y * std::sin(turn), d.y * std::cos(turn) - d.x * std::sin(turn),
                           d.z);
@@ -233,7 +234,7 @@ void run_wedges(Lab& lab) {
   }
 }
 
-/// Fifty times reflected totally between the sides of a bar: the way is that of a straight line, folded.
+/// A ray is totally reflected fifty times between the sides of a bar: its path is a folded straight line.
 void run_light_guide(Lab& lab) {
   GlassScene scene;
   scene.add(world::Box{vec3(0.0F), vec3(200.0F, 1.0F, 1.0F), vec3(0.0F)}, 1.5F);
@@ -246,7 +247,7 @@ void run_light_guide(Lab& lab) {
   for (size_t i = 1; i < rays.size() && reflections < 50; ++i, ++reflections) {
     const Vector now = direction_of(rays[i]);
     turned = std::max(turned, glm::distance(glm::abs(now), glm::abs(d)));
-    // Unfolded: y and z of the straight line, by the way in x.
+    // The unfolded path is a straight line: its y and z are functions of the distance in x.
     const Vector at(rays[i].ray.origin);
     const Real way = (at.x - Real(rays[0].ray.origin.x)) / d.x;
     for (const int axis : {1, 2}) {
@@ -257,12 +258,12 @@ void run_light_guide(Lab& lab) {
   }
   lab.expect_at_most("50 less total reflections in a bar", 0.0, 50.0 - static_cast<double>(reflections));
   lab.expect_at_most("direction after 50 total reflections / u", 128.0, static_cast<double>(turned / kU));
-  // Each begins off its face by the lift.
+  // Each ray begins off its face by the lift.
   lab.expect_at_most("place after 50 total reflections / (u S), of each", 16.0,
                      static_cast<double>(moved / (50 * kU * 200)));
 }
 
-/// The same rays by the oracle: its hits, its faces, on and on.
+/// Returns the direction behind the solids of the same ray, traced with the oracle's hits and faces.
 Vector direction_behind(const world::Scene& scene, oracle::Ray ray) {
   oracle::Media media;
   for (int step = 0; step < 64; ++step) {
@@ -284,7 +285,7 @@ Vector direction_behind(const world::Scene& scene, oracle::Ray ray) {
   return glm::normalize(ray.direction);
 }
 
-/// Solids that touch, overlap, lie within one another or far from the origin.
+/// Checks solids that touch, overlap, lie inside one another or far from the origin.
 void run_solids(Lab& lab, const std::string& name, const GlassScene& scene, const vec3& center, Random& random) {
   GlassTracer tracer(lab, scene);
   std::vector<double> errors;
@@ -297,7 +298,7 @@ void run_solids(Lab& lab, const std::string& name, const GlassScene& scene, cons
     const Real error = glm::distance(direction_of(rays.back()), direction_behind(scene.scene(), first));
     errors.push_back(static_cast<double>(error / (kU * scale)));
   }
-  // Each face adds its own, and where total reflection is near much more: of few rays.
+  // Each face adds its own error. A few rays near total reflection have a much larger one.
   std::sort(errors.begin(), errors.end());
   lab.expect_at_most("direction behind " + name + " / (u S), of 3 in 4 rays", 64.0, errors[errors.size() * 3 / 4]);
   lab.note("the same, of 9 in 10", errors[errors.size() * 9 / 10]);
@@ -321,8 +322,8 @@ void run_nested(Lab& lab) {
   run_solids(lab, "a lens of spheres at 1e5 from the origin", lens, far, random);
 }
 
-/// Two blocks that share a face, in either order: a ray goes from one into the other as if air were between, which
-/// leaves its direction inside as Snell's law of the two, and behind both as before.
+/// Two blocks share a face, and come in either order. A ray goes from one into the other as if air were between them.
+/// Its direction in the second block is then that of Snell's law for the two; behind both it is as before.
 void run_coincident_faces(Lab& lab) {
   for (const bool is_second_first : {false, true}) {
     const world::Box lower{vec3(0, -0.5F, 0), vec3(2.0F, 0.5F, 2.0F), vec3(0.0F)};
@@ -341,7 +342,7 @@ void run_coincident_faces(Lab& lab) {
       const auto rays = tracer.follow(dvec3(-0.3, 1.5, 0.1), dvec3(std::sin(angle), -std::cos(angle), 0.0));
       const Vector d = direction_of(rays[0]);
       worst = std::max(worst, glm::distance(direction_of(rays.back()), d));
-      // Of the way in the lower block.
+      // The direction is that in the lower block.
       const Vector inside = direction_of(rays[rays.size() - 2]);
       if (rays.size() != 5 && rays.size() != 4) ++wrong;
       if (std::abs(inside.x - d.x / 1.33L) > 16 * kU) ++wrong;
@@ -352,7 +353,7 @@ void run_coincident_faces(Lab& lab) {
   }
 }
 
-/// The unit sphere as a mesh of 8 * 4^level triangles with its normals; its longest edge.
+/// The unit sphere as a mesh of 8 * 4^level triangles with normals, and the length of its longest edge.
 struct MeshSphere {
   Mesh mesh;
   Real longest_edge = 0;
@@ -362,7 +363,7 @@ MeshSphere make_mesh_sphere(int level) {
   MeshSphere sphere;
   const uint32_t steps = 1U << static_cast<uint32_t>(level);
   Mesh& mesh = sphere.mesh;
-  // Faces of an octahedron, cut alike and moved out to the sphere.
+  // The faces of an octahedron are all cut in the same way and moved out to the sphere.
   for (int face = 0; face < 8; ++face) {
     const dvec3 signs((face & 1) != 0 ? -1 : 1, (face & 2) != 0 ? -1 : 1, (face & 4) != 0 ? -1 : 1);
     const bool is_turned = signs.x * signs.y * signs.z < 0;
@@ -393,8 +394,8 @@ MeshSphere make_mesh_sphere(int level) {
   return sphere;
 }
 
-/// A mesh with a sphere's normals bends light as the sphere does, but for how far its triangles lie below that: a
-/// quarter with edges half as long.
+/// A mesh with a sphere's normals bends light as the sphere does, except that its triangles lie below the sphere. With
+/// edges half as long this error is a quarter.
 void run_mesh_spheres(Lab& lab) {
   GlassScene exact;
   exact.add(world::Sphere{vec3(0.0F), 1.0F}, 1.5F);
@@ -428,7 +429,8 @@ void run_mesh_spheres(Lab& lab) {
   }
 }
 
-/// A ball of glass without colour in the same light from everywhere sends as much, whatever goes on within.
+/// Under the same light from everywhere, a ball of glass without colour sends as much light as it gets, whatever
+/// happens inside.
 void run_furnace(Lab& lab) {
   for (const float ior : {1.1F, 1.5F, 2.4F}) {
     world::Scene scene;

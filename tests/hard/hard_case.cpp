@@ -25,7 +25,8 @@
 namespace promin::hard {
 namespace {
 
-/// The kernel `name`.spv of the folder that PROMIN_TEST_KERNELS names, for tests of the tests; else promin's own.
+/// Returns the kernel `name`.spv of the folder that PROMIN_TEST_KERNELS names, for tests of the tests; otherwise
+/// promin's own kernel.
 std::vector<uint32_t> load_kernel(const char* name, std::span<const uint32_t> own) {
   const char* folder = std::getenv("PROMIN_TEST_KERNELS");
   if (folder == nullptr) return {own.begin(), own.end()};
@@ -90,7 +91,7 @@ Tally Tally::without_t_errors() const {
 }
 
 double Lab::rounding_factor() const {
-  // On the CPU they are the processor's own.
+  // On a CPU device, divisions and roots are the processor's own.
   return gpu::info_of(device_).type == "CPU" ? 1.0 : 2.0;
 }
 
@@ -121,7 +122,7 @@ Tally Lab::cast_and_judge(const world::Scene& scene, std::span<const Ray> rays) 
 void Lab::expect_at_most(const std::string& what, double bound, double figure) const {
   std::printf("row %02d | %-58s | bound %-9.4g | %.4g\n", row_, what.c_str(), bound, figure);
   figures().rows.push_back({row_, what, bound, figure});
-  // Written so that NaN fails.
+  // This form of the comparison fails for NaN.
   EXPECT_TRUE(figure <= bound) << "row " << row_ << ", " << what << ": " << figure << " is beyond " << bound;
 }
 
@@ -141,7 +142,7 @@ std::vector<layout::HitRecord> Lab::cast_packed(const PackedScene& packed, Featu
   RayKernelOptions options;
   options.spirv = cast_kernel();
   options.features = features;
-  // Without boxes a ray takes so long that dispatches of the usual length would hold few, and mostly wait.
+  // Without boxes a ray takes so long that a dispatch of the usual length would hold few rays and mostly wait.
   options.target_dispatch_ms = 250.0;
   RayKernel kernel(device_, upload_scene(device_, packed), options);
   std::vector<layout::RayRecord> requests;
@@ -174,7 +175,7 @@ std::string label(const char* what, double value) {
 }
 
 PackedScene with_infinite_boxes(PackedScene packed) {
-  // From -2^127 in 255 steps of 2^120 on every axis.
+  // The boxes start at -2^127 and have 255 steps of 2^120 on every axis.
   const uint32_t origin = std::bit_cast<uint32_t>(-0x1p127F);
   for (layout::Node& node : packed.nodes) {
     node.frame = uvec4(origin, origin, origin, (node.frame.w & 0xFF000000) | 0xF7F7F7);

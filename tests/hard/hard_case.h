@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The hard cases of ray tracing in floating point, each with the bound that it must meet, through the device.
+// The hard cases of ray tracing in floating point. Each runs on the device and has a bound that it must meet.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct HardCase {
 
 std::ostream& operator<<(std::ostream& out, const HardCase& hard_case);
 
-/// Each file's rows.
+/// The rows of each file.
 std::span<const HardCase> sphere_cases();
 std::span<const HardCase> plane_cases();
 std::span<const HardCase> solid_cases();
@@ -56,18 +56,20 @@ std::span<const HardCase> glass_cases();
 /// The errors of the answers to many rays, compared with the oracle, in units of u S (docs/glossary.md).
 struct Tally {
   uint64_t rays = 0;
-  /// Number of rays compared with the oracle. All members below refer to these, except for rays that slip through.
+  /// The number of rays compared with the oracle. All members below count only these rays, except for rays that slip
+  /// through.
   uint64_t judged = 0;
-  /// Both the device and the oracle tell of the same hit.
+  /// Rays for which the device and the oracle have the same hit.
   uint64_t hits = 0;
-  /// The oracle has a hit, the device none.
+  /// Rays that hit in the oracle and miss on the device.
   uint64_t misses = 0;
   /// The largest |dt| |d| cos / (u S) of the hits: B1.
   double max_t_error = 0.0;
   double sum_t_error2 = 0.0;
-  /// The largest distance of o + t d from the surface / (u S) of all hits on analytic shapes: BK.
+  /// The largest distance of o + t d from the surface, over u S, of all hits on analytic shapes: BK.
   double max_surface_error = 0.0;
-  /// Another id, or one of them a miss; and how far from an edge or silhouette the worst of these passes: B2.
+  /// Rays for which device and oracle have different ids, or only one has a hit. The next member is the largest
+  /// distance of such a ray from an edge or silhouette: B2.
   uint64_t misclassified = 0;
   double max_margin = 0.0;
   /// Hits whose t, u, v or normal is not finite, or whose normal is not of unit length.
@@ -75,8 +77,8 @@ struct Tally {
 
   double rms_t_error() const;
   void add(const Tally& other);
-  /// Without `hits` and their errors of t: for the table of primitives, where these tell of an edge, an apex or a
-  /// sliver rather than of the primitive.
+  /// Returns the tally without `hits` and their errors of t. The table of primitives takes this if those errors come
+  /// from an edge, an apex or a sliver, and not from the primitive.
   Tally without_t_errors() const;
 };
 
@@ -87,14 +89,15 @@ class Lab {
 
   const gpu::Device& device() const { return device_; }
 
-  /// 1 if the driver computes divisions and roots with correct rounding, else 2. Bounds on K are multiplied by this.
+  /// Returns 1 if the driver computes divisions and roots with correct rounding, else 2. Bounds on K are multiplied by
+  /// this factor.
   double rounding_factor() const;
 
-  /// Casts through the public Caster, or the kernel that PROMIN_TEST_KERNELS names.
+  /// Casts with the public Caster, or with the kernel that PROMIN_TEST_KERNELS names.
   std::vector<Hit> cast(const world::Scene& scene, std::span<const Ray> rays,
                         HitQuery query = HitQuery::kNearest) const;
 
-  /// Each answer against the oracle's; shared out over all cores.
+  /// Compares each answer with the oracle's, on all cores.
   static Tally judge(const world::Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
   Tally cast_and_judge(const world::Scene& scene, std::span<const Ray> rays) const;
 
@@ -104,17 +107,18 @@ class Lab {
   /// Prints and keeps a figure without a bound.
   void note(const std::string& what, double figure) const;
 
-  /// Adds to the table of primitives, from scenes of this kind of shape alone: every ray cast in any row.
+  /// Adds every ray cast in a row to the table of primitives, if the scene has only this kind of shape.
   static void credit(const std::string& primitive, const Tally& tally, uint64_t leaks = 0);
 
-  /// The device's own records of a packed scene, which a test may have edited. `features` are the scene's; with
-  /// FEATURE_STEP_COUNTS the steps too. At most RayKernel::kMaxRays. `time_ms` takes the device's time.
+  /// Returns the device's own records of a packed scene, which a test may have edited. `features` are the scene's;
+  /// FEATURE_STEP_COUNTS adds the numbers of steps. There are at most RayKernel::kMaxRays rays. `time_ms` receives the
+  /// device's time.
   std::vector<layout::HitRecord> cast_packed(const PackedScene& packed, FeatureMask features, std::span<const Ray> rays,
                                              double* time_ms = nullptr) const;
 
-  /// SPIR-V of shaders/cast/cast.comp, or the one of PROMIN_TEST_KERNELS.
+  /// Returns the SPIR-V of shaders/cast/cast.comp, or of the kernel that PROMIN_TEST_KERNELS names.
   static std::span<const uint32_t> cast_kernel();
-  /// SPIR-V of tests/hard/bounce.comp, or the one of PROMIN_TEST_KERNELS.
+  /// Returns the SPIR-V of tests/hard/bounce.comp, or of the kernel that PROMIN_TEST_KERNELS names.
   static std::span<const uint32_t> bounce_kernel();
 
  private:
@@ -122,18 +126,18 @@ class Lab {
   int row_;
 };
 
-/// "distance 1e+04" and the like.
+/// Returns a label such as "distance 1e+04".
 std::string label(const char* what, double value);
 
-/// The same primitives in infinite boxes: every ray tests every primitive, so if the answers differ, a box has hidden a
-/// hit.
+/// Returns the same primitives in infinite boxes. Every ray then tests every primitive: if the answers differ, a box
+/// has hidden a hit.
 PackedScene with_infinite_boxes(PackedScene packed);
 
-/// Rays whose records differ in order or in the bits of t.
+/// Returns the number of rays whose records differ in order or in the bits of t.
 uint64_t count_differences(std::span<const layout::HitRecord> a, std::span<const layout::HitRecord> b);
 
-/// Across a mesh's triangle from one point of it to another, at a cosine of 1e-9...3e-6 to its plane: the rounding of
-/// origin and direction alone decides where the ray meets the plane.
+/// Returns a ray across a mesh's triangle, from one point near it to another, at a cosine of 1e-9...3e-6 to its plane:
+/// only the rounding of origin and direction decides where the ray meets the plane.
 Ray ray_grazing(const Mesh& mesh, const uvec3& triangle, Random& random);
 
 }  // namespace promin::hard

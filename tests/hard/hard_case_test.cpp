@@ -41,7 +41,7 @@ TEST(HardCases, AreNumberedInOrder) {
   for (size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(cases[i].row, static_cast<int>(i) + 1);
 }
 
-// The document is made by tools/accuracy, which nobody runs who does not think of it.
+// tools/accuracy makes the document. Nothing else reminds a developer to run it, so this test checks the document.
 TEST(HardCases, AreAllInTheDocument) {
   const std::vector<std::byte> bytes = read_file(PROMIN_ACCURACY_DOCUMENT);
   const std::string document(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -49,7 +49,7 @@ TEST(HardCases, AreAllInTheDocument) {
     EXPECT_NE(document.find("\n| " + std::to_string(row.row) + " | "), std::string::npos)
         << "docs/accuracy.md has no row " << row.row << "; run tools/accuracy";
   }
-  // The one commit, which anybody can check out, of all figures.
+  // All figures are from one commit, which anybody can check out.
   const std::regex head("\nMeasured at commit [0-9a-f]+ on ");
   EXPECT_TRUE(std::regex_search(document, head)) << "docs/accuracy.md is of several commits or of changes beside one";
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What the host keeps from the device: numbers that fp32 cannot hold are refused, and cameras do not drift.
+// These cases check what the host keeps away from the device: numbers that fp32 cannot hold are refused, and cameras do
+// not drift.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,8 +20,8 @@ using nlohmann::json;
 /// Writes scenes of one analytic shape into a folder of its own, and loads them.
 class ShapeFolder : public SceneFolder {
  public:
-  /// Whether load_scene refuses the shape under the node's transform, or leaves it undrawn. `text_of_42` stands in for
-  /// 42 in the file: what JSON's own numbers cannot say.
+  /// Returns whether load_scene refuses the shape under the node's transform, or does not draw it. `text_of_42`
+  /// replaces 42 in the file, for values that JSON's own numbers cannot express.
   bool refuses(const json& shape, const json& node = json::object(), const std::string& text_of_42 = "42") const {
     GltfBuilder gltf = triangle_gltf();
     gltf.json["extensions"]["KHR_implicit_shapes"]["shapes"] = {shape};
@@ -64,7 +65,7 @@ void run_degenerate(Lab& lab) {
   const json cone = cylinder_of(1.0, 1.0, 0.0);
   const auto turned = [](double x) { return json{{"rotation", {0.0, 0.0, x, 1.0}}}; };
   int taken = 0;
-  // Zero height or radius, of itself or by the scale.
+  // The height or the radius is zero, by itself or because of the scale.
   taken += !folder.refuses(cylinder_of(0.0, 1.0, 1.0));
   taken += !folder.refuses(cylinder_of(0.0, 1.0, 0.0));
   taken += !folder.refuses(cylinder_of(1.0, 0.0, 0.0));
@@ -78,11 +79,11 @@ void run_degenerate(Lab& lab) {
 
   taken = 0;
   for (const json& shape : {good, cone}) {
-    // Numbers that JSON does not have.
+    // JSON does not have these numbers.
     for (const char* number : {"NaN", "1e999", "-1e999", "Infinity"}) {
       taken += !folder.refuses(shape, turned(42.0), number);
     }
-    // Finite in double, not in fp32.
+    // The number is finite in double, but not in fp32.
     taken += !folder.refuses(shape, {{"matrix", {1, 0, 0, 0, 0, 1e300, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
     taken += !folder.refuses(shape, {{"scale", {1.0, 1e300, 1.0}}});
   }
@@ -94,14 +95,14 @@ void run_degenerate(Lab& lab) {
   lab.expect_at_most("sound shapes that are refused", 0.0, refused);
 }
 
-/// The largest element of |R^T R - I|.
+/// Returns the largest element of |R^T R - I|.
 double orthonormality_error(const dmat3& r) {
   const dmat3 product = glm::transpose(r) * r;
   double worst = 0.0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const double error = std::abs(product[i][j] - (i == j ? 1.0 : 0.0));
-      worst = error <= worst ? worst : error;  // NaN stays
+      worst = error <= worst ? worst : error;  // keeps a NaN
     }
   }
   return worst;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Boxes and capsules, as KHR_implicit_shapes has them.
+// These cases check the boxes and capsules of KHR_implicit_shapes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,19 +13,20 @@
 namespace promin::hard {
 namespace {
 
-/// For each of the orientations.
+/// The number of rays for each orientation.
 const size_t kRayCount = some_of(25000);
-/// Where many answers differ from the oracle's: the search for the margin of one takes a millisecond.
+/// The number of rays if many answers differ from the oracle's, because finding the margin of one takes a millisecond.
 const size_t kGrazingRayCount = some_of(1000);
 
-/// BK, B2 and well-formed hits. B1 has no meaning where rays come near an edge: the normal jumps there.
+/// Expects the bounds BK and B2, and well-formed hits. B1 has no meaning for rays near an edge, because the normal
+/// jumps there.
 void expect_bounds(Lab& lab, const std::string& where, const Tally& tally) {
   lab.expect_at_most("|P - surface| / uS (BK), " + where, 8.0 * lab.rounding_factor(), tally.max_surface_error);
   lab.expect_at_most("margin of other answers / uS (B2), " + where, 2.0, tally.max_margin);
   lab.expect_at_most("malformed hits, " + where, 0.0, static_cast<double>(tally.malformed));
 }
 
-/// As box.cpp has them: none, small, of ordinary size, and as far as they go.
+/// The rotations are those of box.cpp: none, small, ordinary, and the largest possible.
 constexpr std::array<vec3, 4> kTurns = {vec3(0.0F), vec3(1e-5F, -2e-6F, 3e-7F), vec3(0.1F, -0.25F, 0.2F),
                                         vec3(0.3F, 0.3F, -0.3F)};
 
@@ -39,7 +40,7 @@ constexpr BoxForm kPlate{"plate", vec3(1.0F, 1e-4F, 1.0F)};
 constexpr BoxForm kRod{"rod", vec3(1e-4F, 1e-4F, 1.0F)};
 constexpr BoxForm kSmall{"small box", vec3(1e-3F, 2e-3F, 1e-3F)};
 
-/// A box and the numbers to aim at it by.
+/// A box and the numbers with which rays are aimed at it.
 struct AimedBox {
   world::Box box;
   dvec3 axes[3];
@@ -48,7 +49,7 @@ struct AimedBox {
     for (int i = 0; i < 3; ++i) axes[i] = dvec3(oracle::axis_of(box, i));
   }
 
-  /// Of coordinates from -1 to 1.
+  /// Returns the point with these coordinates, which go from -1 to 1 in the box.
   dvec3 at(const dvec3& place) const {
     dvec3 point(box.center);
     for (int i = 0; i < 3; ++i) point += place[i] * static_cast<double>(box.half_size[i]) * axes[i];
@@ -96,8 +97,8 @@ void run_boxes_far_away(Lab& lab) {
   run_around(lab, kBrick, {10.0}, vec3(1e5F, -1e5F, 1e5F), random);
 }
 
-/// At edges and corners from where both or all of their faces are seen, well inside the silhouette: none may miss. At a
-/// plate from near by: from too far u S would reach its other side.
+/// Aims at edges and corners from directions that see both or all of their faces, well inside the silhouette: no ray
+/// may miss. A plate is aimed at from near by; from too far away, u S would reach its other side.
 void run_box_edges(Lab& lab) {
   Random random(40);
   for (const BoxForm& form : {kCube, kBrick, kPlate}) {
@@ -105,7 +106,7 @@ void run_box_edges(Lab& lab) {
     Tally all;
     for (const int fixed : {2, 3}) {
       const Tally tally = cast_boxes(lab, form, vec3(0.3F, -0.2F, 0.1F), random, [&](const AimedBox& aimed, Random& r) {
-        // Not too near the edges with faces that are not seen.
+        // The place is not too near the edges of faces that are not seen.
         dvec3 place = random_place(r, 0.9);
         dvec3 outward(0.0);
         const int first = static_cast<int>(3.0 * r.uniform());
@@ -129,7 +130,7 @@ void run_box_edges(Lab& lab) {
   }
 }
 
-/// Along a face as nearly as fp32 can be: in its plane, a little inside of it and a little beside it.
+/// Casts rays along a face, as exactly as fp32 allows: in its plane, a little inside it and a little beside it.
 void run_along_faces(Lab& lab) {
   Random random(41);
   for (const BoxForm& form : {kCube, kPlate}) {
@@ -160,15 +161,15 @@ struct CapsuleForm {
 constexpr CapsuleForm kPill{"pill", 1.0F, 0.5F, 0.5F};
 constexpr CapsuleForm kSkittle{"skittle", 1.0F, 0.7F, 0.25F};
 constexpr CapsuleForm kDrop{"drop", 1.0F, 0.8F, 0.0F};
-/// One sphere all but holds the other: what is left of the cone is flat.
+/// One sphere almost contains the other, so that the rest of the cone is flat.
 constexpr CapsuleForm kEgg{"egg", 0.2501F, 1.0F, 0.5F};
-/// The other way round, as far as fp32 goes.
+/// Here the capsule is almost a sphere, as nearly as fp32 allows.
 constexpr CapsuleForm kSphereAndLess{"all but a sphere", 0.25000003F, 0.5F, 1.0F};
 constexpr CapsuleForm kHeld{"sphere in a sphere", 0.2F, 1.0F, 0.5F};
 constexpr CapsuleForm kBall{"no height", 0.0F, 0.5F, 0.5F};
 constexpr CapsuleForm kWire{"wire", 1.0F, 1e-4F, 1e-4F};
 
-/// A capsule and the numbers to aim at it by.
+/// A capsule and the numbers with which rays are aimed at it.
 struct AimedCapsule {
   world::Capsule capsule;
   dvec3 axis;
@@ -181,16 +182,16 @@ struct AimedCapsule {
     return static_cast<double>(capsule.half_height + std::max(capsule.radius_bottom, capsule.radius_top));
   }
   double height() const { return 2.0 * static_cast<double>(capsule.half_height); }
-  /// The sine of the angle between a generator and the axis; of a capsule that has a side.
+  /// Returns the sine of the angle between a generator and the axis. The capsule must have a side.
   double sine() const { return static_cast<double>(capsule.radius_bottom - capsule.radius_top) / height(); }
-  /// In the capsule made a tenth larger.
+  /// Returns a point in the capsule enlarged by a tenth.
   dvec3 random_point(Random& random) const {
     const double along = random.uniform();
     const double radius = 1.1 * glm::mix(double{capsule.radius_bottom}, double{capsule.radius_top}, along);
     return dvec3(capsule.center) + (along - 0.5) * height() * axis +
            radius * std::cbrt(random.uniform()) * random.direction();
   }
-  /// On one of the circles where the cone touches the spheres.
+  /// Returns a point on one of the circles where the cone touches the spheres.
   dvec3 seam_point(bool is_top, const dvec3& radial) const {
     const double radius = is_top ? capsule.radius_top : capsule.radius_bottom;
     const double cosine = std::sqrt((1.0 - sine()) * (1.0 + sine()));
@@ -233,7 +234,7 @@ void run_capsules_far_away(Lab& lab) {
   run_capsules_around(lab, kSkittle, {10.0}, vec3(1e5F, -1e5F, 1e5F), random);
 }
 
-/// At the circles where sphere and cone meet, from wherever they are seen: nothing may pass between them.
+/// Aims at the circles where sphere and cone meet, from any direction that sees them: no ray may pass between them.
 void run_seams(Lab& lab) {
   Random random(43);
   for (const CapsuleForm& form : {kPill, kSkittle, kDrop, kEgg, kSphereAndLess}) {
@@ -241,7 +242,7 @@ void run_seams(Lab& lab) {
       const dvec3 radial = r.perpendicular(a.axis);
       const dvec3 target = a.seam_point(a.capsule.radius_top > 0.0F && r.uniform() < 0.5, radial);
       const dvec3 normal = a.sine() * a.axis + std::sqrt((1.0 - a.sine()) * (1.0 + a.sine())) * radial;
-      // At least 0.1 of the way from the silhouette.
+      // The direction differs from the silhouette's by at least 0.1.
       const dvec3 outward = glm::normalize(r.uniform(0.1, 1.0) * normal + r.uniform() * r.perpendicular(normal));
       return ray_towards(target + a.size() * std::pow(10.0, r.uniform(0.5, 3.0)) * outward, target);
     });
@@ -250,7 +251,7 @@ void run_seams(Lab& lab) {
   }
 }
 
-/// Along the axis and along generators, through the capsule and beside it.
+/// Casts rays along the axis and along generators, through the capsule and beside it.
 void run_along_capsules(Lab& lab) {
   Random random(44);
   for (const CapsuleForm& form : {kPill, kSkittle, kDrop}) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Open cylinders and cones: sides without disks.
+// These tests check open cylinders and cones, which have a side but no disks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace promin::hard {
 namespace {
 
 constexpr int kShapeCount = 20;
-/// What goes wrong at a rim does so for one ray in some ten thousand.
+/// Faults at a rim affect one ray in about ten thousand.
 const int kRimShapeCount = test::is_thorough() ? 40 : 16;
 const size_t kRayCount = some_of(5000);
 constexpr vec3 kCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
 
-/// Both kinds by the same names.
+/// Gives both kinds of shape the same names.
 struct Side {
   dvec3 center;
   dvec3 axis;
@@ -93,7 +93,7 @@ TYPED_TEST(OpenShapeTest, TheOracleAgrees) {
   EXPECT_GT(misses, 0U);
 }
 
-/// Through the wide end to the wall beyond: what is hit there is the inside, never a disk.
+/// Rays go through the wide end to the wall beyond: they hit the inside, never a disk.
 TYPED_TEST(OpenShapeTest, RaysEnterWhereADiskIsMissing) {
   const Lab lab(this->device(), 0);
   for (int i = 0; i < kShapeCount; ++i) {
@@ -106,7 +106,7 @@ TYPED_TEST(OpenShapeTest, RaysEnterWhereADiskIsMissing) {
                                                              this->random.perpendicular(side.axis));
       const double z = side.half_height * this->random.uniform(-0.9, 0.9);
       const dvec3 wall = side.at(z, side.radius_at(z) * this->random.perpendicular(side.axis));
-      // From outside, and every third from the gate itself.
+      // The rays start outside; every third starts in the missing disk itself.
       const dvec3 way = glm::normalize(wall - gate);
       rays.push_back(ray_towards(k % 3 == 0 ? gate : gate - side.size() * way, wall));
     }
@@ -125,7 +125,7 @@ TYPED_TEST(OpenShapeTest, RaysEnterWhereADiskIsMissing) {
   }
 }
 
-/// Exactly along the axis: through the tube, onto the wall where it narrows, or past it.
+/// Rays exactly along the axis go through the tube, onto the wall where it narrows, or past the tube.
 TYPED_TEST(OpenShapeTest, RaysAlongTheAxisPassThroughTheTube) {
   const Lab lab(this->device(), 0);
   for (int i = 0; i < kShapeCount; ++i) {
@@ -160,7 +160,8 @@ TYPED_TEST(OpenShapeTest, RaysAlongTheAxisPassThroughTheTube) {
   }
 }
 
-/// At rims, from all around, many of them along the disk that is not there, and at apexes in their plane.
+/// Rays aim at rims from all around. Many go along the missing disk, and many go through apexes in the plane of the
+/// apex.
 TYPED_TEST(OpenShapeTest, RimsAreWhereTheSideEnds) {
   const Lab lab(this->device(), 0);
   for (int i = 0; i < kRimShapeCount; ++i) {
@@ -180,7 +181,7 @@ TYPED_TEST(OpenShapeTest, RimsAreWhereTheSideEnds) {
   }
 }
 
-/// From points inside, to the wall and out of the ends.
+/// Rays from points inside go to the wall and out of the ends.
 TYPED_TEST(OpenShapeTest, FromInsideTheWallIsMetAndTheEndsAreNot) {
   const Lab lab(this->device(), 0);
   uint64_t misses = 0;
@@ -202,7 +203,7 @@ TYPED_TEST(OpenShapeTest, FromInsideTheWallIsMetAndTheEndsAreNot) {
   EXPECT_GT(misses, 0U);
 }
 
-/// A pipeline that knows open shapes gives closed ones the bits that one without has.
+/// For a closed shape, a pipeline with open shapes gives the same bits as one without.
 TYPED_TEST(OpenShapeTest, ClosedShapesKeepTheirBits) {
   const Lab lab(this->device(), 0);
   for (int i = 0; i < 6; ++i) {

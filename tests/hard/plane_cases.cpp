@@ -13,7 +13,7 @@ namespace {
 
 const size_t kRayCount = some_of(100000);
 
-/// Of |dt n.d| / (u (|q - o| + |t d|)); infinite where a hit is missing.
+/// Judges |dt n.d| / (u (|q - o| + |t d|)); it is infinite if a hit is missing.
 Tally judge_plane(const world::Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
   using oracle::Real;
   using oracle::Vector;
@@ -46,7 +46,7 @@ void run_slopes(Lab& lab) {
       const dvec3 origin = dvec3(plane.point) + 10.0 * n + reach * random.perpendicular(n);
       const dvec3 along = std::sqrt(1.0 - cosine * cosine) * random.perpendicular(n);
       const Ray ray = ray_towards(origin, origin - cosine * n + along);
-      // Rounding may turn the direction off the plane.
+      // Rounding may turn the direction away from the plane.
       const oracle::Real slope = glm::dot(oracle::Vector(plane.normal), oracle::Vector(ray.direction));
       if (slope < -0.5L * cosine) rays.push_back(ray);
     }
@@ -69,7 +69,7 @@ void run_parallel(Lab& lab) {
       }
     }
   }
-  // Behind.
+  // The plane is behind this ray.
   rays.push_back({vec3(0.0F, 3.0F, 0.0F), 0.0F, vec3(0.0F, 1.0F, 0.0F), infinity});
   rays.push_back({vec3(0.0F, 1.0F, 0.0F), 0.0F, vec3(5.0F, -1e-20F, 0.0F), infinity});
   const std::vector<Hit> hits = lab.cast(scene_of({plane}), rays);

@@ -9,12 +9,12 @@ namespace {
 
 using measure::Random;
 
-/// As many small ones as large ones.
+/// Returns a size; small ones are as likely as large ones.
 float random_size(Random& random) {
   return static_cast<float>(0.05 * std::pow(40.0, random.uniform()));
 }
 
-/// Every third along an axis of space.
+/// Returns an axis; every third one is an axis of space.
 vec3 random_axis(Random& random) {
   const dvec3 axis = random.direction();
   if (random.uniform() > 1.0 / 3.0) return vec3(axis);
@@ -48,7 +48,7 @@ template <>
 world::Capsule random_shape(const vec3& center, Random& random) {
   const float height = random.uniform() < 0.1 ? 0.0F : random_size(random);
   const float bottom = random_size(random);
-  // As often a point as radii that are the same.
+  // A point is as likely as two equal radii.
   const double kind = random.uniform();
   return {center, random_axis(random), height, bottom, kind < 0.2 ? 0.0F : kind < 0.4 ? bottom : random_size(random)};
 }
@@ -56,7 +56,7 @@ world::Capsule random_shape(const vec3& center, Random& random) {
 template <>
 world::Box random_shape(const vec3& center, Random& random) {
   const vec3 half_size(random_size(random), random_size(random), random_size(random));
-  // As far as orientations go, and every third along the axes of space.
+  // The angle may be as large as orientations allow; every third box lies along the axes of space.
   const double sine = random.uniform() < 1.0 / 3.0 ? 0.0 : random.uniform(0.0, 0.52);
   return {center, half_size, vec3(sine * random.direction())};
 }

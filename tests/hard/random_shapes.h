@@ -17,7 +17,7 @@ Shape random_shape(const vec3& center, measure::Random& random);
   world::TYPE random_shape(const vec3& center, measure::Random& random);
 #include "promin/kinds/primitives.def"
 
-/// One of a shape that lies in the tree.
+/// Calls the visitor with one of each shape that lies in the tree.
 template <class Visitor>
 void for_each_solid(const vec3& center, measure::Random& random, const Visitor& visit) {
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) visit(random_shape<world::TYPE>(center, random));

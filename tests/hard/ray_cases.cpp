@@ -16,7 +16,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// About 1e4 triangles: a bumpy sheet over [-1, 1]^2.
+/// Returns about 1e4 triangles: a bumpy sheet over [-1, 1]^2.
 Mesh make_sheet() {
   constexpr uint32_t kSide = 70;
   Mesh mesh;
@@ -42,7 +42,7 @@ Ray ordinary_ray(Random& random) {
   return ray_towards(3.0 * random.direction(), target);
 }
 
-/// What no ray may be: each member in turn NaN or infinite, and no direction.
+/// Returns invalid rays: each member in turn is NaN or infinite, or there is no direction.
 std::vector<Ray> make_invalid_rays(size_t count_each, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < count_each; ++i) {
@@ -100,7 +100,7 @@ void run_invalid_rays(Lab& lab) {
   lab.note("ns for such a ray", 1e6 * invalid_ms / static_cast<double>(invalid.size()));
   lab.note("ns for a finite ray", 1e6 * finite_ms / static_cast<double>(finite.size()));
 
-  // A plane and a solid too, which have no box or another formula.
+  // A plane and a solid are also in the scene: a plane has no box, and a solid has another formula.
   scene.objects.push_back({"", world::Plane{vec3(0, -2, 0), vec3(0, 1, 0)}, 0});
   scene.objects.push_back({"", world::Sphere{vec3(0, 1, 0), 0.5F}, 0});
   scene.objects.push_back({"", world::Cylinder{vec3(1, 1, 0), vec3(0, 1, 0), 0.5F, 0.25F}, 0});
@@ -112,7 +112,7 @@ void run_invalid_rays(Lab& lab) {
   }
   lab.expect_at_most("hits or not finite of invalid rays", 0.0, static_cast<double>(hit_count));
 
-  // tmax = +Inf is ordinary.
+  // tmax = +Inf is an ordinary value.
   std::vector<Ray> endless(finite.begin(), finite.begin() + 10000);
   const std::vector<Hit> ended = lab.cast(scene, endless);
   for (Ray& ray : endless) ray.tmax = kInfinity;
@@ -123,8 +123,8 @@ void run_invalid_rays(Lab& lab) {
   lab.expect_at_most("other answers with tmax = +Inf than with 1e30", 0.0, static_cast<double>(differences));
 }
 
-/// Lengths beyond what the shader takes, and components that are denormal. `scale` keeps t between overflow and
-/// underflow.
+/// Expects the right hits for directions whose lengths the shader cannot take, and whose components are denormal.
+/// `scale` keeps t between overflow and underflow.
 void expect_directions(Lab& lab, double scale, double length, bool has_denormals, const std::string& where) {
   Random random(301);
   const auto size = static_cast<float>(scale);
@@ -137,7 +137,7 @@ void expect_directions(Lab& lab, double scale, double length, bool has_denormals
     Ray ray = ray_towards(1.5 * scale * random.direction(), target);
     ray.direction = vec3(length * dvec3(ray.direction));
     if (has_denormals) {
-      // Along an axis, but for the two others.
+      // The direction goes along an axis, except for the two small components.
       const int axis = static_cast<int>(i % 3);
       ray.origin = vec3(target);
       ray.origin[axis] = 1.5F * size;
@@ -163,7 +163,7 @@ bool has_same_bits(const Hit& a, const Hit& b) {
   return std::memcmp(&a, &b, sizeof(Hit)) == 0;
 }
 
-/// The open interval (max(tmin, 0), tmax), bit for bit, of whatever a ray hits first.
+/// The interval of a ray is open, (max(tmin, 0), tmax), bit for bit, for whatever the ray hits first.
 void run_intervals(Lab& lab) {
   Random random(31);
   std::vector<std::pair<const char*, world::Scene>> scenes;
@@ -180,11 +180,11 @@ void run_intervals(Lab& lab) {
   for (const auto& [name, scene] : scenes) {
     std::vector<Ray> rays;
     for (int i = 0; i < 6000; ++i) {
-      // A sixth from where rays start nearer by for the tree's sake (shaders/trace/make_ray.glsl).
+      // A sixth of the rays start so far away that they are moved nearer for the tree (shaders/trace/make_ray.glsl).
       const double distance = i % 6 != 0 ? 4.0 : std::pow(10.0, 4.0 + 3.0 * random.uniform(0.0, 1.0));
       const dvec3 origin = distance * random.direction();
       Ray ray = ray_towards(origin, 0.8 * random.direction());
-      // No power of two, so that scaling the ray would show if it rounded.
+      // The factor is not a power of two, so that rounding of the scaled ray would show.
       ray.direction *= i % 2 == 0 ? 1.0F : 0.0123F;
       rays.push_back(ray);
     }
@@ -194,7 +194,7 @@ void run_intervals(Lab& lab) {
       rays.erase(rays.begin() + static_cast<std::ptrdiff_t>(i));
       hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    // Casts the rays with one end changed; counts those whose answer breaks the rule.
+    // Casts the rays with one end changed, and counts those whose answer breaks the rule.
     const auto count = [&](const auto& change, const auto& is_right) {
       std::vector<Ray> changed = rays;
       for (size_t i = 0; i < rays.size(); ++i) change(changed[i], hits[i].t);
@@ -230,7 +230,7 @@ void run_intervals(Lab& lab) {
     expect_none("tmax = 0", count([](Ray& r, float) { r.tmax = 0.0F; }, is_miss));
     expect_none("tmax = -0", count([](Ray& r, float) { r.tmax = -0.0F; }, is_miss));
     expect_none("tmax < 0", count([](Ray& r, float t) { r.tmin = -2.0F * t, r.tmax = -t; }, is_miss));
-    // The other way along the line: what is behind the origin is not met for a negative tmin.
+    // The rays go the other way along the line: a negative tmin does not lead to hits behind the origin.
     if (scene.objects.size() == 1) {
       expect_none("tmin < 0, all behind", count(
                                               [](Ray& r, float t) {

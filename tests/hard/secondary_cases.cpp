@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Rays that start where others ended: the renderer's own lift and mirror direction, by tests/hard/bounce.comp.
+// These cases check rays that start where others ended, with the renderer's own lift and mirror direction
+// (tests/hard/bounce.comp).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,7 +89,7 @@ void run_plane_lift(Lab& lab) {
       ++hit_count;
       const Vector exact_n(plane.normal);
       const auto height = [&](const vec3& p) { return glm::dot(Vector(p) - Vector(plane.point), exact_n); };
-      // On the plane itself is right as well: t = 0 is no hit.
+      // A start in the plane itself is right as well, because t = 0 is not a hit.
       if (!(height(bounces[i].origin) * height(rays[i].origin) >= 0)) ++acne;
       const double reach = max_abs_component(rays[i].origin) +
                            static_cast<double>(hits[i].t) * max_abs_component(rays[i].direction) +
@@ -100,7 +101,7 @@ void run_plane_lift(Lab& lab) {
     }
     // At 1e6 an ulp is more than the height of a tenth of the starts.
     EXPECT_GT(hit_count, rays.size() * 3 / 4);
-    // A direction that rounding has turned towards the plane may meet it far away: it is no acne.
+    // If rounding has turned a direction towards the plane, the ray may meet it far away: this is not acne.
     const auto is_acne = [&](const Ray& ray, const Hit& hit) {
       const Real slope = glm::dot(Vector(ray.direction), Vector(plane.normal));
       const Real height = glm::dot(Vector(ray.origin) - Vector(plane.point), Vector(plane.normal));
@@ -113,7 +114,7 @@ void run_plane_lift(Lab& lab) {
   }
 }
 
-/// Points on the plane and on the sphere about where they touch, and a light that is low.
+/// Checks points on the plane and on the sphere near the place where they touch, under a low light.
 void run_contact(Lab& lab) {
   Random random(34);
   const world::Scene scene = scene_of({world::Plane{}, world::Sphere{vec3(0.0F, 1.0F, 0.0F), 1.0F}});
@@ -126,7 +127,7 @@ void run_contact(Lab& lab) {
       const double radius = std::pow(10.0, random.uniform(-3.0, 0.0));
       const double angle = random.uniform(0.0, 6.283185307179586);
       const dvec3 target(radius * std::cos(angle), 0.0, radius * std::sin(angle));
-      // From beside, close to the floor, so that the ray passes under the sphere.
+      // The rays come from the side, close to the floor, and pass under the sphere.
       rays.push_back(
           ray_towards(target + 3.0 * glm::normalize(target) + dvec3(0.0, 0.05 * random.uniform(), 0.0), target));
     }
@@ -145,7 +146,7 @@ void run_contact(Lab& lab) {
       if (!oracle::is_occluded(scene, exact_shadow)) continue;
       ++shadowed;
       if (blockers[i].t == 0.0F) continue;
-      // Lit, though exactly it is not: by how much does the exact ray pass inside of what blocks it?
+      // The point is lit, though the exact answer is shadow. The depth is that of the exact ray in the blocker.
       const Real depth = oracle::judge(scene, exact_shadow, {}).margin * kU * 2;  // S = |o - c| + r is about 2
       if (depth > glm::distance(point, Vector(bounces[i].origin)) + 2 * kU * 2) ++leaks;
     }
@@ -200,8 +201,8 @@ void run_facing_mirrors(Lab& lab) {
           worst = std::numeric_limits<double>::infinity();
           continue;
         }
-        // With its reflections unfolded, the exact ray is a straight line: it has crossed half a gap and one more a
-        // bounce.
+        // If its reflections are unfolded, the exact ray is a straight line: it has crossed half a gap, and one gap
+        // more with each bounce.
         const Vector d(first[i].direction);
         const Real t = (Real(0.5) + bounce) * Real(gap) / d.z;
         Vector exact = Vector(first[i].origin) + t * d;

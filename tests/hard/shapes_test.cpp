@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every shape of promin/kinds/primitives.def, the same tests for all of them.
+// These tests are the same for every shape of promin/kinds/primitives.def.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -15,7 +15,7 @@
 namespace promin::hard {
 namespace {
 
-/// A list that may begin with a comma.
+/// A list of types that may begin with a comma.
 template <class Nothing, class... Shape>
 struct ListOf {
   using Types = testing::Types<Shape...>;
@@ -29,7 +29,7 @@ using Solids = ListOf<void
 #include "promin/kinds/primitives.def"
                       >::Types;
 
-/// What a shape is called in the names of tests.
+/// Returns a shape's name in the names of tests.
 struct ShapeName {
   template <class Shape>
   static std::string GetName(int) {
@@ -42,7 +42,7 @@ struct ShapeName {
 
 constexpr int kShapeCount = 20;
 const size_t kRayCount = some_of(5000);
-/// Near the origin, and so far from it that a unit in the last place is a thousandth of a shape.
+/// Centres near the origin, and so far from it that a unit in the last place is a thousandth of a shape.
 constexpr vec3 kCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
 
 oracle::Vector random_point(const Bounds& bounds, Random& random) {
@@ -76,12 +76,12 @@ TYPED_TEST(ShapeTest, PackingRoundTrips) {
     } else {
       EXPECT_EQ(std::memcmp(&shape, &unpacked, sizeof shape), 0);
     }
-    // The words that are not the shape's own are left to the caller.
+    // The caller fills the words that do not belong to the shape.
     EXPECT_EQ(uvec3(packed.c.y, packed.c.z, packed.c.w), uvec3(0));
   }
 }
 
-/// How far rays from all around miss what the oracle says: B1, B2 and BK of docs/accuracy.md.
+/// Rays from all around have errors within B1, B2 and BK of docs/accuracy.md, compared with the oracle.
 TYPED_TEST(ShapeTest, TheOracleAgrees) {
   const Lab lab(this->device(), 0);
   for (int i = 0; i < kShapeCount; ++i) {
@@ -103,7 +103,7 @@ TYPED_TEST(ShapeTest, TheOracleAgrees) {
   }
 }
 
-/// Every point of the shape is within its bounds, and each of their six sides is near one.
+/// Every point of the shape is within its bounds, and each of the bounds' six sides is near a point.
 TYPED_TEST(SolidTest, BoundsAreTight) {
   for (int i = 0; i < kShapeCount; ++i) {
     const TypeParam shape = this->make(kCenters[i % 3]);
@@ -114,7 +114,7 @@ TYPED_TEST(SolidTest, BoundsAreTight) {
     dvec3 lo(bounds.hi);
     dvec3 hi(bounds.lo);
     for (int k = 0; k < 20'000; ++k) {
-      // Where a line through the bounds enters the shape.
+      // Finds the point where a line through the bounds enters the shape.
       const oracle::Vector inside = random_point({bounds.lo - margin, bounds.hi + margin}, this->random());
       const oracle::Vector direction(this->random().direction());
       const oracle::Ray line{inside - 4 * around.radius * direction, direction};
@@ -143,7 +143,7 @@ TYPED_TEST(SolidTest, DoesNotLeak) {
     while (rays.size() < kRayCount) {
       const dvec3 origin(random_point(bounds, this->random()));
       const Ray ray = ray_towards(origin, origin + this->random().direction());
-      // Inside after rounding too, by more than B2 excuses.
+      // The ray is inside also after rounding, by more than B2 allows as an error.
       const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction)};
       const oracle::Real least = 4 * oracle::kRoundoff * oracle::scale_of(shape, 0, exact);
       if (oracle::signed_distance(shape, 0, exact.origin) < -least) rays.push_back(ray);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders, cones and frustums.
+// These cases check cylinders, cones and frustums.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,16 +13,16 @@
 namespace promin::hard {
 namespace {
 
-/// For each of the four axes.
+/// The number of rays for each of the four axes.
 const size_t kRayCount = some_of(25000);
-/// Rays that touch an edge: many answers differ from the oracle's, and the search for the margin of one takes a
-/// millisecond. So one in so many is judged by B2; that hits lie on the surface is asked of all.
+/// For many of the rays that touch an edge, the answer differs from the oracle's, and finding the margin of one takes a
+/// millisecond. Therefore B2 is checked for one in this many rays; all hits must lie on the surface.
 constexpr size_t kEdgeRaysPerMargin = 64;
-/// For each of the four axes: of all, a quarter of a million a form.
+/// The number of rays at rims for each of the four axes: a quarter of a million for a form.
 const size_t kRimRayCount = some_of(62500);
 constexpr double kRadian = 57.29577951308232;
 
-/// A cylinder, cone or frustum, by the very numbers that the device sees.
+/// A cylinder, cone or frustum, with exactly the numbers that the device has.
 struct Solid {
   const char* kind;
   world::Shape shape;
@@ -33,7 +33,7 @@ struct Solid {
   double radius_top;
 
   double widest() const { return std::max(radius_bottom, radius_top); }
-  /// Of the bounding sphere.
+  /// Returns the radius of the bounding sphere.
   double size() const { return std::hypot(half_height, widest()); }
   double slope() const { return (radius_top - radius_bottom) / (2.0 * half_height); }
   double radius_at(double z) const { return 0.5 * (radius_bottom + radius_top) + slope() * z; }
@@ -47,7 +47,7 @@ Solid make_cylinder(const vec3& center, const dvec3& axis, double half_height, d
   return {"cylinder", c, dvec3(center), glm::normalize(dvec3(c.axis)), c.half_height, c.radius, c.radius};
 }
 
-/// A cone, with its apex at the axis' end, where `radius_top` is 0.
+/// Returns a cone whose apex is at the axis' end where `radius_top` is 0.
 Solid make_cone(const vec3& center, const dvec3& axis, double half_height, double radius_bottom,
                 double radius_top = 0.0) {
   const world::Cone c{center, vec3(glm::normalize(axis)), static_cast<float>(half_height),
@@ -61,7 +61,7 @@ Solid make_cone(const vec3& center, const dvec3& axis, double half_height, doubl
           c.radius_top};
 }
 
-/// Of a half angle in degrees; as wide or as high as 1, whichever is more.
+/// Returns a cone with this half angle in degrees; its width or its height is 1, whichever is larger.
 Solid make_cone_of(double half_angle, const vec3& center, const dvec3& axis) {
   const double slope = std::tan(half_angle / kRadian);
   const double height = std::min(2.0, 1.0 / slope);
@@ -72,14 +72,14 @@ constexpr std::array<dvec3, 4> axes() {
   return {dvec3(0.0, 1.0, 0.0), dvec3(-1.0, 0.0, 0.0), dvec3(1.0, 2.0, -3.0), dvec3(1e-3, -1e-4, -1.0)};
 }
 
-/// Within the solid made `spread` times as large.
+/// Returns a point in the solid, which is enlarged by the factor `spread`.
 dvec3 random_point(const Solid& solid, double spread, Random& random) {
   const double z = solid.half_height * random.uniform(-1.0, 1.0);
   const double radius = solid.radius_at(z) * std::sqrt(random.uniform());
   return solid.center + spread * (solid.at(z, radius * random.perpendicular(solid.axis)) - solid.center);
 }
 
-/// From all around at a distance from the centre, most of which meet the solid.
+/// Returns rays from all around at a distance from the centre; most of them meet the solid.
 std::vector<Ray> rays_around(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -89,7 +89,8 @@ std::vector<Ray> rays_around(const Solid& solid, double distance, Random& random
   return rays;
 }
 
-/// Through points in the solid and around it, at an angle to the axis and the other way, from a distance.
+/// Returns rays through points in the solid and around it, at an angle to the axis and in the opposite direction, from
+/// a distance.
 std::vector<Ray> rays_along_axis(const Solid& solid, double sine, double distance, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -101,7 +102,7 @@ std::vector<Ray> rays_along_axis(const Solid& solid, double sine, double distanc
   return rays;
 }
 
-/// BK, B2 and well-formed hits of what was found for one kind of solid.
+/// Expects the bounds BK and B2, and well-formed hits, for one kind of solid.
 void expect_bk_b2(Lab& lab, const std::string& where, const Tally& tally, double factor = 1.0) {
   lab.expect_at_most("|P - surface| / uS (BK), " + where, factor * 8.0 * lab.rounding_factor(),
                      tally.max_surface_error);
@@ -115,13 +116,13 @@ Tally cast_at(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
   return tally;
 }
 
-/// Where rays touch an edge or an apex the normal jumps, or there is none, so B1 has no meaning: the table of
-/// primitives takes the rest.
+/// Adds rays that touch an edge or an apex to the table of primitives, without B1: the normal jumps there, or there is
+/// none, so B1 has no meaning.
 void credit_at_edge(const Solid& solid, const Tally& tally, uint64_t leaks = 0) {
   Lab::credit(solid.kind, tally.without_t_errors(), leaks);
 }
 
-/// |o + t d - surface| / (u S) of the worst hit; NaN of a t that is not finite stays.
+/// Returns |o + t d - surface| / (u S) of the worst hit; it is NaN if a t is not finite.
 double worst_surface_error(const Solid& solid, std::span<const Ray> rays, std::span<const Hit> hits) {
   double worst = 0.0;
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -135,14 +136,14 @@ double worst_surface_error(const Solid& solid, std::span<const Ray> rays, std::s
   return worst;
 }
 
-/// For rays that touch an edge: see kEdgeRaysPerMargin.
+/// Casts rays that touch an edge (see kEdgeRaysPerMargin).
 Tally cast_at_edge(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
   const world::Scene scene = scene_of({solid.shape});
   const std::vector<Hit> hits = lab.cast(scene, rays);
   std::vector<Ray> judged_rays;
   std::vector<Hit> judged_hits;
   for (size_t i = 0; i < rays.size(); i += kEdgeRaysPerMargin) {
-    // Of each run another, as rays alternate.
+    // The index within each run changes from run to run, because kinds of rays alternate.
     const size_t j = std::min(i + (i / kEdgeRaysPerMargin) % kEdgeRaysPerMargin, rays.size() - 1);
     judged_rays.push_back(rays[j]);
     judged_hits.push_back(hits[j]);
@@ -154,7 +155,7 @@ Tally cast_at_edge(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
   return tally;
 }
 
-/// A solid, but for its orientation.
+/// The form of a solid, without its orientation.
 struct Form {
   std::string name;
   Solid (*make)(const vec3& center, const dvec3& axis);
@@ -232,7 +233,7 @@ void run_along_axis(Lab& lab) {
   }
 }
 
-/// Rays exactly along the axis, on to the wide end, each at one of `impacts` times its radius there.
+/// Returns rays exactly along the axis onto the wide end, each at one of `impacts` times the radius of that end.
 std::vector<Ray> parallel_rays(const Solid& solid, double distance, double low, double high, Random& random) {
   const bool is_upward = solid.radius_bottom >= solid.radius_top;
   const vec3 axis = std::visit(
@@ -245,7 +246,7 @@ std::vector<Ray> parallel_rays(const Solid& solid, double distance, double low, 
   for (size_t i = 0; i < kRayCount; ++i) {
     const double impact = solid.widest() * random.uniform(low, high);
     const dvec3 foot = solid.at(0.0, impact * random.perpendicular(solid.axis));
-    // A cylinder from both sides.
+    // A cylinder gets rays from both sides.
     const float sign = (solid.radius_bottom == solid.radius_top ? i % 2 == 0 : is_upward) ? 1.0F : -1.0F;
     Ray ray = ray_towards(foot - distance * static_cast<double>(sign) * solid.axis, foot);
     ray.direction = sign * axis;
@@ -267,7 +268,7 @@ void run_parallel(Lab& lab) {
       Tally at_rim;
       for (const dvec3& axis : axes()) {
         const Solid solid = form.make(kOrigin, axis);
-        // 4 u S, twice what B2 excuses.
+        // The gap is 4 u S, twice the error that B2 allows.
         const double gap = 4.0 * static_cast<double>(kUnitRoundoff) * (2.0 * distance + solid.size());
         const world::Scene scene = scene_of({solid.shape});
         for (const Hit& hit : lab.cast(scene, parallel_rays(solid, distance, 0.0, 1.0 - gap, random))) {
@@ -287,20 +288,21 @@ void run_parallel(Lab& lab) {
   }
 }
 
-/// A direction in which the faces with these unit normals are both seen, well inside the silhouette: neither at less
-/// than about a fifth of what both could be.
+/// Returns a direction from which the faces with these unit normals are both seen, well inside the silhouette: the
+/// cosine to each is at least about a fifth of the largest that both can have.
 dvec3 random_direction_onto(const dvec3& face, const dvec3& other, Random& random) {
   const dvec3 middle = glm::normalize(face + other);
   const dvec3 across = glm::normalize(face - other);
-  // Up to here along `across` is neither face turned away; no further than 45 degrees where they are almost one.
+  // Up to this length along `across`, neither face is turned away. If the faces are almost one, the limit is 45
+  // degrees.
   const double most = std::min(1.0, glm::dot(face, middle) / glm::dot(face, across));
   const double aside = random.uniform(-0.8, 0.8) * most;
   const double along_rim = random.uniform(-1.0, 1.0);
   return -glm::normalize(middle + aside * across + along_rim * glm::cross(middle, across));
 }
 
-/// At points of the rims, well inside the silhouette: cap and side both face the ray. The last `around` rays are from
-/// all around.
+/// Returns rays at points of the rims, well inside the silhouette: cap and side both face the ray. The last `around`
+/// rays come from all around.
 std::vector<Ray> rays_at_rims(const Solid& solid, size_t around, Random& random) {
   std::vector<Ray> rays;
   while (rays.size() < kRimRayCount) {
@@ -309,7 +311,7 @@ std::vector<Ray> rays_at_rims(const Solid& solid, size_t around, Random& random)
     const dvec3 rim = solid.at(end * solid.half_height, solid.radius_at(end * solid.half_height) * radial);
     const dvec3 side = glm::normalize(radial - solid.slope() * solid.axis);
     const dvec3 cap = end * solid.axis;
-    // A rim as sharp as a knife is not far from the silhouette; from too far u S would reach it.
+    // A rim as sharp as a knife is close to the silhouette; from too far away u S would reach it.
     const double most = glm::distance(side, -cap) > 0.1 ? 3.0 : 1.5;
     const double distance = solid.size() * std::pow(10.0, random.uniform(0.5, most));
     const dvec3 direction =
@@ -329,7 +331,7 @@ void run_rims(Lab& lab) {
     Tally tally;
     for (const dvec3& axis : axes()) {
       const Solid solid = form.make(kOrigin, axis);
-      // Rays from all around often end at the silhouette: see kEdgeRaysPerMargin.
+      // Rays from all around often end at the silhouette (see kEdgeRaysPerMargin).
       const size_t around = kRimRayCount / kEdgeRaysPerMargin;
       const std::vector<Ray> rays = rays_at_rims(solid, around, random);
       const world::Scene scene = scene_of({solid.shape});
@@ -362,7 +364,7 @@ void run_inside(Lab& lab) {
       while (rays.size() < kRayCount) {
         const dvec3 origin = random_point(solid, 1.0, random);
         const Ray ray = ray_towards(origin, origin + random.direction());
-        // Inside after rounding too, by more than B2 excuses.
+        // The ray is inside also after rounding, by more than B2 allows as an error.
         const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction)};
         const oracle::Real least = 4 * oracle::kRoundoff * oracle::scale_of(solid.shape, 0, exact);
         if (oracle::signed_distance(solid.shape, 0, exact.origin) < -least) rays.push_back(ray);
@@ -400,7 +402,7 @@ void run_cones(Lab& lab) {
   run_around(lab, {"frustum at 1e5", frustum}, {10.0}, kFarAway, random);
 }
 
-/// Parallel to a generator as nearly as fp32 can be, through the solid and beside it.
+/// Returns rays parallel to a generator, as nearly as fp32 allows, through the solid and beside it.
 std::vector<Ray> rays_along_generators(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -412,7 +414,7 @@ std::vector<Ray> rays_along_generators(const Solid& solid, double distance, Rand
   return rays;
 }
 
-/// At the apex: from all around, along generators, and along the axis.
+/// Returns rays at the apex: from all around, along generators, and along the axis.
 std::vector<Ray> rays_at_apex(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -452,13 +454,14 @@ void run_generators_and_apex(Lab& lab) {
     }
   }
 
-  // Where a generator is exact in fp32: direction (3, 4, 0) on a cone of slope 3/4, (1, 1, 0) on one of slope 1.
+  // These generators are exact in fp32: the direction (3, 4, 0) on a cone of slope 3/4, and (1, 1, 0) on one of slope
+  // 1.
   Tally exact;
   for (const auto& [slope, direction] : {std::pair{0.75, vec3(3.0F, 4.0F, 0.0F)}, {1.0, vec3(1.0F, 1.0F, 0.0F)}}) {
     const Solid solid = make_cone(kOrigin, dvec3(0.0, 1.0, 0.0), 1.0, 2.0 * slope);
     std::vector<Ray> rays;
     for (size_t i = 0; i < kRayCount; ++i) {
-      // Every eighth through the apex.
+      // Every eighth ray goes through the apex.
       const dvec3 target = i % 8 == 0 ? solid.apex() : random_point(solid, 1.1, random);
       const float sign = i % 2 == 0 ? 1.0F : -1.0F;
       const vec3 step = sign * vec3(direction.x * (i % 4 < 2 ? 1.0F : -1.0F), direction.y, direction.z);
@@ -471,9 +474,9 @@ void run_generators_and_apex(Lab& lab) {
   expect_bk_b2(lab, "along generators that are exact", exact, 1.0 / 0.6);
 }
 
-/// Through the mirror nappe and the solid's box, past the solid.
+/// Returns rays through the mirror nappe and the solid's box, past the solid.
 std::vector<Ray> rays_at_mirror_nappe(const Solid& solid, Random& random) {
-  // The same grown by a hundredth all round, to tell rays past the solid from those that graze it.
+  // This solid is larger by a hundredth on all sides; it distinguishes rays past the solid from rays that touch it.
   const double more = 0.01 * solid.size();
   world::Cone grown = std::get<world::Cone>(solid.shape);
   const auto widen = [&](float radius) { return static_cast<float>(radius + more * (1.0 + std::abs(solid.slope()))); };
@@ -514,8 +517,8 @@ void run_mirror_nappe(Lab& lab) {
   }
 }
 
-/// In the plane of a disk, or of an apex, and a few roundings beside it, across the disk and past its rim, level or
-/// tilted by so little that the plane is met far beyond the solid or nowhere.
+/// Returns rays in the plane of a disk or of an apex, or a few roundings beside it, across the disk and past its rim.
+/// They are level, or tilted by so little that they meet the plane far beyond the solid or nowhere.
 std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -523,14 +526,14 @@ std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
     const double radius = solid.radius_at(end * solid.half_height);
     const dvec3 along = random.perpendicular(solid.axis);
     const dvec3 aside = glm::cross(solid.axis, along);
-    // Of all rays a third pass just beyond the rim.
+    // A third of all rays pass just beyond the rim.
     const double impact = i % 3 == 0 ? 1.0 + std::pow(10.0, random.uniform(-7.0, 0.0)) : random.uniform(0.0, 2.0);
     const dvec3 nearest = solid.at(end * solid.half_height, impact * radius * aside);
     const double distance = solid.size() * std::pow(10.0, random.uniform(-1.0, 3.0));
     const double beside = static_cast<double>(kUnitRoundoff) * solid.size() * std::round(random.uniform(-8.0, 8.0));
     const double tilt = i % 5 == 0 ? 0.0 : (i % 7 < 4 ? 1.0 : -1.0) * std::exp2(-random.uniform(8.0, 90.0));
     const vec3 origin(nearest - distance * along + beside * solid.axis);
-    // Not of unit length: where the axis is one of the world's, the tilt is kept however small it is.
+    // The direction is not of unit length: if the axis is one of the world's, the tilt is kept however small it is.
     rays.push_back({origin, 0.0F, vec3(along + tilt * solid.axis), std::numeric_limits<float>::infinity()});
   }
   return rays;

@@ -10,7 +10,8 @@ namespace {
 
 const size_t kRayCount = some_of(100000);
 
-/// From random places at a distance from the centre, at targets spread over a disk of `spread` radii across the view.
+/// Returns rays from random places at a distance from the centre, to targets spread over a disk of `spread` radii
+/// across the view.
 std::vector<Ray> rays_at(const world::Sphere& sphere, double distance, double spread, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kRayCount; ++i) {
@@ -46,7 +47,7 @@ void run_small(Lab& lab) {
   }
 }
 
-/// P = o + t d lies on the surface.
+/// Expects that P = o + t d lies on the surface.
 void expect_bk(Lab& lab, const world::Sphere& sphere, std::span<const Ray> rays, const std::string& where) {
   const Tally tally = lab.cast_and_judge(scene_of({sphere}), rays);
   lab.expect_at_most("|P - surface| / uS (BK), " + where, 8.0 * lab.rounding_factor(), tally.max_surface_error);
@@ -61,7 +62,7 @@ void run_large(Lab& lab) {
   while (rays.size() < kRayCount) {
     const dvec3 up = random.direction();
     const dvec3 origin = (1e6 + 1.0) * up;
-    // Down enough to meet the sphere in spite of rounding: the horizon is 1.4e-3 below the level.
+    // The ray goes down enough to meet the sphere in spite of rounding: the horizon is 1.4e-3 below the level.
     const dvec3 direction = random.direction();
     if (glm::dot(direction, up) < -3e-3) rays.push_back(ray_towards(origin, origin + direction));
   }
@@ -101,8 +102,8 @@ void run_inside(Lab& lab) {
     }
     expect_bk(lab, sphere, rays, label("from inside at r times", depth));
   }
-  // From the surface inwards to the far side: not the start, which rounding has put a few u S beside the surface, and S
-  // is 2 r. Along a ray that is not grazing, tmin is more.
+  // The rays go from the surface inwards to the far side. They must not hit their start, which rounding has put a few u
+  // S beside the surface; S is 2 r. On a ray that is not grazing, tmin is larger than this error.
   std::vector<Ray> rays;
   while (rays.size() < kRayCount) {
     const dvec3 outward = random.direction();

@@ -21,7 +21,7 @@ const size_t kRaysPerFarShape = some_of(1000);
 struct TreeScene {
   const char* name;
   world::Scene scene;
-  /// Where the rays go, around this.
+  /// The rays go to places around this point.
   dvec3 center;
   double radius;
 };
@@ -30,13 +30,13 @@ vec3 turned_axis(Random& random) {
   return vec3(random.direction());
 }
 
-/// In a ball, all places alike.
+/// Returns a point in a ball; all points are equally likely.
 dvec3 random_point(const dvec3& center, double radius, Random& random) {
   const double distance = radius * std::cbrt(random.uniform());
   return center + distance * random.direction();
 }
 
-/// Shapes of every kind strewn over a ball, some much larger than others.
+/// Returns shapes of every kind scattered in a ball; some are much larger than others.
 world::Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
   std::vector<world::Shape> shapes;
   for (int i = 0; i < count; ++i) {
@@ -70,7 +70,7 @@ world::Scene make_strewn(const dvec3& center, double radius, int count, Random& 
   return scene_of(std::move(shapes));
 }
 
-/// A field of squares with shared edges, every second one twice: equal t wherever one looks.
+/// Returns a field of squares with shared edges; every second square is there twice, so that equal t are everywhere.
 world::Scene make_ties() {
   Mesh mesh;
   for (int i = 0; i < 8 * 8; ++i) mesh.positions.emplace_back(i % 8, 0.1F * static_cast<float>((i * i) % 7), i / 8);
@@ -86,7 +86,7 @@ world::Scene make_ties() {
 }
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {
-  // From outside, from within, and from within along an axis.
+  // The ray starts outside, inside, or inside along an axis.
   const dvec3 within = random_point(in.center, in.radius, random);
   const dvec3 target = random_point(in.center, in.radius, random);
   if (index % 8 < 5) return ray_towards(in.center + 3.0 * in.radius * random.direction(), target);
@@ -99,7 +99,7 @@ Ray ray_through(const TreeScene& in, Random& random, size_t index) {
   return ray;
 }
 
-/// Every builder's boxes against none.
+/// Compares the answers with every builder's boxes with those without boxes.
 void expect_as_brute_force(Lab& lab, const std::string& name, const world::Scene& scene, std::span<const Ray> rays) {
   const FeatureMask features = features_of(scene);
   std::vector<layout::HitRecord> expected;
@@ -111,8 +111,8 @@ void expect_as_brute_force(Lab& lab, const std::string& name, const world::Scene
   }
 }
 
-/// Triangles that rays graze: were t of a hit outside the triangle's box, the tree would pass over it or not, as the
-/// builder has it.
+/// Rays graze triangles. If the t of a hit were outside the triangle's box, the tree would find the hit or not,
+/// depending on the builder.
 void run_grazed_trees(Lab& lab) {
   Random random(380);
   Mesh mesh;
@@ -151,8 +151,8 @@ void run_trees(Lab& lab) {
   }
 }
 
-/// Small shapes far from the world's origin, from as far and much farther: how the traversal brings rays near may cost
-/// no more than u S, however far from the origin the whole scene lies.
+/// Small shapes lie far from the world's origin; rays come from as far and from much farther. The step that moves rays
+/// nearer may cost no more than u S, however far the whole scene is from the origin.
 void run_far_from_the_origin(Lab& lab) {
   Random random(55);
   for (const vec3& center : {vec3(1e3F, -8e2F, 1.2e3F), vec3(1e5F, -1e5F, 1e5F)}) {
@@ -164,7 +164,7 @@ void run_far_from_the_origin(Lab& lab) {
           const auto size = static_cast<double>(bound.radius);
           std::vector<Ray> rays;
           for (size_t k = 0; k < kRaysPerFarShape; ++k) {
-            // One after the other, because compilers evaluate arguments in orders of their own.
+            // The calls stand one after the other, because compilers evaluate arguments in different orders.
             const dvec3 target = random_point(dvec3(bound.center), size, random);
             const dvec3 origin = dvec3(bound.center) + distance * size * random.direction();
             rays.push_back(ray_towards(origin, target));

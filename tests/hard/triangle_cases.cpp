@@ -18,8 +18,8 @@ using oracle::Vector;
 constexpr double kPi = std::numbers::pi;
 const size_t kRayCount = some_of(100000);
 
-/// A closed UV sphere as Embree's watertightness tests make it: `steps` + 1 rows of 2 * `steps` vertices, all of a
-/// pole's alike.
+/// Returns a closed UV sphere as in Embree's watertightness tests: `steps` + 1 rows of 2 * `steps` vertices; all
+/// vertices of a pole are at the same place.
 Mesh make_uv_sphere(const dvec3& center, uint32_t steps, const std::function<double(uint32_t, uint32_t)>& radius_of) {
   Mesh mesh;
   const uint32_t width = 2 * steps;
@@ -88,7 +88,7 @@ uint64_t count_hits(std::span<const Hit> hits) {
          }));
 }
 
-/// Every one of these rays, at a mesh alone, has something before it.
+/// Every one of these rays, at a mesh alone, has a surface before it.
 void expect_no_leaks(Lab& lab, const world::Scene& scene, std::span<const Ray> rays, const std::string& what) {
   const std::vector<Hit> hits = lab.cast(scene, rays);
   const uint64_t leaks = count_misses(hits);
@@ -120,7 +120,8 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
   expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return at(pick_vertex); }), "at vertices from inside" + where);
   expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return at(pick_on_edge); }), "at edges from inside" + where);
 
-  // From outside through the inside: past the middle, the near side has let the ray through.
+  // The rays come from outside and go through the inside. If a hit is past the middle, the near side has let the ray
+  // through.
   std::vector<Ray> rays;
   while (rays.size() < kRayCount) {
     const dvec3 from = center + 10.0 * random.direction();
@@ -135,13 +136,13 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
   expect_no_leaks(lab, scene, rays, "at vertices and edges from outside" + where);
 }
 
-/// Two triangles below and one above a triangle whose three corners lie in a line: the middle one on the edge of the
-/// triangle above. Many such groups, beside each other.
+/// Casts rays at a triangle whose three corners lie in a line, with two triangles below and one above: the middle
+/// corner lies on the edge of the triangle above. There are many such groups, beside each other.
 void cast_at_collinear_corners(Lab& lab) {
   Random random(210);
   Mesh mesh;
   std::vector<std::array<dvec3, 2>> seams;
-  // Fixed point, so that the middle is exact.
+  // Coordinates are in fixed point, so that the middle is exact.
   const auto point = [&](double reach) { return glm::round(reach * random.direction() * 1024.0) / 1024.0; };
   for (int i = 0; i < 256; ++i) {
     const dvec3 center(4.0 * (i % 16), 0.0, 4.0 * (i / 16));
@@ -161,7 +162,7 @@ void cast_at_collinear_corners(Lab& lab) {
     const auto& seam = seams[pick(random, seams.size())];
     const dvec3 target = glm::mix(seam[0], seam[1], random.uniform(0.01, 0.99));
     Ray ray = ray_towards(target + random.direction(), target);
-    // Others lie behind.
+    // Other groups lie behind.
     ray.tmax = 1.1F;
     const uint32_t group = static_cast<uint32_t>(&seam - seams.data());
     const vec3* corners = &mesh.positions[5 * group];
@@ -181,8 +182,8 @@ void run_closed_mesh(Lab& lab) {
   const dvec3 center(148376.0, 1234.0, -223423.0);
   cast_at_closed_mesh(lab, center, 50, some_of(1000000), ", 50 steps");
   cast_at_closed_mesh(lab, center, 200, some_of(1000000), ", 200 steps");
-  // Coarse in all three axes, many triangles have three corners in a line: they are not packed, and the corner in the
-  // middle lies on the edge of a neighbour.
+  // On a coarse grid in all three axes, many triangles have three corners in a line: they are not packed, and the
+  // corner in the middle lies on the edge of a neighbour.
   cast_at_closed_mesh(lab, dvec3(148376.0, 171234.0, -223423.0), 200, kRayCount, ", collinear corners");
 }
 
@@ -201,7 +202,7 @@ void run_spikes(Lab& lab) {
                   "at edges from the centre");
 }
 
-/// Places what is drawn in [-1, 1]^2 in space: as it lies, or turned so that no coordinate is a round number.
+/// Places a drawing in [-1, 1]^2 in space: axis-aligned, or turned so that no coordinate is a round number.
 struct Placement {
   const char* name;
   dvec3 center;
@@ -248,8 +249,8 @@ Mesh make_fan(const Placement& place, uint32_t count) {
   return mesh;
 }
 
-/// 256^2 rays at a lattice inside [-reach, reach]^2 and half as many at vertices and edges there, along the normal and
-/// not.
+/// Casts 256^2 rays at a lattice inside [-reach, reach]^2 and half as many at vertices and edges there, along the
+/// normal and at other angles. Returns the number of leaks.
 uint64_t count_surface_leaks(Lab& lab, const Placement& place, const Mesh& mesh, double reach, Random& random) {
   const dvec3 oblique = glm::normalize(place.normal() + 1.5 * place.right - 0.7 * place.up);
   std::vector<Ray> rays;
@@ -261,7 +262,7 @@ uint64_t count_surface_leaks(Lab& lab, const Placement& place, const Mesh& mesh,
   };
   for (int y = 0; y < 256; ++y) {
     for (int x = 0; x < 256; ++x) {
-      // Halves, quarters... fall on the vertices of a square.
+      // Multiples of 1/2, 1/4 and so on are vertices of the square.
       add(place.at((x - 128) / 128.0, (y - 128) / 128.0), (x + y) % 2 != 0);
       if (x % 2 == 0) add(x % 4 == 0 ? pick_vertex(mesh, random) : pick_on_edge(mesh, random), y % 2 != 0);
     }
@@ -278,13 +279,13 @@ void run_squares_and_fans(Lab& lab) {
   for (const Placement& place : placements(random)) {
     uint64_t leaks = 0;
     for (uint32_t side = 1; side <= 128; side *= 2) {
-      // 4, 16 ... 65536 triangles.
+      // The meshes have 4, 16 ... 65536 triangles.
       leaks += count_surface_leaks(lab, place, make_square(place, 2 * side, side), 0.99, random);
     }
     lab.expect_at_most(std::string("leaks of squares of 4...65536, ") + place.name, 0.0, static_cast<double>(leaks));
     leaks = 0;
     for (uint32_t count = 4; count <= 1024; count *= 4) {
-      // The square that fits into a fan of four has corners at (0.5, 0.5).
+      // The square that fits into a fan of four triangles has corners at (0.5, 0.5).
       leaks += count_surface_leaks(lab, place, make_fan(place, count), 0.49, random);
     }
     lab.expect_at_most(std::string("leaks of fans of 4...1024, ") + place.name, 0.0, static_cast<double>(leaks));
@@ -298,7 +299,7 @@ Mesh make_triangle(const vec3& a, const vec3& b, const vec3& c) {
   return mesh;
 }
 
-/// Rays in the plane of a triangle that pass beside it: whatever rounding makes of the plane, they miss.
+/// Rays lie in the plane of a triangle and pass beside it: however the plane is rounded, they must miss.
 void cast_edge_on(Lab& lab) {
   Random random(240);
   uint64_t hit_count = 0;
@@ -312,7 +313,7 @@ void cast_edge_on(Lab& lab) {
       const double angle = random.uniform(0.0, 2.0 * kPi);
       const dvec3 along = std::cos(angle) * right + std::sin(angle) * up;
       const dvec3 across = std::cos(angle) * up - std::sin(angle) * right;
-      // Sides of the triangle as the ray sees it.
+      // These are the sides of the triangle as the ray sees it.
       double lo = std::numeric_limits<double>::infinity();
       double hi = -lo;
       for (const vec3& p : mesh.positions) {
@@ -332,13 +333,13 @@ void cast_edge_on(Lab& lab) {
   Lab::credit("triangle", tally, 0);
 }
 
-/// How far o + t d of the worst hit lies from its triangle's plane, and outside the box around its corners, in u S.
+/// The largest distances of o + t d of the hits from the triangle's plane, and from the box around its corners, in u S.
 struct Stray {
   Real off_plane = 0;
   Real off_box = 0;
 
   void add(const Mesh& mesh, std::span<const Ray> rays, std::span<const Hit> hits) {
-    // Written so that NaN stays.
+    // This form of the maximum keeps NaN.
     const auto raise = [](Real& worst, Real error) { worst = error <= worst ? worst : error; };
     for (size_t i = 0; i < rays.size(); ++i) {
       if (hits[i].object < 0) continue;
@@ -357,14 +358,15 @@ struct Stray {
 
   void expect_little(Lab& lab, const std::string& where) const {
     lab.expect_at_most("|o + t d - plane| / uS, " + where, 8.0 * lab.rounding_factor(), static_cast<double>(off_plane));
-    // A multiple of BK: P moves along the ray, not across it, and what follows from a hit needs it at the triangle.
+    // The bound is a multiple of BK: P moves along the ray, not across it, and whatever uses the hit needs it at the
+    // triangle.
     lab.expect_at_most("o + t d outside the triangle's box / uS, " + where, 24.0 * lab.rounding_factor(),
                        static_cast<double>(off_box));
   }
 };
 
-/// Rays almost in the plane of a triangle and across it. Whether they hit is for rounding to say, but where they do
-/// is a point of the triangle, to which shadows and reflections start.
+/// Rays go almost in the plane of a triangle and across it. Rounding may decide whether they hit. If they hit, the hit
+/// must be a point of the triangle, from which shadow rays and reflections start.
 void cast_across(Lab& lab) {
   Random random(241);
   Tally tally;
@@ -379,7 +381,7 @@ void cast_across(Lab& lab) {
     }
     stray.expect_little(lab, label("grazing, offset", offset));
   }
-  // A turned wall from points of its plane.
+  // The rays start in the plane of a rotated wall.
   Stray stray;
   for (int i = 0; i < 16; ++i) {
     const dvec3 right = random.direction();
@@ -412,7 +414,7 @@ void run_degenerate(Lab& lab) {
       Degenerate{"area 0", make_triangle(vec3(0, 1, 2), vec3(1, 2, 3), vec3(4, 5, 6))},
       Degenerate{"area 1e-40, needle", make_triangle(vec3(0.0F), vec3(1, 0, 0), vec3(0, 1e-40F, 0))},
       Degenerate{"area 1e-40, 1e-20 each way", make_triangle(vec3(0.0F), vec3(1e-20F, 0, 0), vec3(0, 1e-20F, 0))},
-      // From pbrt's test Triangle.BadCases.
+      // This triangle is from pbrt's test Triangle.BadCases.
       Degenerate{"collinear near -1113.45459", make_triangle(vec3(-1113.45459F, -79.049614F, -56.2431908F),
                                                              vec3(-1113.45459F, -87.0922699F, -56.2431908F),
                                                              vec3(-1113.45459F, -79.2090149F, -56.2431908F))},
@@ -444,8 +446,8 @@ void run_degenerate(Lab& lab) {
 
 constexpr uint32_t kSliverRows = 64;
 
-/// A strip of slivers side by side, not higher than 1, `aspect` times as long as thick: needles, whose short sides lie
-/// on two lines, or caps, where every other row of vertices is shifted by half a side.
+/// Returns a strip of slivers side by side, with a height of at most 1 and `aspect` times as long as thick. They are
+/// needles, whose short sides lie on two lines, or caps, where every other row of vertices is shifted by half a side.
 Mesh make_slivers(const Placement& place, double aspect, bool is_cap) {
   const double thickness = std::min(1.0 / aspect, 1.0 / kSliverRows);
   const double length = thickness * aspect;
@@ -465,7 +467,7 @@ Mesh make_slivers(const Placement& place, double aspect, bool is_cap) {
     } else {
       here = {add(-1.0, y), add(-0.5, y), add(0.5, y), add(1.0, y)};
     }
-    // A zipper: the row whose next vertex comes first on the way goes on.
+    // The rows are joined like a zipper: the row whose next vertex comes first along the way goes on.
     for (size_t i = 0, j = 0; !below.empty() && (i + 1 < below.size() || j + 1 < here.size());) {
       const bool takes_below = j + 1 == here.size() || (i + 1 < below.size() && i <= j);
       if (takes_below) {
@@ -481,7 +483,7 @@ Mesh make_slivers(const Placement& place, double aspect, bool is_cap) {
   return mesh;
 }
 
-/// |P(u,v) - plane| / uS of the worst hit, with P as the renderer rebuilds it.
+/// Returns |P(u,v) - plane| / uS of the worst hit, with P as the renderer computes it.
 double worst_plane_distance(Lab& lab, const world::Scene& scene, const Mesh& mesh, std::span<const Ray> rays) {
   const std::vector<Bounce> bounces = Bouncer(lab.device(), scene).bounce(rays);
   Real worst = 0;
@@ -493,11 +495,11 @@ double worst_plane_distance(Lab& lab, const world::Scene& scene, const Mesh& mes
     const Vector b(mesh.positions[corners.y]);
     const Vector c(mesh.positions[corners.z]);
     const Vector normal = glm::normalize(glm::cross(b - a, c - a));
-    // The rounding of the lift counts as P's.
+    // The rounding of the lift counts as an error of P.
     const Real error = std::abs(std::abs(glm::dot(Vector(bounces[i].origin) - a, normal)) - bounces[i].lift);
     const oracle::Ray ray{Vector(rays[i].origin), Vector(rays[i].direction)};
     const Real units = error / (oracle::kRoundoff * oracle::scale_of(mesh, static_cast<int32_t>(triangle), ray));
-    // Written so that NaN stays.
+    // This form of the maximum keeps NaN.
     worst = units <= worst ? worst : units;
   }
   return static_cast<double>(worst);
@@ -512,7 +514,7 @@ void run_slivers(Lab& lab) {
       uint64_t leaks = 0;
       double worst = 0.0;
       for (Placement place : placements(random)) {
-        // At the origin the vertices' rounding is small against the slivers' thickness.
+        // At the origin, the vertices' rounding is small compared with the slivers' thickness.
         place.center = dvec3(0.0);
         const Mesh mesh = make_slivers(place, aspect, is_cap);
         const double inner = 0.4 * kSliverRows * std::min(1.0 / aspect, 1.0 / kSliverRows);
@@ -537,7 +539,7 @@ void run_slivers(Lab& lab) {
         const world::Scene scene = scene_of({mesh});
         const std::vector<Hit> hits = lab.cast(scene, rays);
         leaks += count_misses(hits);
-        constexpr size_t kJudged = 100;  // by brute force
+        constexpr size_t kJudged = 100;  // the number of rays that are checked by brute force
         tally.add(Lab::judge(scene, std::span(rays).first(kJudged), std::span(hits).first(kJudged)));
         tally.rays += rays.size() - kJudged;
         worst = std::max(worst, worst_plane_distance(lab, scene, mesh, rays));
@@ -547,7 +549,7 @@ void run_slivers(Lab& lab) {
       lab.expect_at_most("|P(u,v) - plane| / uS" + where, 8.0 * lab.rounding_factor(), worst);
       lab.note("K of t" + where, tally.max_t_error);
       lab.note("margin of other answers / uS" + where, tally.max_margin);
-      // K of t is the slivers', not the primitive's: it has its own lines.
+      // K of t belongs to the slivers, not to the primitive; it has its own lines.
       Lab::credit("triangle", tally.without_t_errors(), leaks);
     }
   }
@@ -588,7 +590,7 @@ void run_unit_triangle(Lab& lab) {
     std::vector<Ray> rays;
     for (int y = 0; y < 16; ++y) {
       for (int x = 0; x < 16; ++x) {
-        // A lattice folded into the triangle.
+        // The target is a point of a lattice that is folded into the triangle.
         dvec3 target((x + 0.25) / 16.0, (y + 0.5) / 16.0, 0.0);
         if (target.x + target.y > 1.0) target = dvec3(1.0 - target.x, 1.0 - target.y, 0.0);
         const dvec3 slant = is_oblique ? dvec3{random.uniform(-1, 1), random.uniform(-1, 1), 0.0} : dvec3(0.0);

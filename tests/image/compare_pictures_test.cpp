@@ -18,7 +18,7 @@ Image make_flat(const uvec2& size, const vec3& color) {
   return {size, std::vector<vec3>(static_cast<size_t>(size.x) * size.y, color)};
 }
 
-/// Stripes, cells and gradients of all colours.
+/// Returns stripes, cells and gradients of all colours.
 Image make_pattern() {
   Image image = make_flat({60, 44}, vec3(0));
   for (uint32_t y = 0; y < image.size.y; ++y) {
@@ -32,7 +32,7 @@ Image make_pattern() {
   return image;
 }
 
-/// With a disc of another colour and a line in it.
+/// Adds a disc of another colour and a line to the picture.
 Image change(Image image) {
   for (uint32_t y = 0; y < image.size.y; ++y) {
     for (uint32_t x = 0; x < image.size.x; ++x) {
@@ -106,7 +106,7 @@ TEST(ComparePicturesTest, AFileIsLinearByItsEnding) {
   EXPECT_EQ(encoding_of("exr"), PictureEncoding::kSrgb);
 }
 
-// The numbers of flip-evaluator 1.7, by the paper's authors, which computes in fp32.
+// These numbers are from flip-evaluator 1.7, by the paper's authors, which computes in fp32.
 TEST(FlipTest, AgreesWithItsAuthorsProgram) {
   const Image reference = make_pattern();
   const PictureDifference difference = compare_pictures(reference, change(reference));

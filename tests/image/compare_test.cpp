@@ -23,7 +23,7 @@ Image make_flat(uint32_t width, uint32_t height, float value) {
   return image;
 }
 
-/// A shaded disk on black, its centre at (x, y) in pixels: what a small golden image looks like.
+/// Returns a shaded disk on black with its centre at (x, y) in pixels, which looks like a small golden image.
 Image make_disk(float x, float y) {
   Image image = make_flat(64, 64, 0.0F);
   for (uint32_t row = 0; row < 64; ++row) {

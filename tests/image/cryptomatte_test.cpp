@@ -13,7 +13,7 @@
 namespace promin {
 namespace {
 
-// The hashes are those of PyPI's mmh3 5.2, of which two have the exponents 0 and 255, where the specification flips a
+// These hashes are from PyPI's mmh3 5.2. Two of them have the exponents 0 and 255, for which the specification flips a
 // bit.
 TEST(Cryptomatte, IdsAreHashesOfNames) {
   EXPECT_EQ(cryptomatte_id("cone"), 0x106f2ad6U);
@@ -41,7 +41,7 @@ class CryptomatteTest : public testing::Test {
     aovs_.material_coverage[0] = {Coverage{1, 1.0F}};
   }
 
-  /// Coverage by id of a layer's pixel, by the letters of its channels alone.
+  /// Returns the coverage of each id in a layer's pixel, read only by the letters of its channels.
   static std::map<uint32_t, float> decode(const Cryptomatte& cryptomatte, const std::string& layer, size_t pixel) {
     std::map<std::string, uint32_t> values;
     for (const Channel& channel : cryptomatte.channels) values[channel.name] = channel.values.at(pixel);
@@ -68,7 +68,7 @@ TEST_F(CryptomatteTest, WhatHasOneNameIsOneMatte) {
                                                                {cryptomatte_id("object 3"), 0.125F}}));
   EXPECT_EQ(decode(cryptomatte, "CryptoMaterial", 0), (Coverages{{cryptomatte_id("material 1"), 1.0F}}));
   EXPECT_EQ(decode(cryptomatte, "CryptoObject", 1), Coverages{});
-  // The largest is first.
+  // The channels with the largest coverage come first.
   EXPECT_EQ(cryptomatte.channels[0].name, "CryptoObject00.R");
   EXPECT_EQ(cryptomatte.channels[0].values[0], cryptomatte_id("pane"));
 }
@@ -76,7 +76,7 @@ TEST_F(CryptomatteTest, WhatHasOneNameIsOneMatte) {
 TEST_F(CryptomatteTest, TheManifestNamesEachId) {
   std::map<std::string, std::string> metadata;
   for (const auto& [name, value] : make_cryptomatte(scene_, aovs_).metadata) metadata[name] = value;
-  // The key is the first seven digits of the layer's hash, 3ae39a58 by mmh3.
+  // The key has the first seven digits of the layer's hash, which is 3ae39a58 by mmh3.
   const std::string key = "cryptomatte/3ae39a5/";
   EXPECT_EQ(metadata.at(key + "name"), "CryptoObject");
   EXPECT_EQ(metadata.at(key + "hash"), "MurmurHash3_32");

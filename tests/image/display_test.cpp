@@ -22,7 +22,7 @@ namespace {
 using Color = std::array<long double, 3>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Khronos PBR Neutral as its authors write it, with a mix to white instead of a saturation.
+/// Khronos PBR Neutral as its authors write it, but with a mix to white instead of a saturation.
 Color neutral_of(Color c) {
   const long double start = 0.8L - 0.04L;
   const long double least = std::min({c[0], c[1], c[2]});
@@ -42,7 +42,7 @@ Color aces_of(Color c) {
   return c;
 }
 
-/// With a white of 4.
+/// Reinhard's curve with a white of 4.
 Color reinhard_of(Color c) {
   const long double luminance = 0.2126L * c[0] + 0.7152L * c[1] + 0.0722L * c[2];
   const long double mapped = luminance * (1 + luminance / (4.0L * 4.0L)) / (1 + luminance);
@@ -50,7 +50,7 @@ Color reinhard_of(Color c) {
   return c;
 }
 
-/// As Wrensch writes it.
+/// AgX as Wrensch writes it.
 Color agx_of(Color c) {
   const long double in[3][3] = {{0.842479062253094L, 0.0784335999999992L, 0.0792237451477643L},
                                 {0.0423282422610123L, 0.878468636469772L, 0.0791661274605434L},
@@ -78,7 +78,7 @@ Color agx_of(Color c) {
   return v;
 }
 
-/// From black to far beyond white, in steps of 2 %.
+/// Returns numbers from black to far beyond white, in steps of 2 %.
 std::vector<float> make_ramp() {
   std::vector<float> ramp = {0.0F};
   for (float x = 1e-4F; x < 1e4F; x *= 1.02F) ramp.push_back(x);
@@ -99,7 +99,7 @@ TEST(DisplayTest, ExposureCountsInStops) {
   EXPECT_EQ(promin::apply({.exposure_ev = 1.0F}, vec3(0.25F, 0.5F, 3.0F)), vec3(0.5F, 1.0F, 6.0F));
   EXPECT_EQ(promin::apply({.exposure_ev = -3.0F}, vec3(8.0F, 0.5F, 0.0F)), vec3(1.0F, 0.0625F, 0.0F));
   EXPECT_NEAR(promin::apply({.exposure_ev = 0.5F}, vec3(1.0F)).x, std::sqrt(2.0), 1e-7);
-  // The exposure comes before the curve.
+  // The exposure is applied before the curve.
   EXPECT_EQ(promin::apply({.exposure_ev = 2.0F, .tone_mapping = ToneMapping::kNeutral}, vec3(0.5F)),
             apply(ToneMapping::kNeutral, vec3(2.0F)));
 }
@@ -110,14 +110,14 @@ TEST(DisplayTest, UnlitLightIsShownAsItIs) {
   const vec3 unlit(0.25F, 0.75F, 0.5F);
   EXPECT_EQ(promin::apply(display, lit, vec4(0.0F)), promin::apply(display, lit));
   EXPECT_EQ(promin::apply(display, unlit, vec4(unlit, 1.0F)), unlit);
-  // Where both share a pixel it shows both by their shares, no brighter than the brighter one.
+  // A pixel that both share shows both by their fractions, and is no brighter than the brighter one.
   for (const float share : {0.25F, 0.5F, 0.75F}) {
     const vec3 shown = promin::apply(display, share * unlit + (1.0F - share) * lit, vec4(share * unlit, share));
     const vec3 expected = share * unlit + (1.0F - share) * promin::apply(display, lit);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(shown[i], expected[i], 1e-6F) << share;
   }
   EXPECT_EQ(promin::apply({}, lit, vec4(0.1F, 0.1F, 0.1F, 0.5F)), lit);
-  // Rounding may leave less than nothing of the lit light.
+  // Rounding may make the lit light slightly negative.
   const vec3 rounded = promin::apply(display, unlit * (1.0F - 1e-6F), vec4(unlit, 1.0F - 1e-7F));
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(rounded[i], unlit[i], 1e-6F);
 }
@@ -163,7 +163,7 @@ TEST(DisplayTest, NeutralIsMonotoneAndKeepsGreyGreyAndBelowWhite) {
 }
 
 TEST(DisplayTest, NeutralKeepsBaseColorsBelowItsShoulder) {
-  // What a surface of this colour sends under E = pi, with the 0.04 that it reflects beside.
+  // The light is that of a surface of this colour under E = pi, with the 0.04 that the surface reflects besides.
   for (const vec3& base : {vec3(0.05F), vec3(0.76F, 0.1F, 0.3F), vec3(0.5F, 0.7F, 0.04F)}) {
     const vec3 shown = apply(ToneMapping::kNeutral, base + 0.04F);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(shown[i], base[i], 1e-7) << base[i];
@@ -177,7 +177,7 @@ TEST(DisplayTest, WhatIsNoColorIsShownAsOne) {
        {ToneMapping::kNeutral, ToneMapping::kAces, ToneMapping::kReinhard, ToneMapping::kAgx}) {
     for (const float x : {kInfinity, 3e38F, -kInfinity, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
       const vec3 shown = promin::apply({.exposure_ev = 60.0F, .tone_mapping = mapping}, vec3(x, 0.5F, x));
-      // Reinhard's curve goes on beyond its white.
+      // Reinhard's curve continues beyond its white.
       const float most = mapping == ToneMapping::kReinhard ? 1e9F : 1.04F;
       for (int i = 0; i < 3; ++i) EXPECT_TRUE(shown[i] >= 0.0F && shown[i] < most) << x << " " << shown[i];
     }
@@ -195,7 +195,8 @@ TEST(DisplayTest, TheAverageExposureBringsTheLogMeanToMiddleGrey) {
   EXPECT_NEAR(average_exposure_ev(std::vector<vec3>{vec3(0.0F)}, {}), std::log2(1800.0), 1e-5) << "black is not lost";
 }
 
-// Of a flat grey between two codes the mean of the codes is the grey, and no pixel is off by more than one and a half.
+// For a flat grey between two codes, the mean of the codes is the grey, and no pixel differs by more than one and a
+// half codes.
 TEST(DisplayTest, DitheringKeepsTheMeanAndBlackAndWhite) {
   for (const double code : {0.0, 0.25, 17.5, 100.75, 254.6, 255.0}) {
     double sum = 0.0;

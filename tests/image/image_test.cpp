@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every channel of every pixel differs, beyond [0, 1] as well.
+/// Returns a picture in which every channel of every pixel differs, with values beyond [0, 1].
 Image make_ramp(uint32_t width, uint32_t height) {
   Image image;
   image.size = uvec2(width, height);
@@ -42,7 +42,7 @@ std::string message_of_reading(const fs::path& file) {
 }
 
 TEST(EncodeSrgbTest, KnownValues) {
-  // IEC 61966-2-1, evaluated with 50 digits.
+  // These values of IEC 61966-2-1 were computed with 50 digits.
   EXPECT_EQ(encode_srgb(0.0F), 0.0F);
   EXPECT_EQ(encode_srgb(1.0F), 1.0F);
   EXPECT_FLOAT_EQ(encode_srgb(0.001F), 0.01292F);
@@ -133,12 +133,12 @@ TEST_F(ImageTest, JpegIsNearSrgbWithWholeColours) {
   const auto input = OIIO::ImageInput::open((folder_ / "a.jpg").string());
   ASSERT_TRUE(input);
   EXPECT_EQ(input->spec().get_string_attribute("jpeg:subsampling"), "4:4:4");
-  // More than the format holds.
+  // The format cannot hold such a width.
   EXPECT_THROW(write_image(folder_ / "wide.jpg", make_ramp(65501, 1)), RunError);
   EXPECT_EQ(file_count(), 2);
 }
 
-/// Eight columns of one colour, of which the left half covers half of its pixels.
+/// Eight columns of one colour. In the left half, it covers half of each pixel.
 struct Covered {
   Image image;
   Channel alpha{"A", false, std::vector<uint32_t>(8 * 8, std::bit_cast<uint32_t>(1.0F))};
@@ -270,11 +270,11 @@ TEST_F(ImageTest, LuminanceIsReadAsGrey) {
   for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(image.pixels.at(1)[channel], 0.2F, 1e-6F);
 }
 
-/// The pixels of a Radiance file, row after row from the top: of each the number that it has in the file.
+/// Returns the order of the pixels in a Radiance file: for each pixel, row by row from the top, its number in the file.
 std::vector<int> read_order(const fs::path& file, const std::string& resolution) {
   std::ofstream out(file, std::ios::binary);
   out << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" << resolution << "\n";
-  // A mantissa of 128 + i and an exponent of 129 are 1 + i / 128.
+  // A mantissa of 128 + i and an exponent of 129 give 1 + i / 128.
   for (int i = 0; i < 6; ++i) out << static_cast<char>(128 + i) << "\x80\x80\x81";
   out.close();
   const Image image = read_image(file);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Jobs of pieces that are mere bytes: what the folder alone tells, whatever happened to it.
+// These tests check jobs whose pieces are plain bytes: the folder alone tells the state, whatever happened to it.
 #include "jobs/job.h"
 
 #include <gmock/gmock.h>
@@ -46,7 +46,7 @@ Content make_content(size_t piece) {
 
 class JobTest : public TempFolder {
  protected:
-  /// Which pieces were made, and which of those were bad.
+  /// Returns the pieces that were made, and adds those that were bad.
   std::vector<size_t> run(const Job& job, const Share& share = {}) {
     std::vector<size_t> made;
     bad_.clear();
@@ -70,7 +70,7 @@ class JobTest : public TempFolder {
   }
   void write(const fs::path& file, const std::string& text) const { std::ofstream(file, std::ios::binary) << text; }
 
-  /// The sentence of what it throws.
+  /// Returns the sentence of the exception that a call throws.
   template <typename Exception, typename Call>
   static std::string refusal_of(const Call& call) {
     try {
@@ -81,7 +81,7 @@ class JobTest : public TempFolder {
     return "";
   }
 
-  /// Of the job; there is none yet.
+  /// The folder of the job, which does not exist yet.
   fs::path job_folder_ = folder_ / "job";
   std::vector<std::string> bad_;
 };
@@ -126,7 +126,7 @@ TEST_F(JobTest, WhatIsBadIsNamedAndMadeAnew) {
   write(job.file_of(1), read(job.file_of(1)).substr(0, 900));
   write(job.file_of(2), "");
   fs::copy_file(job.file_of(4), job.file_of(3), fs::copy_options::overwrite_existing);
-  // What was said of it counts as well.
+  // The checksum also covers the text that describes the piece.
   std::string renumbered = read(job.file_of(5));
   renumbered.replace(renumbered.find("number 5"), 8, "number 6");
   write(job.file_of(5), renumbered);
@@ -233,16 +233,16 @@ TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
                 check_build(job, {"here", "print", "two"}, other);
               }),
               HasSubstr("were made by another build of promin, and this build computes other bits for piece part2"));
-  // Once a build has made a piece, its processes need no proof.
+  // After a build has made a piece, its processes need no proof.
   make_piece(job, 0, {"here", "print", "two"}, make_content);
   EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);
-  // A bad piece proves nothing.
+  // A bad piece is not a proof.
   write(job.file_of(0), read(job.file_of(0)) + "more");
   write(job.file_of(2), read(job.file_of(2)) + "more");
   EXPECT_EQ(check_build(job, {"here", "print", "three"}, other), std::nullopt);
 }
 
-// As many processes of a queue do, and one that was killed before it had begun.
+// Many processes of a queue do this, and one was killed before it had begun.
 TEST_F(JobTest, SeveralMayBeginAtOnce) {
   std::vector<pid_t> children;
   for (int i = 0; i < 8; ++i) {
@@ -314,7 +314,7 @@ TEST_F(JobTest, TheLedgerTellsWhatBeginsAndWhatCameOfIt) {
                          HasSubstr(R"("event":"begun","number":3)"), HasSubstr(R"("event":"stopped","number":3)")));
 }
 
-// Whose disk is full before the piece is begun makes none.
+// A process whose disk is full before the piece begins makes no piece.
 TEST_F(JobTest, WhereNoLineCanBeWrittenNoPieceIsMade) {
   const Job job = Job::create(job_folder_, make_manifest());
   fs::create_directories(job_folder_ / "ledger" / (host_name() + "-" + std::to_string(getpid()) + ".jsonl"));
@@ -328,7 +328,7 @@ TEST_F(JobTest, HashesOfFilesAreKnownByTheirStamps) {
   KnownHashes first(folder_);
   EXPECT_EQ(first.describe(file).sha256, sha256_of("many rays"));
   first.save();
-  // Known, not read: a hash that was written by hand is believed.
+  // The stored hash is used and the file is not read, so a hash that was written by hand is believed.
   std::string kept = read(folder_ / "hashes.json");
   kept.replace(kept.find(sha256_of("many rays")), 64, std::string(64, 'a'));
   write(folder_ / "hashes.json", kept);
@@ -341,7 +341,7 @@ TEST_F(JobTest, HashesOfFilesAreKnownByTheirStamps) {
   }
 }
 
-// What stops in the middle has written nothing of the piece at hand.
+// A process that stops in the middle has written nothing of its current piece.
 TEST_F(JobTest, WhatMakesNoPieceLeavesNone) {
   const Job job = Job::create(job_folder_, make_manifest());
   const auto fails_at_2 = [](size_t piece) {

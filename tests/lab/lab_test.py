@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The tools that measure: statistics, tables, peers and a quick report as a user makes it.
+"""Tests the tools that measure: statistics, tables, peers and a quick report as a user makes it.
 
 lab_test.py TEST BIN TOOLS SCENES: TEST is a function below, BIN the folder of the programs."""
 
@@ -49,7 +49,7 @@ def read_json(file):
 
 
 def computes_figures(folder):
-    """Statistics, numbers, and what the page derives from rows."""
+    """Checks statistics, numbers, and what the page derives from rows."""
     values = [3.0, 1.0, 2.0, 4.0, 100.0]
     figures = figures_of_times(values)
     expect(figures["median"] == statistics.median(values) and figures["runs"] == 5, f"{figures}")
@@ -86,7 +86,7 @@ def computes_figures(folder):
 
 
 def names_gaps(folder):
-    """A peer that fails does not take the others with it; the table names the program's own last line."""
+    """A peer that fails does not stop the others; the table names the last line of the failed program."""
     peers = folder / "peers.json"
 
     def measure():
@@ -111,7 +111,7 @@ def names_gaps(folder):
     reasons = {gap["name"]: gap["reason"] for gap in found["gaps"] if gap["is_installed"]}
     expect(reasons["Tachyon"] == "Tachyon: no such file", f"Tachyon: {reasons}")
     expect("no time" in reasons["POV-Ray"], f"POV-Ray: {reasons}")
-    # One that is measured, with a black picture; the other is too fast for its own clock.
+    # One program is measured and makes a black picture; the other is too fast for its own clock.
     picture = "printf 'P6\\n16 16\\n65535\\n' >tachyon.ppm; head -c 1536 /dev/zero >>tachyon.ppm"
     install("tachyon", f"{picture}; echo 'Version 0.5 Ray Tracing Time: 2.5'")
     install("povray", "echo 'Version 3.7'; echo '  Trace Time:  0 hours  0 minutes  0 seconds (0.000 seconds)'")
@@ -186,7 +186,8 @@ def check_picture_rays(folder):
         expect(done.returncode == 0, f"cast of {file.name}: {done}")
         header = file.read_bytes()[:128].decode("latin1")
         expect(f"'shape': ({count}, 8)" in header, f"{file.name} has other rays: {header}")
-    # Rays are found by the picture's rules: highlights without diffuse light, colours, cones, parallel cameras.
+    # Rays are found by the picture's rules. The scenes have highlights without diffuse light, colours, cones and
+    # parallel cameras.
     names = "showcase metallic_roughness vertex_colors light_spot light_physical orthographic mirrors"
     scenes = [SCENES / f"{name}.gltf" for name in names.split()]
     run_lab("rates", *scenes, "--runs", 1, "--side", 64, "-o", folder / "runs.json")
@@ -198,7 +199,7 @@ def check_picture_rays(folder):
 
 
 def makes_tables(folder):
-    """The tables of tools/bench and tools/accuracy, and a table for the terminal."""
+    """Checks the tables of tools/bench and tools/accuracy, and a table for the terminal."""
     check_bench_tables(folder)
     check_accuracy_document(folder)
     printed = run_lab("rates", "needles:500", "--runs", 0, "--side", 16, "-o", folder / "runs.json")
@@ -210,7 +211,7 @@ def makes_tables(folder):
 
 
 def writes_a_report(folder):
-    """A quick page with pictures, one plot, a row a knob and a footer, on a scene of the user's."""
+    """Checks a quick page on a scene of the user's: it has pictures, one plot, a row for each knob and a footer."""
     scene = SCENES / "mirrors.gltf"
     done = run_python("report.py", scene, "--quick", "--programs", BIN, "--commit", "abc", "-o", folder / "out")
     expect(done.returncode == 0, f"report.py: {done.stderr[-2000:]}")
@@ -229,8 +230,8 @@ def writes_a_report(folder):
     expect(names | missing == {"promin", "Tachyon", "POV-Ray"} and not names & missing, f"{names}, {missing}")
     for name in missing:
         expect(name in page, f"the page does not name {name}, which is missing")
-    # The figures that hold on any machine: more samples are more exact, a tree does not change a picture, and promin
-    # loses no ray.
+    # These results hold on any machine: more samples are more exact, a tree does not change a picture, and promin loses
+    # no ray.
     own = [row["error"] for row in figures["renderers"]["rows"] if row["renderer"] == "promin"]
     expect(own == sorted(own, reverse=True) and own[-1] > 0, f"errors of more and more samples: {own}")
     builders = [row["error"] for row in figures["knobs"] if row["knob"] == "builder"]

@@ -37,7 +37,7 @@ MessageCase load_strictly(std::string_view code, const std::string& name, const 
           }};
 }
 
-/// A material "m" of these lines.
+/// Loads a material "m" with these lines.
 MessageCase load_material(std::string_view code, const std::string& lines) {
   return {code, [=] {
             write_case("m.mtl", "newmtl m\n" + lines);

@@ -86,7 +86,7 @@ MessageCase spoil_skin(std::string_view code, const Spoil& fault, bool is_strict
           }};
 }
 
-/// Loads instances of a triangle by an attribute of these numbers.
+/// Loads instances of a triangle with an attribute of these numbers.
 MessageCase add_instances(std::string_view code, const char* name, const std::vector<float>& numbers, bool is_strict) {
   return {code, [=] {
             GltfBuilder gltf = triangle_gltf();

@@ -30,7 +30,7 @@ using jobs::Content;
 using jobs::Job;
 using jobs::Manifest;
 
-/// A job of two pieces in the folder "job".
+/// Makes a job of two pieces in the folder "job".
 Job make_job(const std::string& kind = "bytes", const std::vector<std::string>& pieces = {"part0", "part1"}) {
   return Job::create("job", Manifest{.kind = kind, .options = {{"--spp", "4"}}, .files = {}, .pieces = pieces});
 }
@@ -76,7 +76,7 @@ MessageCase merge_parts(std::string_view code, const work::PicturePart& first, c
           }};
 }
 
-/// Merges hits of two pieces of a ray each.
+/// Merges the hits of two pieces, which have one ray each.
 MessageCase merge_rays(std::string_view code, int second_ray, const std::string& second_driver) {
   return {code, [=] {
             const Job job = make_job("cast");

@@ -17,22 +17,23 @@ struct Warned {
 
 /// Provokes a problem in the current folder, which is empty before.
 struct MessageCase {
-  /// The problem's code.
+  /// The code of the problem.
   std::string_view code;
   std::function<void()> provoke;
-  /// Whether the words in parentheses are those of a library or of the system, so that they differ between versions.
+  /// True if the words in parentheses come from a library or from the system, so that they differ between versions.
   bool quotes_others = false;
 };
 
-/// Problems of scene files and the files that they name. Strict ones too, so these sentences are warnings elsewhere.
+/// Returns problems of scene files and of the files that these name. Some are only refused by strict loading; elsewhere
+/// their sentences are warnings.
 std::vector<MessageCase> cases_of_files();
-/// Problems of glTF files.
+/// Returns problems of glTF files.
 std::vector<MessageCase> cases_of_gltf();
-/// Problems of scenes in memory, views, pictures, rays and BVH files.
+/// Returns problems of scenes in memory, views, pictures, rays and BVH files.
 std::vector<MessageCase> cases_of_values();
-/// Problems of command lines.
+/// Returns problems of command lines.
 std::vector<MessageCase> cases_of_usage();
-/// Problems of jobs.
+/// Returns problems of jobs.
 std::vector<MessageCase> cases_of_jobs();
 
 /// Writes a file to the current folder.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// The sentences of all problems stand in messages.txt. PROMIN_UPDATE_MESSAGES=1 writes the file.
+// messages.txt contains the sentences of all problems. PROMIN_UPDATE_MESSAGES=1 makes this test write the file.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ const fs::path kGolden = fs::path(PROMIN_SOURCE_DIR) / "tests/messages/messages.
 
 /// Codes that no test of the host can provoke: they need a device, a window or a defect of the system.
 const std::set<std::string> kNotProvoked = {
-    // A device, and scenes on it.
+    // These need a device, and scenes on it.
     "device.buffer.large",
     "device.call.failed",
     "device.driver.manifest",
@@ -62,11 +62,11 @@ const std::set<std::string> kNotProvoked = {
     "textures.halved",
     "view.crop.unsupported",
     "view.target.missing",
-    // A window.
+    // This one needs a window.
     "window.display",
     "window.scene.closed",
     "window.screenshots.many",
-    // The system: limits, disks, libraries and files that change.
+    // These need the system: limits, disks, libraries and files that change.
     "file.access",
     "file.keep",
     "file.open",
@@ -85,16 +85,16 @@ const std::set<std::string> kNotProvoked = {
     "program.failed",
     "sheet.name.drawn",
     "system.refused",
-    // Sizes that a test would take long to reach.
+    // A test would take long to reach these sizes.
     "bvh.primitives.many",
     "bvh.tree.wrong",
     "scene.glasses.many",
-    // Pictures in formats that promin does not write.
+    // These need pictures in formats that promin does not write.
     "picture.channels",
     "picture.encode",
     "picture.flat",
     "picture.rows",
-    // Python's own.
+    // These come from Python.
     "job.piece.unknown",
     "python.name.unknown",
     "python.value.wrong",

@@ -19,7 +19,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// The code, and the words of the command line.
+/// A code, and the words of the command line that gives it.
 struct WrongUsage {
   std::string_view code;
   Words words;
@@ -199,7 +199,7 @@ void run(const std::string& program, std::initializer_list<app::Command (*)(CLI:
   app::run_command(program, "", commands, static_cast<int>(all.size()), all.data());
 }
 
-/// Writes a camera path of these frames.
+/// Writes a camera path with these frames.
 void write_path(const std::string& file, int version, const std::string& frames) {
   write_case(file, R"({"format": "promin camera path", "version": )" + std::to_string(version) + R"(, "frames": [)" +
                        frames + "]}");

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A picture as a device would give it: the oracle's, rounded to fp32.
+/// A picture as a device would give it: the oracle's picture, rounded to fp32.
 struct DevicePicture {
   Image image;
   std::vector<float> depth;
@@ -36,7 +36,7 @@ struct DevicePicture {
   DeviceAovs aovs() const { return {depth, normal, object, primitive}; }
 };
 
-/// A ball, a can and a sheet stand on a mirroring floor.
+/// Returns a ball, a can and a sheet on a mirroring floor.
 world::Scene make_scene() {
   world::Scene scene;
   scene.environment.ambient = vec3(0.1F);
@@ -69,7 +69,7 @@ View make_view() {
   return view;
 }
 
-/// The same scene with all things of smooth metal.
+/// Returns the same scene with all objects of smooth metal.
 world::Scene make_shiny_scene(float roughness) {
   world::Scene scene = make_scene();
   for (Material& material : scene.materials) material.model = MetallicRoughness{.roughness = roughness};
@@ -85,7 +85,8 @@ class ComparePictureTest : public testing::Test {
     const PictureReport report = compare(device);
     EXPECT_FALSE(report.passes()) << report.summary(scene);
   }
-  /// The lowest: those of the floor at the horizon are so far away that rounding may move them a lot.
+  /// Returns the lowest pixel of an object. The floor's points at the horizon are so far away that rounding may move
+  /// them a lot.
   size_t find_pixel_of(int32_t object) const {
     size_t i = picture.pixels.size() - 1;
     while (picture.pixels[i].hit.object != object) --i;
@@ -119,7 +120,7 @@ TEST_F(ComparePictureTest, ColoursAloneCanBeCompared) {
   EXPECT_FALSE(compare_picture(scene, picture, dark.image, {}).passes());
 }
 
-// The sun stands aside by a normal's rounding, and by more than that.
+// The sun's direction first differs by the rounding of a normal, and then by more.
 TEST_F(ComparePictureTest, HighlightsMayMoveByARoundingAndNoFarther) {
   const world::Scene shiny = make_shiny_scene(0.1F);
   const Picture expected = render(shiny, view);
@@ -162,7 +163,7 @@ TEST_F(ComparePictureTest, AMissingShadowFails) {
 TEST_F(ComparePictureTest, ABounceLessFails) {
   View shallow = view;
   --shallow.max_depth;
-  // Nothing but the floor reflects, so that the second bounce brings nothing.
+  // Only the floor reflects, so the second bounce adds nothing.
   EXPECT_TRUE(compare(DevicePicture(render(scene, shallow))).passes());
   --shallow.max_depth;
   expect_failure(DevicePicture(render(scene, shallow)));
@@ -293,7 +294,7 @@ TEST_F(ComparePictureTest, ErrorsOfNormalsFail) {
   }
 }
 
-/// A can before a wall.
+/// Returns a can in front of a wall.
 world::Scene make_can() {
   world::Scene scene;
   scene.materials.resize(1);
@@ -302,7 +303,7 @@ world::Scene make_can() {
   return scene;
 }
 
-/// 2000 pixels of which the first `count` look along this ray and the others see nothing.
+/// Returns a picture of 2000 pixels: the first `count` look along this ray, and the others see nothing.
 Picture make_picture_of(const world::Scene& scene, const Ray& ray, size_t count) {
   Picture picture;
   picture.size = uvec2(2000, 1);
@@ -315,7 +316,7 @@ TEST(ComparePicture, AtARimEitherNormalIsRightInAFewPixels) {
   const world::Scene scene = make_can();
   const auto compare_below_rim = [&](Real units, size_t count) {
     const Real offset = units * kRoundoff * (std::sqrt(Real(8)) + std::sqrt(Real(2)));
-    // Meets the side just below the rim, the device says the disk.
+    // The ray meets the side just below the rim; the device says the disk.
     const Ray ray{Vector(0, 2, 2) - offset * glm::normalize(Vector(0, 1, -1)), {0, -1, -1}};
     const Picture picture = make_picture_of(scene, ray, count);
     DevicePicture device(picture);
@@ -333,7 +334,7 @@ TEST(ComparePicture, AtASilhouetteEitherObjectIsRightInAFewPixels) {
   const world::Scene scene = make_can();
   const auto compare_past_rim = [&](Real units, size_t count) {
     const Real offset = units * kRoundoff * (std::sqrt(Real(10)) + std::sqrt(Real(2)));
-    // Passes the rim from behind and meets the wall, the device says the can.
+    // The ray passes the rim from behind and meets the wall; the device says the can.
     const Ray ray{Vector(0, 3, -1) + offset * glm::normalize(Vector(0, 1, 1)), {0, -1, 1}};
     const Picture picture = make_picture_of(scene, ray, count);
     EXPECT_EQ(picture.pixels[0].hit.object, 1);

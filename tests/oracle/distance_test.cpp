@@ -45,7 +45,7 @@ TEST(Distance, OpenOnesHaveTheirSideAlone) {
 }
 
 TEST(Distance, ConesHaveASlope) {
-  // Apex at (0, 1, 0); the side falls one in height on two across.
+  // The apex is at (0, 1, 0); the side falls by one in height for each two across.
   const world::Cone cone{{0, 0, 0}, {0, 1, 0}, 1, 4, 0};
   const Real root = std::sqrt(Real(5));
   EXPECT_NEAR(signed_distance(cone, 0, {0, 0, 0}), -2 / root, kTolerance);
@@ -72,7 +72,7 @@ TEST(Distance, CapsulesAreTheHullOfTwoSpheres) {
   EXPECT_NEAR(signed_distance(pill, 0, {0, 0, 0}), -1, kTolerance);
   EXPECT_NEAR(signed_distance(pill, 0, {4, 1, 0}), 3, kTolerance);
   EXPECT_NEAR(signed_distance(pill, 0, {3, 6, 0}), 4, kTolerance) << "to the upper end, 3 and 4 away";
-  // Radii 3 and 0, 5 apart: the sine is 3/5.
+  // The radii are 3 and 0, at a distance of 5, so the sine is 3/5.
   const world::Capsule drop{{0, 0, 0}, {0, 1, 0}, 2.5F, 3, 0};
   EXPECT_NEAR(signed_distance(drop, 0, {0, 2.5L, 0}), 0, kTolerance) << "the point";
   EXPECT_NEAR(signed_distance(drop, 0, {0, 6.5L, 0}), 4, kTolerance);

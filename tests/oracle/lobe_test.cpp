@@ -19,7 +19,7 @@ constexpr Real kPi = std::numbers::pi_v<Real>;
 constexpr size_t kSide = layout::LOBE_TABLE_SIDE;
 constexpr Real kLast = kSide - 1;
 
-/// Of a cosine and a roughness, both from 0 to 1.
+/// Returns the direction with this cosine to the normal and this azimuth.
 Vector direction_at(Real cosine, Real azimuth) {
   const Real sine = std::sqrt(1 - cosine * cosine);
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
@@ -34,18 +34,18 @@ MetallicRoughness make_white(float metallic, float roughness) {
   return material;
 }
 
-/// The larger of the two shares' differences.
+/// Returns the larger of the two members' differences.
 Real difference(const LobeShares& a, const LobeShares& b) {
   return std::max(std::abs(a.all - b.all), std::abs(a.grazing - b.grazing));
 }
 
-// Facets have one projected area in all: the integral of D (N.H) over the hemisphere is 1.
+// The projected area of all facets is 1: the integral of D (N.H) over the hemisphere.
 TEST(OracleLobe, DensitiesAreOfAWholeSurface) {
   for (const Real alpha : {0.002L, 0.03L, 0.3L, 1.0L}) {
     constexpr int kSteps = 20000;
     Real sum = 0;
     for (int i = 0; i < kSteps; ++i) {
-      // Tangents of the angle grow geometrically, from far inside of the lobe to near the horizon.
+      // The tangents of the angle grow geometrically, from far inside the lobe to near the horizon.
       const Real first = std::log(alpha * 1e-4L);
       const Real step = (std::log(1e4L) - first) / kSteps;
       const Real tangent = std::exp(first + (i + 0.5L) * step);
@@ -57,15 +57,15 @@ TEST(OracleLobe, DensitiesAreOfAWholeSurface) {
   }
 }
 
-// What a perfectly smooth surface of any angle hides is nothing, and of a rough one seen from above neither.
+// A perfectly smooth surface hides nothing at any angle, and neither does a rough one seen from above.
 TEST(OracleLobe, VisibilityIsOneOverFourCosinesWhereNothingIsHidden) {
   EXPECT_NEAR(static_cast<double>(visibility(0.5L, 0.25L, 0)), 2.0, 1e-15);
   EXPECT_NEAR(static_cast<double>(visibility(1, 1, 0.7L)), 0.25, 1e-15);
   EXPECT_LT(visibility(0.5L, 0.25L, 0.5L), 2);
 }
 
-// Eye and light may be exchanged, but for the cosine to the light that every source has, and for the factor of what
-// facets reflect more than once, which is of the eye alone and 1 here.
+// Eye and light may be exchanged, except for the cosine to the light, which every source has, and for the factor of
+// light that facets reflect more than once, which depends only on the eye and is 1 here.
 TEST(OracleLobe, TheLobeIsReciprocal) {
   MetallicRoughness material = make_white(0.5F, 0);
   material.base_color = vec3(0.9F, 0.5F, 0.1F);
@@ -83,7 +83,7 @@ TEST(OracleLobe, TheLobeIsReciprocal) {
   }
 }
 
-// The table against a quadrature of another kind: Gauss's over directions to the light instead of a lattice of half
+// The table is compared with another quadrature: Gauss's over directions to the light, instead of a lattice of half
 // vectors drawn by their density.
 TEST(OracleLobe, TheTablesEntriesAreTheIntegrals) {
   std::array<std::array<Real, kSide>, kSide> errors{};
@@ -100,8 +100,8 @@ TEST(OracleLobe, TheTablesEntriesAreTheIntegrals) {
   }
 }
 
-// Sources of all directions add up to one on what is white. Lobes are linear in F0 and F90, so what they make of all
-// sources are the exact shares in the place of the table's.
+// The light of sources from all directions adds up to one on a white surface. Lobes are linear in F0 and F90, so the
+// sums over all sources are the exact values that the table approximates.
 TEST(OracleLobe, SourcesFromEverywhereAddUpToOne) {
   std::array<Real, 11> worst{};
   for_each_index(worst.size(), 0, [&](size_t i) {
@@ -120,8 +120,9 @@ TEST(OracleLobe, SourcesFromEverywhereAddUpToOne) {
   for (size_t i = 0; i < worst.size(); ++i) EXPECT_LE(worst[i], 0.01L) << "roughness 0." << i;
 }
 
-// Between entries, in the middle of each cell and of its edges. From the side a smooth lobe hangs on v / alpha, which
-// no table over v resolves: there it is off by as much as 0.081, in a rim of v < 0.05 of surfaces smoother than 0.06.
+// The test looks between entries: in the middle of each cell and of its edges. Seen from the side, a smooth lobe
+// depends on v / alpha, which no table over v resolves. There the error is up to 0.081, in a rim of v < 0.05 on
+// surfaces with a roughness of less than 0.06.
 TEST(OracleLobe, TheTableIsGoodBetweenItsEntries) {
   constexpr size_t kPlaces = 2 * kSide - 1;
   struct Worst {
@@ -148,8 +149,8 @@ TEST(OracleLobe, TheTableIsGoodBetweenItsEntries) {
   }
 }
 
-// The same of sheens. From the side a smooth one changes faster than the table's steps: between entries the share errs
-// by as much as 0.033 of up to 1.65 there.
+// The same holds for sheens. Seen from the side, a smooth sheen changes faster than the table's steps: between entries
+// the error is up to 0.033 of up to 1.65.
 TEST(OracleLobe, TheTableOfSheensIsTheIntegral) {
   constexpr size_t kPlaces = 2 * kSide - 1;
   struct Worst {
@@ -164,7 +165,7 @@ TEST(OracleLobe, TheTableOfSheensIsTheIntegral) {
       const Real roughness = row / (2 * kLast);
       const Real v = std::max(root * root, 0x1p-10L);
       const Real error = std::abs(look_up_sheen_share(v, roughness) - integrate_sheen_share(v, roughness));
-      // The first column is of the least cosine, which lies between it and the next.
+      // The first column is for the least cosine, which lies between this column and the next.
       const bool is_entry = row % 2 == 0 && column % 2 == 0 && column > 0;
       Real& largest = is_entry ? worst[row].at_entries : roughness < 0.1L ? worst[row].smooth : worst[row].rough;
       largest = std::max(largest, error);
@@ -177,7 +178,8 @@ TEST(OracleLobe, TheTableOfSheensIsTheIntegral) {
   }
 }
 
-// Over white, light from all around comes back whole: what the sheen does not send is left for what is below.
+// Over white, all light from all around comes back: the light that the sheen does not reflect is left for the layers
+// below.
 TEST(OracleLobe, WhiteSheensOverWhiteSendWhatTheyGet) {
   MetallicRoughness material = make_white(0, 0.5F);
   material.sheen_color = vec3(1.0F);

@@ -28,7 +28,7 @@ void expect_hit(const Hit& hit, Real t, const Vector& normal) {
   EXPECT_NEAR(glm::distance(hit.normal, normal), 0, kTolerance);
 }
 
-/// To a few roundings of long double.
+/// Expects two numbers that agree to a few roundings of long double.
 void expect_near_relative(Real value, Real expected) {
   EXPECT_NEAR(value, expected, 0x1p-62L * expected);
 }
@@ -41,9 +41,9 @@ Mesh make_triangle() {
 }
 
 const world::Cylinder kCylinder{{0, 1, 0}, {0, 1, 0}, 1, 0.5F};
-/// Apex at (0, 2, 0), base disk of radius 1 at y = 0.
+/// The apex is at (0, 2, 0); the base disk has a radius of 1 and lies at y = 0.
 const world::Cone kCone{{0, 1, 0}, {0, 1, 0}, 1, 1, 0};
-/// Radius 2 at y = 0, 1 at y = 2.
+/// The radius is 2 at y = 0, and 1 at y = 2.
 const world::Cone kFrustum{{0, 1, 0}, {0, 1, 0}, 1, 2, 1};
 
 TEST(Oracle, Sphere) {
@@ -64,7 +64,7 @@ TEST(Oracle, Box) {
   EXPECT_FALSE(cast(box, {2.01L, 0, 8}, {0, 0, -1}).exists());
   EXPECT_FALSE(cast(box, {1, 0, 8}, {0, 0, 1}).exists());
 
-  // An eighth of a turn about z, by sin(pi / 8).
+  // The rotation is an eighth of a turn about z, given by sin(pi / 8).
   const world::Box turned{{0, 0, 0}, {1, 1, 1}, {0, 0, 0.38268343F}};
   const Real half = std::sqrt(Real(0.5));
   const Hit hit = cast(turned, {4, 0.25L, 0}, {-1, 0, 0});
@@ -79,7 +79,7 @@ TEST(Oracle, Capsule) {
   expect_hit(cast(pill, {0.6L, 9, 0}, {0, -1, 0}), 6.2L, {0.6L, 0.8L, 0});
   expect_hit(cast(pill, {0, 0, 0}, {0, -1, 0}), 3, {0, -1, 0});
   EXPECT_FALSE(cast(pill, {0.9L, 2.9L, 5}, {0, 0, -1}).exists());
-  // Radii 3 and 0, 5 apart: the sine is 3/5.
+  // The radii are 3 and 0, at a distance of 5, so the sine is 3/5.
   const world::Capsule drop{{0, 0, 0}, {0, 1, 0}, 2.5F, 3, 0};
   expect_hit(cast(drop, {4, 0.5L, 0}, {-1, 0, 0}), 2.5L, {0.8L, 0.6L, 0});
   expect_hit(cast(drop, {0, -8, 0}, {0, 1, 0}), 2.5L, {0, -1, 0});
@@ -109,7 +109,8 @@ TEST(Oracle, PlaneKeepsItsOwnNormal) {
 }
 
 TEST(Oracle, SmallSolidsFarAwayKeepTheirShape) {
-  // A chord of 8 around the middle, at a distance of 1e10 sizes: a plain quadratic is off by 50.
+  // The ray has a chord of 8 around the middle, at a distance of 1e10 sizes: a plain quadratic formula has an error of
+  // 50.
   constexpr Real kFar = 1e10L;
   expect_near_relative(cast(world::Sphere{{0, 0, 0}, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
   expect_near_relative(cast(world::Cylinder{{0, 0, 0}, {0, 1, 0}, 1, 5}, {3, 0, kFar}, {0, 0, -1}).t, kFar - 4);
@@ -128,7 +129,7 @@ TEST(Oracle, CylinderSideAndDisks) {
 }
 
 TEST(Oracle, CylinderInAnyDirectionByItsOwnNormalisation) {
-  // Along (1, 1, 0) / sqrt 2, given as the fp32 rounding, which is not of unit length.
+  // The axis is (1, 1, 0) / sqrt 2, rounded to fp32, so that its length is not 1.
   const float axis = std::sqrt(0.5F);
   const world::Cylinder leaning{{0, 0, 0}, {axis, axis, 0}, 10, 0.5F};
   const Real root = std::sqrt(Real(2));
@@ -142,18 +143,18 @@ TEST(Oracle, ConeSideAndBase) {
   expect_hit(cast(kCone, {0.5L, 5, 0}, {0, -1, 0}), 4, {2 / root, 1 / root, 0});
   expect_hit(cast(kCone, {0.5L, -5, 0}, {0, 1, 0}), 5, {0, -1, 0});
   expect_hit(cast(kCone, {0, 1, 0}, {1, 0, 0}), 0.5L, {2 / root, 1 / root, 0});
-  // The other nappe, above the apex, is not there.
+  // The other nappe, above the apex, does not belong to the cone.
   EXPECT_FALSE(cast(kCone, {3, 3, 0}, {-1, 0, 0}).exists());
   EXPECT_FALSE(cast(kCone, {1.01L, 5, 0}, {0, -1, 0}).exists());
 }
 
 TEST(Oracle, ConeParallelToAGenerator) {
-  // Along the generator x = 1 - y / 2 the quadratic term vanishes and one hit is left, on the opposite side.
+  // Along the generator x = 1 - y / 2 the quadratic term vanishes, and one hit is left on the opposite side.
   const Vector along(1, -2, 0);
   const Vector normal = Vector(-2, 1, 0) / std::sqrt(Real(5));
   expect_hit(cast(kCone, {-2, 3, 0}, along), 1.25L, normal);
   expect_hit(cast(kCone, {-1, 3, 0}, along), 0.75L, normal);
-  // It would meet the opposite side on the other nappe.
+  // The ray would meet the opposite side on the other nappe.
   EXPECT_FALSE(cast(kCone, {0, 3, 0}, along).exists());
 }
 
@@ -225,8 +226,8 @@ TEST(Oracle, RaysWithoutMeaningMiss) {
   }
 }
 
-/// How far a point is from the surface of a solid of revolution along +Y from y = 0 to 2, by distances alone: to the
-/// segments of its profile (radius, height).
+/// Returns the distance of a point from the surface of a solid of revolution along +Y from y = 0 to 2. It uses only the
+/// distances to the segments of the profile (radius, height).
 Real distance_to_profile(const Vector& p, Real bottom, Real top) {
   const glm::vec<2, Real> q(std::hypot(p.x, p.z), p.y);
   const glm::vec<2, Real> profile[] = {{0, 0}, {bottom, 0}, {top, 2}, {0, 2}};

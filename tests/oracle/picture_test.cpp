@@ -13,7 +13,7 @@
 namespace promin::oracle {
 namespace {
 
-/// Cameras, lights and colours are fp32 numbers.
+/// Cameras, lights and colours are fp32 numbers, so results have this error.
 constexpr Real kTolerance = 1e-6L;
 
 const world::Plane kFloor{{0, 0, 0}, {0, 1, 0}};
@@ -24,7 +24,7 @@ void expect_color(const Vector& color, const Vector& expected) {
       << expected.z << ")";
 }
 
-/// One pixel wide, so that it is what the ray along `look` brings.
+/// Returns a view of one pixel, whose colour is that of the ray along `look`.
 View look_at(const vec3& eye, const vec3& target, const vec3& up) {
   View view;
   view.size = uvec2(1);
@@ -38,7 +38,7 @@ Vector color_of(const world::Scene& scene, const View& view) {
   return render(scene, view).at(0, 0).color;
 }
 
-/// A material that shows nothing by itself.
+/// Returns a material that shows nothing by itself.
 Material make_black() {
   Material material;
   material.phong().ambient = material.phong().diffuse = vec3(0.0F);
@@ -63,7 +63,7 @@ Material make_metallic_roughness(const MetallicRoughness& model) {
   return material;
 }
 
-/// A floor of diffuse white under a classic point light of power 1 at (0, 2, 0).
+/// Returns a white diffuse floor under a classic point light of power 1 at (0, 2, 0).
 world::Scene make_lit_floor() {
   world::Scene scene;
   scene.materials = {make_black()};
@@ -74,12 +74,13 @@ world::Scene make_lit_floor() {
   return scene;
 }
 
-/// A point of that floor seen from straight above.
+/// Returns a view of a point of that floor from straight above.
 View look_down_at(float x) {
   return look_at(vec3(x, 1, 0), vec3(x, 0, 0), vec3(0, 0, -1));
 }
 
-/// Around the origin in the plane z = 0, corners at distance 1, normals as of a sphere around (0, 0, -2).
+/// Returns a triangle around the origin in the plane z = 0. Its corners are at distance 1, with the normals of a sphere
+/// around (0, 0, -2).
 Mesh make_bent_triangle() {
   Mesh mesh;
   const float y = std::sqrt(0.75F);
@@ -169,7 +170,7 @@ TEST(OraclePicture, ShadowsAreCastByWhatLiesBetween) {
   // The shadow of the ball's centre falls on x = 4.
   expect_color(color_of(scene, look_down_at(4)), Vector(0));
   expect_color(color_of(scene, look_down_at(-4)), Vector(1 / std::sqrt(Real(5))));
-  // What lies behind a point light casts none, and a directional light has no behind.
+  // An object behind a point light casts no shadow; a directional light has no back.
   scene.objects[1].shape = world::Sphere{{0, 3, 0}, 0.25F};
   expect_color(color_of(scene, look_down_at(0)), Vector(1));
   scene.lights[0].kind = LightKind::kDirectional;
@@ -229,14 +230,15 @@ TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
   }
 }
 
-// Eye and light above: D = 1 / (pi alpha^2), visibility 1/4, Fresnel's factor that of normal incidence.
+// With eye and light above, D = 1 / (pi alpha^2), the visibility is 1/4, and Fresnel's factor is that of normal
+// incidence.
 TEST(OraclePicture, MetallicRoughnessFromAbove) {
   world::Scene scene = make_lit_floor();
   MetallicRoughness model{.base_color = vec3(0.5F, 0.25F, 1.0F), .metallic = 0.0F, .roughness = 0.5F};
   scene.materials = {make_metallic_roughness(model)};
   const LobeShares shares = look_up_lobe_shares(1, 0.5L);
   const Real pi = std::numbers::pi_v<Real>;
-  // An index of 1.5 is 0.04.
+  // An index of 1.5 gives 0.04.
   const Real k = 1 / (1 - (0.04L + 0.96L / 21) * (1 - shares.all));
   const Real reflectance = k * (0.04L * (shares.all - shares.grazing) + shares.grazing);
   const Real highlight = 0.25L / (pi * 0.0625L);
@@ -265,7 +267,8 @@ TEST(OraclePicture, MetallicRoughnessSharesAmbientLight) {
   }
 }
 
-// A smooth metal sees what is there, and the ambient light where nothing is; a rough one the ambient light alone.
+// A smooth metal reflects the objects, and the ambient light where there are none; a rough one reflects only the
+// ambient light.
 TEST(OraclePicture, MetalMirrorsAsFarAsItIsSmooth) {
   world::Scene scene;
   scene.environment.ambient = vec3(0.5F);
@@ -278,15 +281,15 @@ TEST(OraclePicture, MetalMirrorsAsFarAsItIsSmooth) {
   };
   expect_color(color_with(0), {1, 1, 8});
   expect_color(color_with(0.1F), {1, 1, 8});
-  // Half way.
+  // This roughness is half way between the two.
   expect_color(color_with(0.25F), {0.75L, 0.75L, 4.25L});
   expect_color(color_with(0.4F), Vector(0.5L));
-  // From 1/256 on a mirror ray is traced.
+  // A mirror ray is traced if its weight is at least 1/256.
   expect_color(color_with(0.390F), Vector(0.5L));
   EXPECT_GT(color_with(0.387F).z, 0.52L);
 }
 
-// What a Phong mirror sees where nothing is depends on whether a metal was on the way.
+// A Phong mirror's ray that meets nothing sees a different light if a metal was on its path.
 TEST(OraclePicture, MirrorsBehindMetalSeeTheAmbientLight) {
   world::Scene scene;
   scene.environment.ambient = vec3(0.5F);
@@ -311,7 +314,7 @@ TEST(OraclePicture, UnlitIsItsColor) {
   EXPECT_EQ(render(scene, look_down_at(0)).at(0, 0).explained_error, 0);
 }
 
-// The sharper a highlight, the more a rounded normal does to it, in its flank the most.
+// The sharper a highlight, the more a rounded normal changes it, and most in its flank.
 TEST(OraclePicture, HighlightsAreAsUncertainAsTheyAreSharp) {
   world::Scene scene = make_lit_floor();
   const auto pixel_with = [&](float roughness, float x) {
@@ -320,7 +323,7 @@ TEST(OraclePicture, HighlightsAreAsUncertainAsTheyAreSharp) {
   };
   const Pixel sharp = pixel_with(0.1F, 0.01F);
   const Pixel blunt = pixel_with(0.5F, 0.25F);
-  // Of a flank a normal's error of 1e-6 makes about 2e-6 / alpha.
+  // In a flank, an error of 1e-6 of the normal changes the value by about 2e-6 / alpha.
   EXPECT_GT(sharp.explained_error, 1e-4L * sharp.color.x);
   EXPECT_LT(sharp.explained_error, 1e-3L * sharp.color.x);
   EXPECT_LT(blunt.explained_error, 1e-4L * blunt.color.x);
@@ -354,7 +357,8 @@ TEST(OraclePicture, InterpolatedNormalsShadeFromEitherSide) {
 }
 
 TEST(OraclePicture, ShadowRaysStartFromTheCurveThatVertexNormalsSuggest) {
-  // At (0.1, 0, 0) that is 0.4 (1 - 0.1^2) above the triangle. The light comes along the triangle's plane.
+  // At (0.1, 0, 0) the smooth surface is 0.4 (1 - 0.1^2) above the triangle. The light comes along the triangle's
+  // plane.
   world::Scene scene = make_lit_floor();
   scene.lights[0].kind = LightKind::kDirectional;
   scene.lights[0].direction = vec3(-1, 0, 0);
@@ -376,12 +380,13 @@ TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
   scene.objects = {{"", mesh, 0},
                    {"above", world::Plane{{0, 0, 1}, {0, 0, 1}}, 1},
                    {"below", world::Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
-  // The ray along (0.96, 0, -0.28) would go on along (0.5376, 0, -0.8432), below the triangle.
+  // The ray along (0.96, 0, -0.28) would be reflected along (0.5376, 0, -0.8432), below the triangle.
   const View view = look_at(vec3(-1.92F, 0, 0.56F), vec3(0), vec3(0.28F, 0, 0.96F));
   expect_color(color_of(scene, view), {0, 1, 0});
 }
 
-/// A ball and a can on a mirroring floor under two lights, in units of `size` around `center`.
+/// Renders a ball and a can on a mirroring floor under two lights. Lengths are multiples of `size`; the scene is around
+/// `center`.
 Picture render_still_life(float size, const vec3& center) {
   world::Scene scene = make_lit_floor();
   scene.materials[0].phong().reflection = vec3(0.25F);

@@ -19,7 +19,7 @@ Environment make_environment(decltype(Environment::sky) sky) {
   return environment;
 }
 
-/// Black at the horizon and below, white at the top, linear in the elevation.
+/// Returns a sky that is black at the horizon and below, white at the top, and linear in the elevation.
 Environment make_slope() {
   return make_environment(GradientSky{vec3(1.0F), vec3(0.0F), vec3(0.0F), 1.0F, 1.0F});
 }
@@ -48,18 +48,18 @@ TEST(SurroundingsTest, AConstantSkyIsItsMean) {
   EXPECT_NEAR(surroundings.range(), 0, 1e-9L);
 }
 
-// At the roughness 1 the lobe is that of a matt surface: the integral of 2 e / pi sin 2 e over the elevations e is 1/2.
+// At roughness 1 the lobe is that of a matt surface: the integral of 2 e / pi sin 2 e over the elevations e is 1/2.
 TEST(SurroundingsTest, TheRoughestLobeIsLambert) {
   const Environment environment = make_slope();
   EXPECT_NEAR(Surroundings(environment).lobe_mean({0, 1, 0}, 1).x, 0.5L, 2e-4L);
   EXPECT_NEAR(Surroundings(environment).lobe_mean({0, -1, 0}, 1).x, 0, 1e-12L);
-  // Of the smoothest ones little is beside the direction.
+  // The smoothest lobes contain little light from other directions.
   const Vector direction = glm::normalize(Vector(1, 1, 1));
   const Surroundings surroundings(environment);
   EXPECT_NEAR(surroundings.lobe_mean(direction, 0.05L).x, surroundings.radiance(direction).x, 1e-3L);
 }
 
-// Where there is a lot of it, another quadrature: over all directions above, as the text has P.
+// For wide lobes the test uses another quadrature: over all directions above, with P as in the text.
 TEST(SurroundingsTest, LobesAreTheIntegral) {
   const Environment environment = make_environment(Studio{});
   const Surroundings surroundings(environment);
@@ -89,12 +89,12 @@ TEST(SurroundingsTest, AGradientGoesFromTheHorizonByItsCurve) {
   EXPECT_NEAR(surroundings.radiance({0, 1, 0}).x, 1, 1e-12L);
   EXPECT_NEAR(surroundings.radiance({1, 0, 0}).x, 0, 1e-12L);
   EXPECT_NEAR(surroundings.radiance({0, -1, 0}).x, 0.5L, 1e-12L);
-  // Half way up 1 - (1 - 1/2)^2.
+  // Half way up, the value is 1 - (1 - 1/2)^2.
   EXPECT_NEAR(surroundings.radiance(glm::normalize(Vector(1, 1, 0))).x, 0.75L, 1e-12L);
   EXPECT_NEAR(surroundings.radiance(glm::normalize(Vector(1, -1, 0))).x, 0.25L, 1e-12L);
 }
 
-// What docs/model.md says of walls in the studio, to two digits; the bands are less exact.
+// docs/model.md gives these values for walls in the studio, to two digits; the bands are less exact.
 TEST(SurroundingsTest, TheStudioLightsWallsAsItIsDescribed) {
   const Environment environment = make_environment(Studio{});
   const Surroundings surroundings(environment);
@@ -104,17 +104,17 @@ TEST(SurroundingsTest, TheStudioLightsWallsAsItIsDescribed) {
     EXPECT_NEAR(surroundings.lobe_mean(normal, 1).x, light, 0.01L);
     EXPECT_NEAR(surroundings.irradiance(normal).x, light, 0.02L);
   }
-  // Azimuths count from the viewer to the right: the key stands to the left, 38 degrees up.
+  // Azimuths count from the viewer to the right: the key light is to the left, at an elevation of 38 degrees.
   const Real elevation = 38 * kPi / 180;
   const Vector key(-std::sqrt(0.5L) * std::cos(elevation), std::sin(elevation), std::sqrt(0.5L) * std::cos(elevation));
-  // There the ceiling is all that there is beside it.
+  // In this direction, only the ceiling adds to the key light.
   EXPECT_NEAR(surroundings.radiance(key).x, 0.16L + 1.7L, 1e-9L);
 }
 
 TEST(SurroundingsTest, APanoramaHasMinusZInItsMiddleAndTurns) {
   auto image = std::make_shared<Image>();
   image->size = uvec2(4, 1);
-  // Behind and to the left, ahead, and to the right: the middles of columns lie between the axes.
+  // The pixels are behind to the left, ahead, and to the right: the middles of columns lie between the axes.
   image->pixels = {vec3(1), vec3(2), vec3(3), vec3(4)};
   Environment environment = make_environment(Panorama{image});
   const Real half = std::sqrt(0.5L);
@@ -123,7 +123,7 @@ TEST(SurroundingsTest, APanoramaHasMinusZInItsMiddleAndTurns) {
   EXPECT_NEAR(Surroundings(environment).radiance({1, 0, 0}).x, 3.5L, 1e-9L);
   EXPECT_NEAR(Surroundings(environment).radiance({0, 0, 1}).x, 2.5L, 1e-9L);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, half}).x, 1, 1e-9L);
-  // From +Z towards +X: what was at -Z is at -X.
+  // The rotation goes from +Z towards +X: what was at -Z is at -X.
   environment.rotation = static_cast<float>(kPi / 2);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, -half}).x, 3, 1e-6L);
 }

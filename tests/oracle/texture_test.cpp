@@ -19,7 +19,7 @@ uint32_t grey(uint32_t code) {
   return code * 0x010101U | 0xFF000000U;
 }
 
-/// A square of side 1 whose coordinates are its positions, and an image on it.
+/// A square of side 1 whose texture coordinates are its positions, and an image on it.
 struct Square {
   world::Scene scene;
   TextureSlot slot{.texture = 0};
@@ -94,10 +94,10 @@ TEST(TextureTest, LinearFilteringIsBetweenTheMiddlesAndAcrossEdges) {
 TEST(TextureTest, LevelsAreMeansOverAreasInLinearLight) {
   Square colors({2, 2}, ImageUse::kColor, [](uint32_t x, uint32_t y) { return grey((x + y) % 2 == 0 ? 255 : 0); });
   EXPECT_EQ(colors.red({0.5L, 0.5L}, 1), decode_srgb(188 / 255.0L));
-  // The level is a single texel.
+  // This level is a single texel.
   Square numbers({3, 1}, ImageUse::kData, [](uint32_t x, uint32_t) { return grey(x == 1 ? 240 : 0); });
   EXPECT_EQ(numbers.red({0.5L, 0.5L}, 1), 80 / 255.0L);
-  // Each of two texels covers two and a half.
+  // Each of the two texels covers two and a half texels.
   Square odd({5, 1}, ImageUse::kData, [](uint32_t x, uint32_t) { return grey(x == 2 ? 250 : 0); });
   odd.scene.textures[0].is_minified_linearly = false;
   EXPECT_EQ(odd.red({0.1L, 0.5L}, 1), 50 / 255.0L);
@@ -105,7 +105,8 @@ TEST(TextureTest, LevelsAreMeansOverAreasInLinearLight) {
 }
 
 TEST(TextureTest, LevelsOfMasksKeepTheirShare) {
-  // A quarter is there. Of the means of four, 0, 50, 60 and 100, one is to be: 100 becomes 128, the others go along.
+  // A quarter of the texels is present. Of the four means 0, 50, 60 and 100, one must be present: 100 becomes 128, and
+  // the others are scaled by the same factor.
   const uint32_t kAlphas[4][4] = {{0, 0, 200, 0}, {0, 0, 0, 0}, {200, 40, 200, 200}, {0, 0, 0, 0}};
   Square square({4, 4}, ImageUse::kData, [&](uint32_t x, uint32_t y) { return kAlphas[y][x] << 24; });
   square.scene.textures[0].is_minified_linearly = false;
@@ -124,7 +125,7 @@ TEST(TextureTest, LevelsOfMasksKeepTheirShare) {
   mask.alpha_mode = AlphaMode::kMask;
   square.scene.materials = {mask};
   EXPECT_EQ(codes(), (std::vector<long>{0, 64, 77, 128}));
-  // A factor of the material's raises what texels need: 0.5 / 0.7 is between 182 and 183 of 255.
+  // The material's factor raises the alpha that texels need: 0.5 / 0.7 is between 182 and 183 of 255.
   square.scene.materials[0].alpha = 0.7F;
   EXPECT_EQ(codes(), (std::vector<long>{0, 92, 110, 183}));
   square.scene.materials.push_back(mask);
@@ -134,7 +135,7 @@ TEST(TextureTest, LevelsOfMasksKeepTheirShare) {
 
 TEST(TextureTest, LevelsAreChosenByFilter) {
   Square square({4, 4}, ImageUse::kData, [](uint32_t x, uint32_t y) { return grey(x + y == 0 ? 240 : 0); });
-  // Of the four levels' texels under the corner: 240, 60, 15.
+  // The texels under the corner have 240, 60 and 15 in the next levels.
   const Vector2 place(0.1L, 0.1L);
   Texture& texture = square.scene.textures[0];
   texture.is_magnified_linearly = texture.is_minified_linearly = false;
@@ -152,7 +153,7 @@ TEST(TextureTest, TheLevelIsThatOfTheConesWidth) {
   Square square({64, 16}, ImageUse::kData, [](uint32_t, uint32_t) { return grey(0); });
   const Textures textures(square.scene);
   TrianglePoint point = square.point(0.2L, 0.2L);
-  // A texel is 1/64 wide and 1/16 high: 1/32 in the mean.
+  // A texel is 1/64 wide and 1/16 high, which is 1/32 in the geometric mean.
   point.width = 1.0L / 32;
   EXPECT_NEAR(textures.level_at(square.slot, point), 0, 1e-15L);
   point.width = 1.0L / 4;
@@ -170,7 +171,7 @@ TEST(TextureTest, TheErrorIsHowFarThePictureMoves) {
   TrianglePoint point = square.point(0.4L, 0.05L);
   point.place_error = 0.01L;
   EXPECT_NEAR(Textures(square.scene).look_up(square.slot, point).error.r, 0.02L, 1e-5L);
-  // A nearest texel may be one or the other where the place is near an edge.
+  // If the place is near an edge, the nearest texel may be one or the other.
   square.scene.textures[0].is_magnified_linearly = false;
   EXPECT_LT(Textures(square.scene).look_up(square.slot, point).error.r, 1e-5L);
   point.place_error = 0.1L;
@@ -185,15 +186,15 @@ TEST(TextureTest, NormalsTurnInThePlaneOfTheTangent) {
   point.slots[kNormalSlot] = square.slot;
   const Vector down(0, 0, -1);
   const auto bend = [&](const Texel& texel) { return bend_normal(point, kNormalSlot, texel, 1, down); };
-  // The first coordinate goes along x, 1 - the second, which green follows, against y.
+  // The first coordinate of the normal goes along x. The second one, green, goes along 1 - v, which is against y.
   EXPECT_LE(glm::distance(bend({1, 0.5L, 1, 1}), glm::normalize(Vector(1, 0, 1))), 1e-15L);
   EXPECT_LE(glm::distance(bend({0.5L, 1, 1, 1}), glm::normalize(Vector(0, -1, 1))), 1e-15L);
-  // What is seen from behind is the same relief.
+  // From behind, the same relief is seen.
   point.side = -1;
   point.geometric_normal = point.normal = Vector(0, 0, -1);
   const Vector behind = bend_normal(point, kNormalSlot, {1, 0.5L, 1, 1}, 1, Vector(0, 0, 1));
   EXPECT_LE(glm::distance(behind, glm::normalize(Vector(-1, 0, -1))), 1e-15L);
-  // No farther than edge-on.
+  // The normal is not bent beyond the direction where the surface is seen edge-on.
   const Vector grazing = bend_normal(point, kNormalSlot, {1, 0.5L, 0.5L, 1}, 1, glm::normalize(Vector(-1, 0, 0.01L)));
   EXPECT_NEAR(glm::dot(grazing, glm::normalize(Vector(-1, 0, 0.01L))), 0, 1e-15L);
 }

@@ -19,7 +19,8 @@ world::Scene scene_of(std::initializer_list<world::Shape> shapes) {
   return scene;
 }
 
-/// Margins come from a search that is good to 1e-9, and the expected numbers leave out terms of second order.
+/// Expects a margin. Margins come from a search that is exact to 1e-9, and the expected numbers leave out terms of
+/// second order.
 void expect_margin(const Verdict& verdict, Real expected) {
   EXPECT_FALSE(verdict.is_same);
   EXPECT_NEAR(verdict.margin, expected, 1e-5L * expected);
@@ -32,7 +33,7 @@ const world::Scene kTriangle = [] {
   mesh.triangles = {{0, 1, 2}, {0, 1, 1}};
   return scene_of({mesh});
 }();
-/// From y = -2 to 2.
+/// The can reaches from y = -2 to 2.
 const world::Scene kCan = scene_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}});
 
 TEST(Verdict, TheExactAnswerIsTheSame) {
@@ -47,7 +48,7 @@ TEST(Verdict, TheExactAnswerIsTheSame) {
 }
 
 TEST(Verdict, DisksThatAreMissingHideNothing) {
-  // From y = -2 to 2.
+  // The tube reaches from y = -2 to 2.
   const world::Scene tube = scene_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1, true}});
   const Ray through{{0.5L, 9, 0}, {0, -1, 0}};
   EXPECT_TRUE(judge(tube, through, kMiss).is_same);
@@ -55,7 +56,7 @@ TEST(Verdict, DisksThatAreMissingHideNothing) {
   const Ray onto_wall{{0, 3, 0}, {1, -2, 0}};
   EXPECT_TRUE(judge(tube, onto_wall, {1, 0, 0}).is_same);
   EXPECT_GT(judge(tube, onto_wall, kMiss).margin, 1e5L);
-  // Over the rim by 3 u S.
+  // The ray passes over the rim at 3 u S.
   const Real scale = std::sqrt(Real(29)) + std::sqrt(Real(5));
   const Ray over_rim{{5, 2 + 3 * kU * scale, 0}, {-1, 0, 0}};
   EXPECT_TRUE(judge(tube, over_rim, kMiss).is_same);
@@ -65,7 +66,7 @@ TEST(Verdict, DisksThatAreMissingHideNothing) {
 }
 
 TEST(Verdict, ErrorsOfTCountByTheAngleAndTheScale) {
-  // Met at (0.6, 0, 0.8) under a cosine of 0.8, t = 4.2; the direction of length 2 halves t.
+  // The ray hits the sphere at (0.6, 0, 0.8) with a cosine of 0.8, at t = 4.2; the direction of length 2 halves t.
   const Ray ray{{0.6L, 0, 5}, {0, 0, -2}};
   const Real scale = std::hypot(Real(5), 0.6L) + 1;
   for (const Real units : {3.0L, 7.0L, 100.0L}) {
@@ -78,7 +79,7 @@ TEST(Verdict, ErrorsOfTCountByTheAngleAndTheScale) {
 }
 
 TEST(Verdict, PlanesCountTheLengthOfTheRay) {
-  // From 1 above, met 1000 away at a cosine of 1e-3.
+  // The ray comes from 1 above the plane, and meets it 1000 away at a cosine of 1e-3.
   const world::Scene scene = scene_of({world::Plane{{0, 0, 0}, {0, 0, 1}}});
   const Ray ray{{0, 0, 1}, {1000, 0, -1}};
   const Verdict verdict = judge(scene, ray, {1 + 5 * kU * 1001, 0, 0});
@@ -105,7 +106,7 @@ TEST(Verdict, AMissingSphereIsNotExcused) {
 TEST(Verdict, LeavingASolidIsNotEnteringIt) {
   expect_margin(judge(kSphere, {{0, 0, 5}, kDown}, {6, 0, 0}), 1 / (6 * kU));
   EXPECT_GT(judge(kSphere, {{0, 0, 0}, kDown}, {-1, 0, 0}).margin, 1000);
-  // From a unit above the surface, or below it, either end is right.
+  // If the ray starts within a unit above or below the surface, either end is right.
   const Real unit = kU * 2;
   expect_margin(judge(kSphere, {{0, 0, 1 + unit}, kDown}, {2, 0, 0}), 1);
   expect_margin(judge(kSphere, {{0, 0, 1 - unit}, kDown}, {unit, 0, 0}), 1);
@@ -131,7 +132,7 @@ TEST(Verdict, EdgesExplainHitsAndMissesBesideThem) {
   EXPECT_GT(judge(kTriangle, {{1, -0.001L, 3}, kDown}, {3, 0, 0}).margin, 1000);
   EXPECT_GT(judge(kTriangle, {{1, 0.001L, 3}, kDown}, kMiss).margin, 1000);
   EXPECT_GT(judge(kTriangle, {{-1, 1, 0}, {1, 0, 1e-3L}}, {1, 0, 0}).margin, 1000);
-  // A ray within its plane meets the triangle, or not.
+  // A ray in the plane of the triangle may meet it or not.
   EXPECT_EQ(judge(kTriangle, {{-1, 1, 0}, {1, 0, 0}}, {2, 0, 0}).margin, 0);
   EXPECT_GT(judge(kTriangle, {{-1, 1, 0}, {1, 0, 0}}, {9, 0, 0}).margin, 1000) << "beyond its corners";
 }
@@ -140,7 +141,7 @@ TEST(Verdict, RimsExplainHitsAndMissesBesideThem) {
   const Real scale = 5 + std::sqrt(Real(5));
   const Real offset = 1.5L * kU * scale;
   const Real root = std::sqrt(Real(2));
-  // Over the rim at (0, 2, 1), falling by 45 degrees.
+  // The ray passes over the rim at (0, 2, 1), falling by 45 degrees.
   const auto past_rim = [&](Real x) { return Ray{Vector(0, 5, -2) + x * Vector(0, 1, 1) / root, {0, -1, 1}}; };
   const Real rim_scale = std::sqrt(Real(29)) + std::sqrt(Real(5));
   expect_margin(judge(kCan, past_rim(1.5L * kU * rim_scale), {3, 0, 0}), 1.5L);
@@ -158,7 +159,7 @@ TEST(Verdict, ConesHaveAnApex) {
 }
 
 TEST(Verdict, SurfacesCloserThanRoundingMaySwap) {
-  // S = 5 + |t d| = 10 for both.
+  // S = 5 + |t d| is 10 for both.
   for (const Real units : {1.0L, 1.5L, 50.0L}) {
     const auto below = static_cast<float>(units * 20 * kU);
     const world::Scene planes = scene_of({world::Plane{{0, 0, 0}, {0, 0, 1}}, world::Plane{{0, 0, -below}, {0, 0, 1}}});
@@ -181,7 +182,7 @@ TEST(Verdict, TheSamePlaceOnAnotherPrimitiveIsExcusedButNotAnyPlace) {
 }
 
 TEST(Verdict, AllThatLiesInFrontNeedsAnExcuse) {
-  // The exact hit is passed by its silhouette; the second sphere is in full view.
+  // The ray passes near the silhouette of the exact hit; the second sphere is in full view.
   const Real offset = 0.5L * kU * (std::hypot(Real(1), Real(5)) + 1);
   const world::Scene two = scene_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}});
   const world::Scene three =

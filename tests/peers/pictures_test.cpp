@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// Holds whole pictures against those of POV-Ray and Tachyon: other renderers, by other people, that shade by the same
-// formulas.
+// These tests compare whole pictures with those of POV-Ray and Tachyon: other renderers, by other people, that shade by
+// the same formulas.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,18 +22,19 @@ namespace fs = std::filesystem;
 using OptionValues = std::vector<std::string>;
 
 constexpr const char* kSize = "1024";
-/// Bounces, as promin counts them.
+/// The number of bounces, as promin counts them.
 constexpr const char* kMaxDepth = "6";
 
-/// POV-Ray's EXR has half floats and Tachyon's picture 16 bits, and edges may fall to either side of a pixel's centre.
+/// The limits of differences. POV-Ray's EXR has half floats and Tachyon's picture has 16 bits, and edges may fall to
+/// either side of a pixel's centre.
 constexpr CompareOptions kTolerance = {
     .fail = 0.02F, .fail_percent = 0.5, .hard_fail = std::numeric_limits<float>::infinity()};
 constexpr double kMeanTolerance = 0.002;
 
-/// Another renderer: how a scene gets into its language, and that to a picture.
+/// Another renderer, with the programs that write a scene in its language and read its picture.
 struct Peer {
   std::string name;
-  /// Empty where it was not installed when this was configured.
+  /// The renderer's program; empty if it was not installed when this build was configured.
   fs::path program;
   std::string converter;
   std::string scene;
@@ -60,7 +61,7 @@ Peer tachyon() {
           "tachyon.ppm"};
 }
 
-/// What a picture of few bits can show.
+/// Limits a picture to the range that a picture of few bits can show.
 Image clamp(Image image) {
   for (vec3& pixel : image.pixels) pixel = glm::clamp(pixel, 0.0F, 1.0F);
   return image;

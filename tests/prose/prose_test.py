@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""tools/prose finds what it lists, leaves plain sentences alone, and fails where a file has more than the baseline;
-docs/tour.md names files and functions that exist.
+"""Tests that tools/prose finds the patterns it lists, accepts plain sentences, and fails if a file has more suspects
+than the baseline; that docs/tour.md names files and functions that exist.
 
 prose_test.py TEST TOOLS: TEST is a function below."""
 

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// As numpy.save writes it: format 1.0 with the header padded, here not to a multiple of 64.
+/// Returns a file as numpy.save writes it: format 1.0 with a padded header, here not to a multiple of 64.
 std::string npy(const std::string& dictionary, const std::string& data, char version = 1) {
   const std::string header = dictionary + "\n";
   std::string file = "\x93NUMPY";
@@ -72,7 +72,7 @@ TEST_F(NpyTest, ReadsRaysPieceByPiece) {
   EXPECT_EQ(rays[0].direction, vec3(24, 25, 26));
 }
 
-/// Places lose a center before they are rounded; in float32 too.
+/// The center is subtracted from places before they are rounded, also for float32.
 TEST_F(NpyTest, RaysOfDoublesAreRoundedOnce) {
   const dvec3 center(5280000.0, -1.0, 0.0);
   std::string header = header_of(5000);
@@ -126,7 +126,7 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
         "{'a': ((((", "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)} x"}) {
     EXPECT_THAT(refusal(npy(header, data)), HasProblem("rays.header")) << header;
   }
-  // What a file says is quoted on one line of harmless characters.
+  // Text of the file is quoted on one line of harmless characters.
   const std::string loud =
       refusal(npy("{'descr': 'a\n\x1B" + std::string(500, 'b') + "', 'fortran_order': False, 'shape': (1, 8)}", data));
   EXPECT_THAT(loud, testing::AllOf(HasSubstr("'a??bbb"), HasSubstr("...")));
@@ -189,7 +189,7 @@ TEST_F(NpyTest, RaysThatAreWrittenAreReadBack) {
   EXPECT_EQ(std::memcmp(read.data(), rays.data(), std::span(rays).size_bytes()), 0);
 }
 
-// Whatever the number that is known at the end.
+// The number becomes known at the end, and may be any number.
 TEST_F(NpyTest, WritesAnArrayOfUnknownLength) {
   for (const size_t count : {0U, 3U, 123456U}) {
     const fs::path file = folder_ / "hits.npy";

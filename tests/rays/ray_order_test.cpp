@@ -17,7 +17,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A camera's, pixel by pixel, of a cube of half side 1 at the origin.
+/// Returns a camera's rays, pixel by pixel, towards a cube of half side 1 at the origin.
 std::vector<Ray> make_camera_rays(uint32_t width, uint32_t height) {
   std::vector<Ray> rays;
   for (uint32_t y = 0; y < height; ++y) {
@@ -44,7 +44,7 @@ std::vector<uint32_t> sort(const std::vector<Ray>& rays, const SceneCube& cube) 
 }
 
 TEST(RayOrder, PixelsAreSideBySideAtAnyWidth) {
-  // Widths for which samples at even steps would all fall on the ends of rows.
+  // With these widths, samples at even steps would all be at the ends of rows.
   for (const uint32_t width : {16U, 100U, 1023U, 1024U, 1025U}) {
     EXPECT_EQ(are_side_by_side(make_camera_rays(width, 1024), kCube), true) << width;
   }
@@ -88,7 +88,7 @@ TEST(RayOrder, RaysThatMissTheCubeComeLastInTheirOrder) {
 }
 
 TEST(RayOrder, RaysThatAreTheSameKeepTheirOrderWhichThreadEverTakesThem) {
-  // Enough for several threads and for no whole number of blocks.
+  // There are enough rays for several threads, and not a whole number of blocks.
   const std::vector<Ray> kinds = shuffle(make_camera_rays(5, 5));
   std::vector<Ray> rays;
   for (size_t i = 0; i < 70'001; ++i) rays.push_back(kinds[(i * i + i / 7) % kinds.size()]);

@@ -18,13 +18,13 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr SceneCube kCube{vec3(0.0F), 1.0F};
 
-/// Rays of some pixels, row by row, and which pixels these are.
+/// Rays of some pixels, row by row, and the pixels themselves.
 struct Pixels {
   std::vector<Ray> rays;
   std::vector<uvec2> places;
 };
 
-/// Of a picture of that size the pixels that are chosen, each with what a camera asks there.
+/// Returns the chosen pixels of a picture of that size, each with the ray that a camera has there.
 Pixels make_pixels(const uvec2& size, const std::function<bool(uvec2)>& is_chosen,
                    const std::function<Ray(vec2)>& ray_of) {
   Pixels pixels;
@@ -42,7 +42,7 @@ bool choose_all(uvec2 /*pixel*/) {
   return true;
 }
 
-/// A disk with a hole and a gap across: rows of all lengths, some in two or three pieces.
+/// Chooses a disk with a hole and a gap across: rows have all lengths, and some are in two or three pieces.
 bool choose_ring(uvec2 pixel) {
   const vec2 p = vec2(pixel) - vec2(300.0F);
   const float distance = glm::length(p);
@@ -53,7 +53,7 @@ Ray make_camera_ray(vec2 p) {
   return {vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(p, -1.0F)};
 }
 
-/// From a bulging surface with a step in it to a light.
+/// Returns a ray from a bulging surface with a step in it to a light.
 Ray make_shadow_ray(vec2 p) {
   const vec3 origin(p, (p.x > 0.2F ? -0.5F : 0.0F) + 0.3F * glm::dot(p, p));
   return {origin, 0.0F, vec3(2.0F, 3.0F, 4.0F) - origin};
@@ -71,14 +71,14 @@ void expect_permutation(std::vector<uint32_t> order, size_t count) {
   for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
-/// The order of all of them, none left out.
+/// Returns the order of all pixels, and expects that none is left out.
 std::vector<uint32_t> tile_all(const Pixels& pixels) {
   std::vector<uint32_t> order = tile(pixels.rays);
   expect_permutation(order, pixels.rays.size());
   return order;
 }
 
-/// Width and height of the pixels [first, first + count) of an order.
+/// Returns the width and height of the pixels [first, first + count) of an order.
 uvec2 extent_of(const Pixels& pixels, const std::vector<uint32_t>& order, size_t first, size_t count) {
   uvec2 lo(std::numeric_limits<uint32_t>::max());
   uvec2 hi(0);
@@ -89,7 +89,7 @@ uvec2 extent_of(const Pixels& pixels, const std::vector<uint32_t>& order, size_t
   return hi - lo + 1U;
 }
 
-/// How many of an order's fours are in so small a rectangle of pixels.
+/// Returns the fraction of an order's groups of four that lie in a rectangle of this many pixels.
 double fraction_of_fours(const Pixels& pixels, const std::vector<uint32_t>& order, uvec2 most) {
   const size_t fours = order.size() / 4;
   size_t small = 0;
@@ -119,12 +119,13 @@ TEST(RayTiles, SizesThatAreNoMultiplesLoseFewFours) {
 TEST(RayTiles, ShadowRaysOfPartsOfAPictureAreMostlyInFoursOfNeighbours) {
   const Pixels pixels = make_pixels({600, 600}, choose_ring, make_shadow_ray);
   const std::vector<uint32_t> order = tile_all(pixels);
-  // As they come, no four is but of one row, or of the ends of two.
+  // In the original order, the four rays of a group are in one row, or at the ends of two rows.
   EXPECT_GT(fraction_of_fours(pixels, order, {3, 2}), 0.9);
   EXPECT_GT(fraction_of_fours(pixels, order, {8, 4}), 0.98);
 }
 
-// The window in which the next row is expected to end holds the end of the second of two rows half as long.
+// The window in which the next row is expected to end also contains the end of the second of two rows of half the
+// length.
 TEST(RayTiles, RowsMayBecomeHalfAsLongAtOnce) {
   const auto choose_t = [](uvec2 pixel) { return pixel.y < 64 || pixel.x < 100; };
   const Pixels pixels = make_pixels({200, 200}, choose_t, make_camera_ray);
@@ -143,7 +144,7 @@ TEST(RayTiles, RowsThatBeginHereAndThereStayBesideEachOther) {
   EXPECT_GT(fraction_of_fours(pixels, order, {3, 2}), 0.85);
 }
 
-// All that is left of the last row may go to make the fours before it begin at multiples of four.
+// All that is left of the last row may be needed so that the groups of four before it begin at multiples of four.
 TEST(RayTiles, TheLastRowMayBeOneRay) {
   const auto choose = [](uvec2 pixel) { return pixel != uvec2(0) && (pixel.y < 64 || pixel.x == 0); };
   const Pixels pixels = make_pixels({100, 65}, choose, make_camera_ray);
@@ -178,11 +179,11 @@ TEST(RayTiles, WhatComesInNoRowsIsLeft) {
   EXPECT_TRUE(tile({rays.front()}).empty());
   EXPECT_TRUE(tile({rays.begin(), rays.begin() + 256}).empty());
   EXPECT_TRUE(tile(std::vector<Ray>(1000, rays.front())).empty());
-  // Rows of six pixels: as they come, neighbours are near.
+  // Rows have six pixels: in the original order, neighbours are already near.
   EXPECT_TRUE(tile(make_pixels({6, 500}, choose_all, make_camera_ray).rays).empty());
 }
 
-// Order is all that may suffer.
+// In such a case only the order may be worse.
 TEST(RayTiles, IsAPermutationWhateverTheRays) {
   const Pixels pixels = make_pixels({300, 100}, choose_all, make_camera_ray);
   std::vector<Ray> bad = pixels.rays;

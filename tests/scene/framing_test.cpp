@@ -20,7 +20,7 @@ namespace {
 
 constexpr float kAspectRatios[] = {16.0F / 9.0F, 1.0F, 9.0F / 16.0F};
 
-/// Where points lie in the picture, whose sides are at -1 and 1.
+/// The range of points in the picture, whose sides are at -1 and 1.
 struct Extent {
   dvec2 lo{std::numeric_limits<double>::infinity()};
   dvec2 hi{-std::numeric_limits<double>::infinity()};
@@ -49,7 +49,7 @@ Extent project(const std::vector<dvec3>& points, const Camera& camera, float asp
   return extent;
 }
 
-/// A scene, and points of its surface among which are those that reach farthest.
+/// A scene and points of its surface, including those that reach farthest.
 struct Model {
   std::string name;
   Scene scene;
@@ -64,7 +64,7 @@ Model make_cloud(const std::string& name, const dvec3& size, const dvec3& place,
     mesh.positions.emplace_back(spread(random), spread(random), spread(random));
     if (i >= 2) mesh.triangles.emplace_back(i - 2, i - 1, i);
   }
-  // No triangle names it.
+  // No triangle uses this vertex.
   mesh.positions.emplace_back(1e3F);
   dmat4 matrix(1.0);
   for (int i = 0; i < 3; ++i) matrix[i][i] = size[i];
@@ -78,7 +78,7 @@ Model make_cloud(const std::string& name, const dvec3& size, const dvec3& place,
   return model;
 }
 
-/// A box that is turned a little.
+/// Returns a box that is turned a little.
 Model make_rod(const std::string& name, const vec3& size) {
   dmat4 matrix(1.0);
   matrix[0][1] = 0.2;
@@ -94,7 +94,7 @@ Model make_rod(const std::string& name, const vec3& size) {
   return model;
 }
 
-/// Shapes of all kinds, by points close together on each.
+/// Returns shapes of all kinds, each with points close together on it.
 Model make_shapes() {
   Model model{"shapes", {}, {}};
   const dvec3 axis = glm::normalize(dvec3(1, 2, -1));
@@ -192,7 +192,7 @@ TEST(FramingTest, StrayGeometryIsLeftOut) {
   expect_framed(model, frame_scene(model.scene, 1.0F), 1.0F, 0.85, "no side");
 }
 
-/// The direction from the scene to a camera, and what is up for it.
+/// Returns the direction from the scene to a camera, and the up direction for it.
 std::pair<vec3, vec3> side_of(const Scene& scene, Framing from, const vec3& up = vec3(0, 1, 0)) {
   const Camera camera = frame_scene(scene, 1.0F, {.from = from, .up = up});
   return {-camera.look, camera.up};
@@ -240,9 +240,9 @@ TEST(FramingTest, ALonePointAndALineAlongTheViewAreSeen) {
   EXPECT_FALSE(project({dvec3(0), dvec3(0, 0, 2)}, camera, 1.0F).is_behind);
 }
 
-// Within scenes.
+// The next tests look from within scenes.
 
-/// A box of 12 triangles, with its fronts outwards or inwards.
+/// Adds a box of 12 triangles whose fronts face outwards or inwards.
 void add_mesh_box(Scene& scene, const vec3& lo, const vec3& hi, bool faces_inwards = false) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -311,7 +311,7 @@ TEST(InteriorTest, ARoomMayBeMirroredAndCutFinely) {
   EXPECT_EQ(framing_of(scene), Framing::kInside);
 }
 
-/// A room without the wall at one end of an axis.
+/// Returns a room without the wall at one end of an axis.
 Scene make_open_room(int axis, float end) {
   Scene room = make_room(vec3(6, 3, 9));
   auto& walls = std::get<Mesh>(room.geometries.front());
@@ -354,7 +354,7 @@ TEST(InteriorTest, AnObjectIsSeenFromOutside) {
   EXPECT_EQ(framing_of(walled), Framing::kThreeQuarter) << "its walls have outsides";
 }
 
-// Other cameras.
+// The next tests use other cameras.
 
 TEST(OrbitTest, TurnsAroundThePointAndLeavesItWhereItWas) {
   Camera camera;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// A ball of radius 1 at the origin, of one material. Its bounds have a radius of sqrt(3).
+/// Returns a ball of radius 1 at the origin with one material. Its bounds have a radius of sqrt(3).
 Scene scene_of(const Material& material) {
   Scene scene;
   scene.materials = {material};
@@ -75,7 +75,7 @@ TEST(LightSceneTest, ASceneWithoutLightStandsInTheStudio) {
   EXPECT_TRUE(validate(scene).empty());
   EXPECT_EQ(display_of(scene), (DisplayTransform{0.0F, ToneMapping::kNeutral}));
 
-  // What is lit stays as it is.
+  // A scene that already has lights stays unchanged.
   const AssumedLight again = light_scene(scene);
   EXPECT_FALSE(again.has_studio || again.has_studio_light || again.has_background);
   EXPECT_EQ(scene.lights.size(), 1U);
@@ -88,7 +88,7 @@ TEST(LightSceneTest, PhongsMaterialsTakeTheStudiosLightOverPi) {
   EXPECT_FLOAT_EQ(scene.lights[0].diffuse.x, kStudioLightPower / kPi);
   EXPECT_FLOAT_EQ(scene.lights[0].specular.x, kStudioLightPower / kPi);
   EXPECT_EQ(exposure_of(scene), 0.0F);
-  // Among others they take it as it is.
+  // If the scene also has materials of another kind, the light's power is not divided by pi.
   Scene mixed = phong_scene();
   mixed.materials.push_back({.name = "other", .model = MetallicRoughness{}});
   light_scene(mixed);
@@ -108,7 +108,7 @@ TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
   EXPECT_FALSE(has_studio(scene));
   EXPECT_EQ(display_of(scene), DisplayTransform());
 
-  // With lights of their own, however strong, nothing is assumed at all.
+  // If a scene has lights of its own, however strong, nothing is assumed.
   Scene lit = classic_scene();
   lit.lights = {light_of(LightKind::kPoint, 1e4F)};
   light_scene(lit);
@@ -191,7 +191,7 @@ TEST(LightSceneTest, TheStudioReachesWhatHasNoAmbientFactor) {
 
 TEST(LightSceneTest, LightsWithoutASkyGetTheStudioWeaker) {
   Scene scene = physical_scene();
-  // E = 64 pi: the exposure is 2^-6.
+  // With E = 64 pi the exposure is 2^-6.
   scene.lights = {light_of(LightKind::kDirectional, 64.0F * kPi)};
   const AssumedLight assumed = light_scene(scene);
   EXPECT_TRUE(assumed.has_studio && assumed.has_background);
@@ -218,7 +218,7 @@ TEST(LightSceneTest, ASkyOfTheFilesOwnIsEnough) {
   EXPECT_TRUE(gradient.lights.empty());
   EXPECT_TRUE(std::holds_alternative<GradientSky>(gradient.environment.sky));
 
-  // A background alone lights nothing, and stays.
+  // A background alone gives no light, and stays.
   Scene colored = physical_scene();
   colored.environment.background = vec3(0.1F, 0.2F, 0.3F);
   light_scene(colored);
@@ -236,7 +236,8 @@ TEST(StudioTest, ItStandsByTheFirstCamera) {
   EXPECT_FLOAT_EQ(front_with({camera}), 0.5F * kPi) << "from +X";
   camera.look = glm::normalize(vec3(1.0F, -5.0F, 1.0F));
   EXPECT_FLOAT_EQ(front_with({camera, Camera{}}), -0.75F * kPi) << "from -X -Z and above";
-  // Straight down with +X to the top: the lower edge is -X. Straight up it is the upper edge.
+  // A camera that looks straight down has +X at the top and -X at the lower edge. For one that looks straight up, -X is
+  // at the upper edge.
   camera.look = vec3(0.0F, -1.0F, 0.0F);
   camera.up = vec3(1.0F, 0.0F, 0.0F);
   EXPECT_FLOAT_EQ(front_with({camera}), -0.5F * kPi);
@@ -280,7 +281,7 @@ TEST(ExposureTest, OtherLightIsBroughtToPiInHalfStops) {
     EXPECT_EQ(2.0F * stops, std::round(2.0F * stops));
     EXPECT_LE(std::abs(std::log2(power / kPi) + stops), 0.2501F) << power;
   }
-  // As bright as the eye takes it.
+  // The brightness is that which the eye perceives.
   scene.lights[0].diffuse = vec3(0.0F, 100.0F, 0.0F);
   EXPECT_EQ(exposure_of(scene), -4.5F) << "71.5 lux";
   scene.lights.push_back(scene.lights[0]);
@@ -295,7 +296,7 @@ TEST(ExposureTest, DistanceCountsFromTheScenesMiddle) {
   EXPECT_EQ(exposure_of(scene), -6.0F);
   scene.lights[0].kind = LightKind::kSpot;
   EXPECT_EQ(exposure_of(scene), -6.0F);
-  // Within half the radius, sqrt(3) / 2, distances count as that.
+  // Distances of less than half the radius, sqrt(3) / 2, count as half the radius.
   scene.lights[0].diffuse = vec3(0.75F * 64.0F * kPi);
   for (const float distance : {0.0F, 0.1F, 0.86F}) {
     scene.lights[0].position = vec3(10.0F, distance, 0.0F);
@@ -303,7 +304,7 @@ TEST(ExposureTest, DistanceCountsFromTheScenesMiddle) {
   }
   scene.lights[0].position = vec3(10.0F, 1.8F, 0.0F);
   EXPECT_EQ(exposure_of(scene), -4.0F);
-  // Classic ones do not fall off.
+  // Classic lights do not get weaker with distance.
   scene.lights[0].attenuation = Attenuation::kNone;
   EXPECT_EQ(exposure_of(scene), -5.5F);
 }

@@ -7,7 +7,8 @@
 namespace promin {
 namespace {
 
-/// A square with mirrored coordinates around 100, which need a split, shown by two objects, the second mirrored.
+/// Returns a square with mirrored coordinates around 100, which must be split, shown by two objects; the second is
+/// mirrored.
 Scene make_scene() {
   Scene scene;
   auto image = std::make_shared<TextureImage>();
@@ -66,7 +67,7 @@ TEST(PictureMeshes, WithoutATextureStayAsTheyAre) {
   Scene scene = make_scene();
   for (Object& object : scene.objects) object.material = 0;
   expect_untouched(world::flatten(scene));
-  // An image that could not be read.
+  // The scene has an image that could not be read.
   scene = make_scene();
   scene.images = {std::make_shared<TextureImage>()};
   expect_untouched(world::flatten(scene));

@@ -17,7 +17,8 @@
 namespace promin {
 namespace {
 
-/// Bounds in double of a disk, by its extreme points along each axis: center +- radius * (e_i - a_i a) / |e_i - a_i a|.
+/// Extends bounds by a disk, in double. It uses the disk's extreme points along each axis: center +- radius * (e_i -
+/// a_i a) / |e_i - a_i a|.
 void extend_by_disk(const dvec3& center, const dvec3& a, double radius, dvec3& lo, dvec3& hi) {
   for (int i = 0; i < 3; ++i) {
     dvec3 toward(0.0);
@@ -138,7 +139,7 @@ TEST(SceneTest, PrimitivesAreCounted) {
   EXPECT_EQ(primitive_count(world::NotDrawn{}), 0U);
 }
 
-/// The largest |x| / half width and |y| / half height of the corners of a box on the picture; infinite if one lies
+/// Returns the largest |x| / half width and |y| / half height of a box's corners in the picture; infinite if one lies
 /// behind the eye.
 dvec2 extent_on_picture(const Camera& camera, const Bounds& box) {
   const dvec3 look(camera.look);
@@ -176,7 +177,8 @@ TEST(SceneTest, TheCameraInFrontSeesEverything) {
   }
 }
 
-/// The camera that frames a box of this size at the origin from three quarters, as azimuth and elevation in degrees.
+/// Returns the azimuth and elevation in degrees of the camera that frames a box of this size at the origin from three
+/// quarters.
 dvec2 framed_from(const vec3& size, float aspect_ratio = 1.5F) {
   Scene scene;
   scene.add("box", Box{.half_size = 0.5 * dvec3(size)});

@@ -9,7 +9,7 @@
 namespace promin {
 namespace {
 
-/// A box of size 1 around a point.
+/// Adds a box of this size around a point.
 void add_box(Scene& scene, const dvec3& center, const dvec3& size = dvec3(1.0)) {
   dmat4 place(1.0);
   for (int axis = 0; axis < 3; ++axis) place[axis][axis] = size[axis];

@@ -11,7 +11,7 @@
 namespace promin {
 namespace {
 
-/// A square in the plane z = 0, counter-clockwise as seen from +Z, whose normals lean by the same angle.
+/// Returns a square in the plane z = 0, counter-clockwise as seen from +Z, whose normals all lean by the same angle.
 Mesh make_square(float normal_z) {
   Mesh mesh;
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -21,13 +21,13 @@ Mesh make_square(float normal_z) {
   return mesh;
 }
 
-/// The same with the other side as its front.
+/// Returns the same mesh with the other side as its front.
 Mesh rewind(Mesh mesh) {
   for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
   return mesh;
 }
 
-/// What the oracle shows of a mesh with a texture of normals, from one of its sides.
+/// Returns the oracle's colour of a mesh with a texture of normals, from one of its sides.
 oracle::Vector color_of(const Mesh& mesh, float eye_z) {
   Scene scene;
   auto image = std::make_shared<TextureImage>();

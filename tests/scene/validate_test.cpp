@@ -38,7 +38,7 @@ std::vector<std::string> places_of(const std::vector<Problem>& problems) {
   return places;
 }
 
-/// Something that breaks a thing that was valid, and the place that is told of it.
+/// A change that makes a valid object invalid, and the place that the error names.
 template <class Thing>
 struct Fault {
   const char* where;
@@ -79,10 +79,11 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
       {"lights[0].specular", [](Scene& s) { s.lights[0].specular.r = kNan; }},
       {"lights[0].position", [](Scene& s) { s.lights[0].position.x = 2e15F; }},
       {"lights[0].direction", [](Scene& s) { s.lights[0].direction = vec3(0, 0, 2); }},
-      // In a cone of 0.02 half an angle it would bring nothing: its cosines never exceed 0.9998.
+      // With a direction of this length, a spot light whose cone has half an angle of 0.02 would give no light: its
+      // cosines never exceed 0.9998.
       {"lights[0].direction", [](Scene& s) { s.lights[0].direction = vec3(0, 0, 0.9998F); }},
       {"lights[0].attenuation", [](Scene& s) { s.lights[0].attenuation = static_cast<Attenuation>(99); }},
-      // Its product with a material of the same kind would be infinite.
+      // The product with a material's equally large number would be infinite.
       {"lights[0].diffuse", [](Scene& s) { s.lights[0].diffuse.r = 1e30F; }},
       {"materials[0].emissive", [](Scene& s) { s.materials[0].emissive.r = 1e30F; }},
       {"lights[0].range", [](Scene& s) { s.lights[0].range = kNan; }},
@@ -131,7 +132,7 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
   }
 }
 
-// KHR_materials_ior has 0 beside the numbers from 1 on, and the colour of a reflection may be beyond 1.
+// KHR_materials_ior allows 0 besides the numbers from 1 on, and the colour of a reflection may be larger than 1.
 TEST(ValidateTest, TheEndsOfRangesAreValid) {
   Scene scene = make_valid_scene();
   metal_of(scene) = {.base_color = vec3(0), .metallic = 0, .roughness = 0, .ior = 0, .specular = 0};
@@ -190,7 +191,7 @@ TEST(ValidateTest, EveryFaultOfAViewIsToldWithItsPlace) {
   }
 }
 
-// What looks at a scene that validate() refuses throws rather than read what is not there.
+// If validate() refuses a scene, functions that use the scene throw; they do not read data that do not exist.
 TEST(ValidateTest, QuestionsToABrokenSceneThrow) {
   Scene scene = make_valid_scene();
   EXPECT_THROW(frame_scene(scene, 0.0F), UsageError);

@@ -11,13 +11,13 @@
 
 namespace promin {
 
-/// A file, or a part of one, that is refused, and the problem and the place that the message must name.
+/// A file, or a part of one, that is refused, with the problem and the place that the message must name.
 struct BadFile {
   const char* name;
   std::string text;
-  /// As for HasProblem.
+  /// The problem, in the form that HasProblem takes.
   const char* what;
-  /// The text after the file's name.
+  /// The text that must follow the file's name.
   const char* where;
 };
 
@@ -25,10 +25,10 @@ inline std::ostream& operator<<(std::ostream& stream, const BadFile& bad) {
   return stream << bad.name;
 }
 
-/// A test for each bad file of a table.
+/// Runs a test for each bad file of a table.
 class BadFileTest : public SceneFolder, public testing::WithParamInterface<BadFile> {
  protected:
-  /// Loads a file of the test's folder.
+  /// Loads a file of the test's folder and expects a refusal.
   void expect_refusal(const std::string& file, const std::string& text) const {
     const std::string message = refusal(file, text);
     EXPECT_THAT(message, HasProblem(GetParam().what));

@@ -12,7 +12,7 @@
 
 namespace promin {
 
-// Places in the header (docs/bvh_file.md).
+// Offsets of fields in the header (docs/bvh_file.md).
 inline constexpr size_t kByteOrderPlace = 8;
 inline constexpr size_t kVersionPlace = 12;
 inline constexpr size_t kChecksumPlace = 16;

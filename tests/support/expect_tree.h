@@ -14,8 +14,8 @@ inline bool contains(const Bounds& outer, const Bounds& inner) {
   return glm::all(glm::lessThanEqual(outer.lo, inner.lo)) && glm::all(glm::greaterThanEqual(outer.hi, inner.hi));
 }
 
-/// Each node but the root is one node's child, inside it and after it; each reference is in one leaf; leaves and depth
-/// keep their bounds, and no leaf has a primitive twice.
+/// Expects a valid tree. Each node except the root is one node's child, inside it and after it. Each reference is in
+/// one leaf. Leaves and depth keep their bounds, and no leaf has a primitive twice.
 inline void expect_tree(const Bvh& bvh) {
   std::vector<int> node_uses(bvh.nodes.size(), 0);
   std::vector<int> reference_uses(bvh.references.size(), 0);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A library to preload (LD_PRELOAD) into a program that is to have at most PROMIN_TEST_THREADS threads at a time beside
-// its first, as where pids.max or ulimit -u bounds them.
+// A library to preload (LD_PRELOAD) into a program. The program can then have at most PROMIN_TEST_THREADS threads at a
+// time besides its first, as with a limit by pids.max or ulimit -u.
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -15,7 +15,7 @@ namespace {
 
 std::atomic<int> count = 0;
 
-/// Counts a thread until it ends, whether it returns or leaves by pthread_exit.
+/// Counts a thread until it ends, whether it returns or calls pthread_exit.
 struct Counted {
   Counted() = default;
   Counted(const Counted&) = delete;

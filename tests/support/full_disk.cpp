@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// A library to preload (LD_PRELOAD) into a program whose file size limit stands for a full disk. The limit is for files
-// in memory too, where newer lavapipes keep device memory; a full disk is not. Such files may grow here. With
-// PROMIN_TEST_PROMISES_NO_ROOM the file system is one that promises no room, so that what is full is found by writing.
+// A library to preload (LD_PRELOAD) into a program whose file size limit simulates a full disk. The limit also applies
+// to files in memory, in which newer lavapipes keep device memory; a full disk does not affect them, so this library
+// lets them grow. With PROMIN_TEST_PROMISES_NO_ROOM it simulates a file system that cannot reserve room, so that a full
+// disk is found only by writing.
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -15,7 +16,7 @@
 
 namespace {
 
-/// A file of memfd_create has no name, and no other file that a program makes longer by ftruncate lacks one.
+/// A file of memfd_create has no name; every other file that a program extends with ftruncate has one.
 bool is_in_memory(int file) {
   struct stat status {};
   return fstat(file, &status) == 0 && status.st_nlink == 0;

@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// The sentences of tests/messages/messages.txt, by the codes of their problems.
+/// The sentences of tests/messages/messages.txt, indexed by the codes of their problems.
 using GoldenMessages = std::multimap<std::string, std::string, std::less<>>;
 
 inline GoldenMessages read_golden_messages(const std::string& file) {

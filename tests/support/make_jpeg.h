@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// A JPEG of pixels of red, green and blue, as libjpeg-turbo writes it.
+/// Returns a JPEG of pixels of red, green and blue, as libjpeg-turbo writes it.
 inline std::vector<std::byte> make_jpeg(const uvec2& size, const std::vector<uint8_t>& rgb) {
   const tjhandle handle = tjInitCompress();
   unsigned char* bytes = nullptr;

@@ -12,7 +12,7 @@
 
 namespace promin {
 
-/// A PNG of rows of samples, as libpng itself writes it.
+/// Returns a PNG of rows of samples, as libpng itself writes it.
 inline std::vector<std::byte> make_png(const uvec2& size, int color_type, int bit_depth,
                                        const std::vector<uint8_t>& rows, const std::vector<png_color>& palette = {}) {
   std::vector<std::byte> file;

@@ -9,9 +9,9 @@
 
 namespace promin::test {
 
-/// Long, thin, tilted triangles, whose boxes are mostly empty: `count` closed pipes of eight sides and 28 triangles,
-/// strewn over the unit cube as they come, 0.2...0.8 long and a fiftieth as thick. The same for the same count, on
-/// every platform.
+/// Returns long, thin, tilted triangles, whose boxes are mostly empty. They are `count` closed pipes of eight sides and
+/// 28 triangles at random places in the unit cube, 0.2...0.8 long and a fiftieth as thick. The mesh depends only on the
+/// count, on every platform.
 inline Mesh make_pipes(uint32_t count) {
   constexpr uint32_t kSides = 8;
   std::mt19937 generator(1);

@@ -15,7 +15,7 @@ class PlyBuilder {
  public:
   explicit PlyBuilder(std::endian order) : order_(order) {}
 
-  /// `elements` are the "element" lines and their properties.
+  /// Writes the header. `elements` are the "element" lines and their properties.
   void header(const std::string& elements) {
     const std::string order = order_ == std::endian::little ? "little" : "big";
     bytes_ += "ply\nformat binary_" + order + "_endian 1.0\n" + elements + "end_header\n";

@@ -15,7 +15,7 @@
 namespace promin {
 namespace {
 
-/// A file in memory: unlike a pipe it never fills up, and it is no terminal either.
+/// Makes a file in memory: unlike a pipe it never fills up, and it is not a terminal.
 int make_capture() {
   const int descriptor = memfd_create("capture", MFD_CLOEXEC);
   if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
@@ -43,7 +43,7 @@ void set_limit(__rlimit_resource resource, size_t most) {
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   if (options.max_file_bytes) {
-    // As a shell starts it, whatever this process ignores.
+    // The signal has its default action, as in a shell, whatever this process ignores.
     std::signal(SIGXFSZ, SIG_DFL);
     set_limit(RLIMIT_FSIZE, *options.max_file_bytes);
   }

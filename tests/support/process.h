@@ -14,18 +14,19 @@ namespace promin {
 
 struct ProcessOptions {
   std::filesystem::path folder;
-  /// Set in the child only.
+  /// Variables that are set only in the child.
   std::map<std::string, std::string> environment;
-  /// No file may grow beyond this, by the process's file size limit; see full_disk.cpp for what stands for a full disk.
+  /// No file may grow beyond this size, by the process's file size limit; see full_disk.cpp for the simulation of a
+  /// full disk.
   std::optional<size_t> max_file_bytes;
-  /// The limit of the address space in bytes, as by ulimit -v.
+  /// The limit of the address space in bytes, as set by ulimit -v.
   std::optional<size_t> max_address_bytes;
-  /// The standard output; captured if not given.
+  /// The file for the standard output. Without it the output is captured.
   std::optional<std::filesystem::path> standard_output;
 };
 
 struct ProcessResult {
-  /// -1 if a signal ended it.
+  /// The exit code; -1 if a signal ended the process.
   int exit_code = -1;
   int signal = 0;
   std::string out;

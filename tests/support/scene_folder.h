@@ -23,7 +23,7 @@ struct LoadedScene : world::Scene {
 class SceneFolder : public TempFolder {
  protected:
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
-    // A new file each time: truncating an old one makes some file systems flush.
+    // The file is new each time, because some file systems flush when a file is truncated.
     std::filesystem::remove(folder_ / name);
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;

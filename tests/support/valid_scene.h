@@ -6,8 +6,8 @@
 
 namespace promin {
 
-/// One of everything: a mesh with all that meshes may have, each shape, a material of each model, a spot light, a
-/// camera.
+/// Returns a scene with one of everything: a mesh with all that meshes may have, each shape, a material of each model,
+/// a spot light, a camera.
 inline Scene make_valid_scene() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -41,7 +41,7 @@ TEST(AlphaCoverage, IsTheShareFromTheCutoffOn) {
 }
 
 TEST(AlphaCoverage, AlphasAreScaledToTheCutoff) {
-  // Half of the texels are to be above: 60 becomes 128, all others go along.
+  // Half of the texels must be above the cutoff: 60 becomes 128, and all others are scaled by the same factor.
   EXPECT_THAT(scaled({10, 30, 60, 90}, 0.5F, 0.5), ElementsAre(21U, 64U, 128U, 192U));
   EXPECT_THAT(scaled({200, 210, 220, 230}, 0.5F, 0.25), ElementsAre(116U, 122U, 127U, 133U)) << "down, too";
   EXPECT_THAT(scaled({10, 30, 200, 250}, 0.5F, 0.5), ElementsAre(10U, 30U, 200U, 250U)) << "nothing to do";
@@ -51,7 +51,7 @@ TEST(AlphaCoverage, AlphasAreScaledToTheCutoff) {
   EXPECT_THAT(scaled({1, 2, 0, 0}, 1.0F, 0.5), ElementsAre(255U, 255U, 0U, 0U));
 }
 
-/// A net of thin wires in levels of means, which fade below the cutoff, keeps its share.
+/// A net of thin wires fades below the cutoff in levels of plain means; here it keeps its fraction.
 TEST(AlphaCoverage, LevelsKeepIt) {
   std::mt19937 random(3);
   constexpr double kCoverage = 0.2;

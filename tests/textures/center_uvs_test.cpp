@@ -7,7 +7,7 @@
 namespace promin {
 namespace {
 
-/// A triangle whose coordinates of both sets begin at `first`.
+/// Returns a triangle whose coordinates in both sets begin at `first`.
 Mesh make_mesh(const vec2& first) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -54,7 +54,7 @@ TEST(CenterUvs, NothingMovesWithoutNeed) {
   second.uv_set = 1;
   EXPECT_EQ(center_of({500, 0}, second), dvec4(0, 0, 500, 0)) << "the other set is not read";
   EXPECT_EQ(find_uv_center(make_mesh({500, 500}), {}, {}), dvec4(0));
-  // From 0 to 1000 half of them would lose bits that the others gain.
+  // The coordinates go from 0 to 1000: if they were moved, half of them would lose bits that the others gain.
   Mesh wide = make_mesh({0, 0});
   wide.uvs = {vec4(0.1F), vec4(999.3F), vec4(500)};
   EXPECT_EQ(find_uv_center(wide, std::vector{make_slot()}, std::vector{Texture{}}), dvec4(0));
@@ -68,7 +68,7 @@ TEST(CenterUvs, MirroredOnesMoveByTwoWidths) {
 TEST(CenterUvs, ClampedOnesStayWhereTheyAre) {
   EXPECT_EQ(center_of({500, 500}, make_slot(), kClamp, kRepeat), dvec4(0, 500, 0, 0));
   EXPECT_EQ(center_of({500, 500}, make_slot(), kClamp, kClamp), dvec4(0));
-  // Turned by a quarter, u of the picture is v of the mesh.
+  // After a quarter turn, the picture's u is the mesh's v.
   EXPECT_EQ(center_of({500, 500}, make_slot({0, 1, 0}, {-1, 0, 0}), kClamp, kRepeat), dvec4(500, 0, 0, 0));
 }
 
@@ -76,11 +76,11 @@ TEST(CenterUvs, TransformsDecideWhatIsAWidth) {
   EXPECT_EQ(center_of({501, 501}, make_slot({4, 0, 0.3F}, {0, -3, 0.1F})), dvec4(501, 501, 0, 0));
   EXPECT_EQ(center_of({501, 503}, make_slot({0.5F, 0, 0}, {0, 0.25F, 0})), dvec4(500, 500, 0, 0));
   EXPECT_EQ(center_of({501, 501}, make_slot({0.5F, 0, 0}, {0, 1, 0}), kMirrored), dvec4(500, 501, 0, 0));
-  // No whole number of widths is one of these.
+  // A mesh is only moved by an integer that is also a whole number of these widths, if there is one.
   EXPECT_EQ(center_of({501, 501}, make_slot({0.1234F, 0, 0}, {0, 1, 0})), dvec4(0, 501, 0, 0));
   EXPECT_EQ(center_of({501, 501}, make_slot({0.75F, 0.5F, 0}, {-0.5F, 0.75F, 0})), dvec4(500, 500, 0, 0));
   EXPECT_EQ(center_of({501, 501}, make_slot({0.7071F, 0.7071F, 0}, {-0.7071F, 0.7071F, 0})), dvec4(0));
-  // What rounding leaves of a cosine of 90 degrees is no reason.
+  // The rounding error of the cosine of 90 degrees does not prevent the move.
   EXPECT_EQ(center_of({501, 501}, make_slot({6e-17F, 1, 0}, {-1, 6e-17F, 0})), dvec4(501, 501, 0, 0));
 }
 

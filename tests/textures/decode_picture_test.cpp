@@ -69,7 +69,7 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   Bytes cut = png;
   cut.resize(png.size() - 20);
   EXPECT_THROW(decode_picture(cut), PictureError);
-  // The sum over the header no longer fits.
+  // The checksum of the header no longer fits.
   Bytes lying = png;
   lying[18] = std::byte{0xFF};
   EXPECT_THROW(decode_picture(lying), PictureError);
@@ -82,7 +82,7 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   }
 }
 
-/// The library complains about such JPEGs, and decodes what there is.
+/// The library complains about such JPEGs, and decodes what is there.
 TEST(DecodePicture, JpegsWithWarningsAreDecoded) {
   std::mt19937 random(3);
   std::vector<uint8_t> pixels(size_t{64} * 64 * 3);
@@ -109,11 +109,11 @@ TEST(DecodePicture, AbsurdSizesAreRefusedBeforeTheyTakeMemory) {
   const uint32_t side = kMaxTextureSide + 1;
   const Bytes wide = make_png({side, 1}, PNG_COLOR_TYPE_GRAY, 1, std::vector<uint8_t>((side + 7) / 8, 0));
   EXPECT_THROW(read_picture_size(wide), PictureError);
-  // Each side is allowed, all texels are not; the rest of the file does not matter.
+  // Each side is allowed, but the number of texels is not; the rest of the file does not matter.
   Bytes large = make_png({kMaxTextureSide, 1}, PNG_COLOR_TYPE_GRAY, 1, std::vector<uint8_t>(kMaxTextureSide / 8, 0));
   Bytes jpeg = make_jpeg({16, 16}, std::vector<uint8_t>(16 * 16 * 3, 0));
   for (size_t i = 0; i + 8 < jpeg.size(); ++i) {
-    // The frame header: two bytes each of height and width.
+    // The frame header has two bytes each for height and width.
     if (jpeg[i] != std::byte{0xFF} || jpeg[i + 1] != std::byte{0xC0}) continue;
     jpeg[i + 5] = jpeg[i + 7] = std::byte{0x40};
     jpeg[i + 6] = jpeg[i + 8] = std::byte{0x00};
@@ -123,14 +123,14 @@ TEST(DecodePicture, AbsurdSizesAreRefusedBeforeTheyTakeMemory) {
   EXPECT_EQ(read_picture_size(large), uvec2(kMaxTextureSide, 1));
 }
 
-/// A picture as OpenImageIO writes it, of floats from 0 to 1.
+/// Returns a picture of floats from 0 to 1, as OpenImageIO writes it.
 Bytes make_by_plugin(const std::string& ending, const uvec2& size, int channels, const std::vector<float>& samples,
                      OIIO::TypeDesc type = OIIO::TypeDesc::UINT8) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + "." + ending);
   const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(file.string());
   OIIO::ImageSpec spec(static_cast<int>(size.x), static_cast<int>(size.y), channels, type);
-  // Colours come unassociated, and are to stay so.
+  // The colours are not multiplied by alpha, and must stay so.
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("compression", "lossless");
   EXPECT_TRUE(writer && writer->open(file.string(), spec) &&
@@ -143,7 +143,7 @@ Bytes make_by_plugin(const std::string& ending, const uvec2& size, int channels,
   return {first, first + text.size()};
 }
 
-/// An uncompressed DDS of BGRA.
+/// Returns an uncompressed DDS of BGRA.
 Bytes make_dds(const uvec2& size, const std::vector<uint32_t>& texels) {
   std::array<uint32_t, 32> header{};
   header[0] = 0x20534444;  // "DDS "
@@ -190,8 +190,8 @@ Bytes bytes_of(const std::vector<uint8_t>& numbers) {
   return {first, first + numbers.size()};
 }
 
-/// Lossless WebP files of two pixels, as cwebp -lossless -exact makes them: red and (0, 128, 255); and (200, 100, 50)
-/// with alpha 128 beside (1, 2, 3) with alpha 0.
+/// Two lossless WebP files of two pixels, from cwebp -lossless -exact. One has red and (0, 128, 255); the other has
+/// (200, 100, 50) with alpha 128 and (1, 2, 3) with alpha 0.
 const std::vector<uint8_t> kWebpColors = {0x52, 0x49, 0x46, 0x46, 0x20, 0x00, 0x00, 0x00, 0x57, 0x45,
                                           0x42, 0x50, 0x56, 0x50, 0x38, 0x4c, 0x13, 0x00, 0x00, 0x00,
                                           0x2f, 0x01, 0x00, 0x00, 0x00, 0x0f, 0x30, 0x80, 0xfb, 0x3f,
@@ -208,7 +208,7 @@ TEST(DecodePicture, WebP) {
   EXPECT_THROW(decode_picture(cut), PictureError);
 }
 
-/// As libavif encodes the pixels (200, 100, 50) with alpha 128 and (1, 2, 3) with alpha 0, losslessly.
+/// This is how libavif encodes the pixels (200, 100, 50) with alpha 128 and (1, 2, 3) with alpha 0, losslessly.
 constexpr std::string_view kAvif =
     "AAAAIGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZk1BMUEAAAGNbWV0YQAAAAAAAAAoaGRscgAAAAAAAAAAcGljdAAAAAAAAAAAAAAAAGxpYmF2"
     "aWYAAAAADnBpdG0AAAAAAAEAAAAsaWxvYwAAAABEAAACAAEAAAABAAABzgAAADYAAgAAAAEAAAG1AAAAGQAAAEJpaW5mAAAAAAACAAAAGmlu"
@@ -226,7 +226,7 @@ TEST(DecodePicture, Avif) {
   EXPECT_THROW(decode_picture(cut), PictureError);
 }
 
-/// What a KTX 2.0 file is made of.
+/// The parts of a KTX 2.0 file.
 struct Ktx2 {
   uint32_t vk_format = 37;
   uvec2 size{2, 1};
@@ -243,7 +243,7 @@ void append(std::string& text, std::initializer_list<uint32_t> numbers) {
   }
 }
 
-/// A key with its value.
+/// Returns an entry of a key and its value.
 std::string make_note(const std::string& key, const std::string& value) {
   std::string note;
   append(note, {static_cast<uint32_t>(key.size() + value.size() + 2)});
@@ -270,7 +270,7 @@ Bytes make_ktx2(const Ktx2& ktx2) {
   return {first, first + file.size()};
 }
 
-/// A frame of Zstandard (RFC 8878) of one block, which repeats a byte.
+/// Returns a Zstandard frame (RFC 8878) of one block, which repeats a byte.
 std::vector<uint8_t> repeat_by_zstd(uint8_t byte, uint8_t count) {
   return {0x28, 0xB5, 0x2F, 0xFD, 0x20, count, static_cast<uint8_t>(count << 3 | 3), static_cast<uint8_t>(count >> 5),
           0,    byte};
@@ -323,8 +323,8 @@ constexpr std::string_view kEtc1s =
     "4/U8VhuU53dLl3ijFp8276ejOStTzvnyRS66rT/2rwsbOaytaa66X1emt+GG+4e99MeVW3brp7wP+mPbouoplhljpvGm+s50xKm3epD+Dxk8"
     "vWukxO2uBPfi/FiM8HdVnbkxpkj6tlxESUZ7Oe8mshn++DEODhX0IpboZNtcJwEc02TAy4kbKMIlEsyvXDOe8sYJM1DDzh8JIK6LpswjXSI2"
     "03BIAXxAIFQhICqG/Aw62hIUAk6uJwJcENJEwQhAIgDyAV6AoOADXEQLAdEIIMh2IohrbEgcUYgRDTg4AAUIBAUBAQ==";
-/// checksum_of() its texels. The colours are those that basisu unpacks as ETC1. Alpha is within 3 of what it unpacks as
-/// ETC2, whose blocks of alpha are of another kind.
+/// The checksum_of() its texels. The colours are those that basisu unpacks as ETC1. Alpha is within 3 of basisu's ETC2,
+/// whose alpha has blocks of another kind.
 constexpr uint64_t kEtc1sChecksum = 0x3556D1FF91637501;
 
 uint64_t checksum_of(const std::vector<uint32_t>& texels) {
@@ -339,8 +339,8 @@ TEST(DecodePicture, Ktx2OfEtc1sByBasisLz) {
   EXPECT_EQ(checksum_of(picture.texels), kEtc1sChecksum);
 }
 
-/// A UASTC block of each of the 19 modes, side by side, that basisu 1.15 encodes, and the RGBA that it unpacks of them
-/// as ASTC.
+/// A UASTC block of each of the 19 modes, side by side, from basisu 1.15, and the RGBA that basisu unpacks from them as
+/// ASTC.
 constexpr std::string_view kUastc =
     "YUmzVJO1XNsQMlR2mLrc/vUJh8KDFoWHGwDw/w8AAACdWNCgoaGfn0GUJEmABEgAQzg20GSExRAJgADlcnk+ABOctIcOCRAEMUhK29jYWABL"
     "SA7fBt+mIAlggIQkAAAA21plkhrdUmiombru3CITRIeEBohKRwLqxV0S5XJycgAXHl7hv+QcAAAAAAAAAAAAT37w/4SFhTXh4eEfAP//KyrQ"
@@ -372,17 +372,17 @@ TEST(DecodePicture, Ktx2OfUastcInEachMode) {
   const DecodedPicture picture = decode_picture(make_ktx2(ktx2));
   ASSERT_EQ(4 * picture.texels.size(), expected.size());
   EXPECT_EQ(std::memcmp(picture.texels.data(), expected.data(), expected.size()), 0);
-  // Where sides are no multiples of 4, blocks are cut.
+  // If the sides are not multiples of 4, blocks are cut.
   ktx2.size = {75, 3};
   const DecodedPicture cut = decode_picture(make_ktx2(ktx2));
   EXPECT_EQ(cut.texels.at(75 + 74), picture.texels.at(76 + 74));
-  // No mode has seven bits of 69.
+  // No mode begins with the seven bits of 69.
   ktx2.level[0] = 69;
   EXPECT_THAT([&] { return decode_picture(make_ktx2(ktx2)).size; },
               ThrowsMessage<PictureError>(HasSubstr("a UASTC block is damaged")));
 }
 
-/// Whatever the bits, there is a picture or an error.
+/// Whatever the bits are, the result is a picture or an error.
 TEST(DecodePicture, DamagedEtc1sIsToldOf) {
   std::mt19937 random(11);
   const Bytes file = decode_base64(kEtc1s).value();
@@ -445,7 +445,7 @@ TEST(DecodePicture, RadianceStandsUprightWhateverTheOrderOfItsRows) {
   EXPECT_THAT(decode_picture(Bytes(first, first + text.size())).texels, ElementsAre(0xFFFF0000U, 0xFF0000FFU));
 }
 
-/// Whatever the bytes, there is a picture of the size that was told, or an error.
+/// Whatever the bytes are, the result is a picture of the announced size, or an error.
 TEST(DecodePicture, BrokenFilesOfOtherFormatsAreToldOf) {
   std::mt19937 random(5);
   std::vector<float> samples(16 * 16 * 4);

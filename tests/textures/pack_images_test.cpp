@@ -26,7 +26,7 @@ PackedImages pack(const TextureImage& image, bool has_levels = true) {
   return pack_images(Images{std::make_shared<TextureImage>(image)}, std::vector{texture});
 }
 
-/// The texels of a level.
+/// Returns the texels of a level.
 std::vector<uint32_t> level_of(const PackedImages& packed, uint32_t level) {
   const PlacedImage& placed = packed.images.at(0);
   const uint32_t first = placed.first + packed.words[placed.first + level];
@@ -43,15 +43,15 @@ TEST(PackImages, LevelsAreMeansOfAreas) {
 
 TEST(PackImages, ColoursAreAveragedAsLight) {
   const TextureImage image = make_image({2, 1}, {0xFF000000, 0xFFFFFFFF}, ImageUse::kColor);
-  // encode(0.5) = 0.7354 of 255, where the mean of the codes is 128.
+  // encode(0.5) is 0.7354, which is 188 of 255; the mean of the codes is 128.
   EXPECT_THAT(level_of(pack(image), 1), ElementsAre(0xFFBCBCBCU));
   EXPECT_THAT(level_of(pack(make_image({2, 1}, image.texels)), 1), ElementsAre(0xFF808080U));
 }
 
 TEST(PackImages, OddSizesWeighTexelsByTheirShare) {
-  // Of three texels one is left, a third of each: (0 + 90 + 255) / 3 = 115.
+  // Three texels become one, with a third of each: (0 + 90 + 255) / 3 = 115.
   EXPECT_THAT(level_of(pack(make_image({3, 1}, {0, 90, 255})), 1), ElementsAre(115U));
-  // Of five there are two: (60 + 120 + 180 / 2) / 2.5 = 108 and (180 / 2 + 240 + 30) / 2.5 = 144.
+  // Five texels become two: (60 + 120 + 180 / 2) / 2.5 = 108 and (180 / 2 + 240 + 30) / 2.5 = 144.
   EXPECT_THAT(level_of(pack(make_image({5, 1}, {60, 120, 180, 240, 30})), 1), ElementsAre(108U, 144U));
 }
 
@@ -108,7 +108,7 @@ TEST(PackImages, TheLargestAreHalvedUntilAllFit) {
 }
 
 TEST(PackImages, LevelsOfMasksKeepTheirShare) {
-  // A quarter of the texels is there; of the means, 64 but for one, none would be.
+  // A quarter of the texels is present. The means are 64 except for one, so that none would be present.
   std::vector<uint32_t> texels(16, 0);
   for (const size_t i : {0U, 2U, 8U, 10U}) texels[i] = 0xFF000000U;
   texels[1] = 0x40000000U;
@@ -136,7 +136,7 @@ TEST(PackImages, WhatIsHalvedHasTheLevelsThatItHad) {
   EXPECT_EQ(quartered.images.at(0).size, uvec2(3, 1));
   ASSERT_EQ(quartered.images.at(0).levels, 2U);
   for (uint32_t level = 0; level < 2; ++level) EXPECT_EQ(level_of(quartered, level), level_of(whole, level + 2));
-  // Without levels it is the same picture alone.
+  // Without levels only the picture itself is packed.
   scene.textures[0].has_levels = false;
   const PackedImages alone = pack_images(scene.images, scene.textures, sizeof(uint32_t) * 20);
   ASSERT_EQ(alone.images.at(0).levels, 1U);

@@ -23,7 +23,7 @@
 namespace promin {
 namespace {
 
-/// A grid of `side` squares a side, whose vertices `make(s, t)` fills for s and t from 0 to 1.
+/// Returns a grid of `side` squares on each side, whose vertices `make(s, t)` fills for s and t from 0 to 1.
 using MakeVertex = std::function<void(double s, double t, vec3& position, vec3& normal, vec4& uv)>;
 Mesh make_grid(uint32_t side, const MakeVertex& make) {
   Mesh mesh;
@@ -48,7 +48,7 @@ Mesh make_grid(uint32_t side, const MakeVertex& make) {
   return mesh;
 }
 
-/// A square in the plane z = 0, seen from +Z, with v growing downwards as images do.
+/// Returns a square in the plane z = 0, seen from +Z, whose v grows downwards as in images.
 Mesh make_plane(uint32_t side) {
   return make_grid(side, [](double s, double t, vec3& position, vec3& normal, vec4& uv) {
     position = {s, t, 0.0};
@@ -74,7 +74,7 @@ void expect_near(const vec4& a, const vec4& b, float tolerance) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
 
-/// Whether the corners of triangles are where they were.
+/// Expects that the corners of triangles are at the same places.
 void expect_same_surface(const Mesh& before, const Mesh& after) {
   ASSERT_EQ(before.triangles.size(), after.triangles.size());
   for (size_t i = 0; i < before.triangles.size(); ++i) {
@@ -103,7 +103,7 @@ TEST(Tangents, OfTheSecondSetAreItsOwn) {
   Mesh mesh = make_plane(1);
   for (vec4& uv : mesh.uvs) uv = {uv.x, uv.y, uv.y, uv.x};
   add_tangents(mesh, 1);
-  // u grows downwards, and v to the right: with v upwards that is another hand.
+  // u grows downwards, and v to the right; with v upwards this is the other hand.
   for (const vec4& tangent : mesh.tangents) expect_near(tangent, {0, -1, 0, -1}, 1e-6F);
 }
 
@@ -118,7 +118,7 @@ TEST(Tangents, OfASphereGoAlongItsCircles) {
     const vec3 along = glm::normalize(vec3(n.z, 0.0F, -n.x));
     EXPECT_EQ(mesh.tangents[i].w, 1.0F);
     EXPECT_NEAR(glm::dot(vec3(mesh.tangents[i]), n), 0.0F, 1e-6F);
-    // Along the seam the squares of one side alone count, half a square's angle off.
+    // At the seam only the squares of one side count, so the direction differs by half a square's angle.
     const size_t column = i % (kSide + 1);
     const bool is_at_seam = column == 0 || column == kSide;
     EXPECT_GT(glm::dot(vec3(mesh.tangents[i]), along), is_at_seam ? 0.998F : 0.99999F) << i;
@@ -143,7 +143,7 @@ TEST(Tangents, MirroredCoordinatesTurnTheHandAndSplitTheSeam) {
   }
 }
 
-/// A rough surface with coordinates that run to and fro, cut along some columns.
+/// Returns a rough surface whose coordinates go to and fro, cut along some columns.
 Mesh make_wild(uint32_t seed) {
   std::mt19937 random(seed);
   const auto noise = [&] { return static_cast<double>(random() % 1000) / 1000.0 - 0.5; };
@@ -154,7 +154,7 @@ Mesh make_wild(uint32_t seed) {
   });
 }
 
-/// A vertex of its own for each corner of a triangle, with the normal of all.
+/// Adds a triangle with a vertex of its own for each corner; all three have the same normal.
 void add_triangle(Mesh& mesh, const std::array<vec3, 3>& positions, const std::array<vec2, 3>& places,
                   const vec3& normal = vec3(0, 0, 1)) {
   const auto first = static_cast<uint32_t>(mesh.positions.size());
@@ -166,7 +166,8 @@ void add_triangle(Mesh& mesh, const std::array<vec3, 3>& positions, const std::a
   mesh.triangles.emplace_back(first, first + 1, first + 2);
 }
 
-/// Coordinates begin anew along a column, and normals do along another, where positions are the same.
+/// Returns a mesh whose coordinates begin anew along one column, and whose normals do along another, while the
+/// positions there are the same.
 Mesh make_seams() {
   Mesh mesh;
   for (const int part : {0, 1, 2}) {
@@ -184,8 +185,8 @@ Mesh make_seams() {
   return mesh;
 }
 
-/// A sphere whose first and last rows of squares end in a point, with as many coordinates as corners there: halves of
-/// these squares are lines.
+/// Returns a sphere whose first and last rows of squares end in a point. The point has as many coordinates as there are
+/// corners, so half of the triangles there are lines.
 Mesh make_poles() {
   return make_grid(8, [](double s, double t, vec3& position, vec3& normal, vec4& uv) {
     const bool is_pole = t == 0.0 || t == 1.0;
@@ -196,7 +197,7 @@ Mesh make_poles() {
   });
 }
 
-/// Coordinates on a few places, so that many triangles have lines and points of them.
+/// Returns a mesh whose coordinates are at a few places, so that those of many triangles are lines and points.
 Mesh make_flat_places(uint32_t seed) {
   std::mt19937 random(seed);
   return make_grid(6, [&](double s, double t, vec3& position, vec3& normal, vec4& uv) {
@@ -206,7 +207,7 @@ Mesh make_flat_places(uint32_t seed) {
   });
 }
 
-/// Triangles around a vertex, on which coordinates turn to and fro; closed or not.
+/// Returns triangles around a vertex, closed or not, on which coordinates turn to and fro.
 Mesh make_fan(uint32_t count, bool is_closed, uint32_t seed) {
   std::mt19937 random(seed);
   Mesh mesh;
@@ -225,7 +226,8 @@ Mesh make_fan(uint32_t count, bool is_closed, uint32_t seed) {
   return mesh;
 }
 
-/// Pages that hang on one edge, wound this way and that: of more than two triangles at an edge which go together?
+/// Returns pages that hang on one edge, with corners in either order. It tests which of more than two triangles at an
+/// edge belong together.
 Mesh make_book(uint32_t pages, uint32_t seed) {
   std::mt19937 random(seed);
   Mesh mesh;
@@ -241,8 +243,8 @@ Mesh make_book(uint32_t pages, uint32_t seed) {
   return mesh;
 }
 
-/// A strip that ends in itself turned over: neighbours share their vertices, and there the edge runs the same way in
-/// both.
+/// Returns a strip that is closed with half a twist: neighbours share their vertices, and at the joint the edge runs
+/// the same way in both.
 Mesh make_moebius(uint32_t count) {
   Mesh mesh;
   for (uint32_t i = 0; i < count; ++i) {
@@ -264,8 +266,8 @@ Mesh make_moebius(uint32_t count) {
   return mesh;
 }
 
-/// Two triangles that share an edge and nothing of whose coordinates but its ends agrees, one wound the other way; and
-/// two that have a vertex in common alone.
+/// Returns two pairs of triangles. The first two share an edge, whose coordinates agree only at its ends, and one has
+/// the opposite order of corners. The other two have only a vertex in common.
 Mesh make_opposite() {
   Mesh mesh;
   const vec3 a(0, 0, 0);
@@ -280,8 +282,8 @@ Mesh make_opposite() {
   return mesh;
 }
 
-/// Numbers of few bits and random indices: points and lines, edges of many triangles, triangles twice, coordinates
-/// without area, directions that cancel.
+/// Returns a mesh of random indices and numbers of few bits: points and lines, edges of many triangles, triangles
+/// twice, coordinates without area, directions that cancel.
 Mesh make_soup(uint32_t seed) {
   std::mt19937 random(seed);
   const auto small = [&](uint32_t count) { return static_cast<float>(random() % count) - 1.0F; };
@@ -299,12 +301,12 @@ Mesh make_soup(uint32_t seed) {
   return mesh;
 }
 
-/// How far off tangents are.
+/// The agreement of tangents with the oracle's.
 struct Agreement {
   size_t corners = 0;
-  /// Corners that no group came to, and that have a direction all the same.
+  /// The number of corners in no group that have a direction all the same.
   size_t left = 0;
-  /// Where directions cancel nearly, so that rounding decides.
+  /// The number of corners at which directions nearly cancel, so that rounding decides.
   size_t unsure = 0;
   oracle::Real largest = 0;
 
@@ -317,11 +319,11 @@ struct Agreement {
   }
 };
 
-/// Angles from which on the oracle leaves open what is seen: the product drops sums of 1e-12 of their parts, which
+/// From this angle on, the oracle leaves the result open. The product drops sums of 1e-12 of their parts, which
 /// rounding in double turns by as much.
 constexpr oracle::Real kUnsure = 1e-4L;
 
-/// Holds a mesh's tangents against the oracle's, corner by corner.
+/// Compares a mesh's tangents with the oracle's, corner by corner.
 Agreement expect_tangents_of_oracle(const Mesh& before, uint32_t uv_set) {
   const std::vector<oracle::CornerTangent> wanted = oracle::corner_tangents(before, uv_set);
   const bool has_any = std::ranges::any_of(wanted, [](const auto& corner) { return corner.group >= 0; });
@@ -340,7 +342,8 @@ Agreement expect_tangents_of_oracle(const Mesh& before, uint32_t uv_set) {
     ++agreement.corners;
     oracle::CornerTangent expected = wanted[c];
     if (expected.group < 0) {
-      // A vertex's first, unless its triangle takes part and has the other hand by another vertex; else none.
+      // The corner has the vertex's first group, unless its triangle takes part and has the other hand by another
+      // vertex; then it has none.
       if (expected.groups_at_vertex.empty()) {
         EXPECT_TRUE(has_none) << "corner " << c;
         continue;
@@ -368,7 +371,8 @@ void tell(const char* name, const Agreement& agreement) {
               agreement.left, agreement.unsure, agreement.largest);
 }
 
-// docs/model.md, "Textures": within what rounding a unit vector to fp32 turns it by, and double may be off.
+// By docs/model.md, "Textures", the difference may be what rounding a unit vector to fp32 turns it by, plus the error
+// of double.
 TEST(Tangents, OfHardMeshesAreTheOracles) {
   const auto mirrored = make_grid(4, [](double s, double t, vec3& position, vec3& normal, vec4& uv) {
     position = {s, t, 0.3 * s * t};
@@ -395,17 +399,17 @@ TEST(Tangents, OfHardMeshesAreTheOracles) {
   }
 }
 
-/// A mesh with the tangents of Mikkelsen's program, whose w is 0 for corners that it leaves at its initial value.
+/// A mesh with the tangents of Mikkelsen's program; w is 0 for corners that the program leaves at its initial value.
 struct Precedent {
   const char* name;
-  /// Position and coordinates of each corner, all in the plane z = 0.
+  /// The position and the coordinates of each corner, all in the plane z = 0.
   std::vector<std::array<vec4, 3>> triangles;
   std::vector<std::array<vec4, 3>> tangents;
 };
 
-/// The numbers are those of npm's package `mikktspace` 1.1.1, a WebAssembly of that program, for coordinates (u, 1 - v)
-/// and normals +Z. Each mesh ends in a triangle that stands alone, because the program leaves edges whose lower vertex
-/// is the highest of all unsorted.
+/// Returns meshes with the tangents of npm's package `mikktspace` 1.1.1, a WebAssembly of Mikkelsen's program, for
+/// coordinates (u, 1 - v) and normals +Z. Each mesh ends in a triangle that stands alone, because the program does not
+/// sort edges whose lower vertex is the highest of all.
 std::vector<Precedent> precedents() {
   const std::array<vec4, 3> alone = {vec4(9, 0, 0, 0), vec4(10, 0, 1, 0), vec4(9, 1, 0, -1)};
   const vec4 left(0.0F);
@@ -520,7 +524,7 @@ TEST(Tangents, DoNotDependOnWhatVerticesAreShared) {
 }
 
 TEST(Tangents, WithoutNormalsAreOfFlatTriangles) {
-  // Two walls that meet at a right angle, with coordinates that go on around the edge.
+  // Two walls meet at a right angle, and their coordinates continue around the edge.
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, -1}, {1, 1, -1}};
   mesh.uvs = {{0, 1, 0, 0}, {1, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}, {2, 1, 0, 0}, {2, 0, 0, 0}};
@@ -538,13 +542,13 @@ TEST(Tangents, WithoutNormalsAreOfFlatTriangles) {
 
 TEST(Tangents, WithoutADirectionAreInherited) {
   Mesh mesh = make_plane(2);
-  // A triangle that is a line, and one whose coordinates are, on vertices that others have.
+  // One triangle is a line, and the coordinates of another are a line; both use vertices of other triangles.
   mesh.triangles.push_back({0, 0, 1});
   mesh.positions.push_back({-1, 0, 0});
   mesh.normals.push_back({0, 0, 1});
   mesh.uvs.push_back(mesh.uvs[0]);
   mesh.triangles.push_back({9, 0, 3});
-  // And one that stands alone.
+  // Another degenerate triangle stands alone.
   for (const float x : {5.0F, 6.0F, 7.0F}) {
     mesh.positions.push_back({x, x * x, 0});
     mesh.normals.push_back({0, 0, 1});
@@ -572,7 +576,7 @@ TEST(Tangents, OfCoordinatesWithoutAreaAreLeftOut) {
   EXPECT_TRUE(without.tangents.empty());
 }
 
-/// Random indices and numbers: edges of many triangles, triangles twice, points and lines among them.
+/// Indices and numbers are random, with edges of many triangles, triangles twice, points and lines among them.
 TEST(Tangents, OfAnyMeshAreFiniteAndAcrossNormals) {
   std::mt19937 random(7);
   for (int round = 0; round < 300; ++round) {
@@ -605,7 +609,8 @@ TEST(Tangents, OfAnyMeshAreFiniteAndAcrossNormals) {
 }
 
 TEST(Tangents, ManyTrianglesAtAVertexTakeNoLonger) {
-  // Fans whose triangles each have a hand of their own: the vertex in the middle is split that often.
+  // These are fans whose triangles all have different hands: the vertex in the middle is split as often as there are
+  // triangles.
   constexpr uint32_t kCount = 200000;
   Mesh mesh;
   mesh.positions.emplace_back(0.0F);
@@ -622,7 +627,7 @@ TEST(Tangents, ManyTrianglesAtAVertexTakeNoLonger) {
   EXPECT_GT(mesh.positions.size(), before.positions.size() + kCount / 4);
 }
 
-/// Not a limit of the test's, only told.
+/// The time is not limited here, only printed.
 TEST(Tangents, OfAMillionTriangles) {
   Mesh mesh = make_sphere(708);
   const Stopwatch time;

@@ -14,8 +14,9 @@ namespace {
 
 class FilmTest : public test::DeviceTest {};
 
-// A driver hands out memory as it is. Had a kernel taken its numbers from there, the check of loops would turn up to
-// 2^32 times: where the driver ends loops it tells of cut ones, where it does not the device is busy for a minute.
+// A driver gives out memory with its old content. If a kernel took its numbers from it, the check of loops would turn
+// up to 2^32 times: a driver that ends loops then reports cut ones; with another driver the device is busy for a
+// minute.
 TEST_F(FilmTest, WarmsUpWhateverItsMemoryHeld) {
   const world::Scene scene = test::make_scene_of_everything();
   const PackedScene packed = pack_scene(scene, "sah");

@@ -17,10 +17,10 @@
 namespace promin {
 namespace {
 
-/// What is seen at a place of the picture, in pixels.
+/// Returns the color at a place of the picture, in pixels.
 using Scene = std::function<vec3(const dvec2&)>;
 
-/// What a window of a picture has come to, row by row.
+/// The result for a window of a picture, row by row.
 struct Refined {
   std::vector<vec3> means;
   std::vector<vec3> claims;
@@ -67,7 +67,7 @@ Refined refine(const View& view, const Scene& scene) {
   return refine(view, scene, {uvec2(0), view.size});
 }
 
-/// Discs of any size and brightness before a chequered floor that goes to a horizon.
+/// Returns the color of discs of any size and brightness before a chequered floor that goes to a horizon.
 vec3 discs_and_floor(const dvec2& p) {
   vec3 color(0.1F, 0.2F, 0.4F);
   if (p.y > 20.0) {
@@ -81,7 +81,7 @@ vec3 discs_and_floor(const dvec2& p) {
     const double radius = 0.7 + 0.4 * i;
     const dvec2 off = p - center;
     const double d2 = glm::dot(off, off) / (radius * radius);
-    // Shaded, with a highlight.
+    // The discs are shaded, with a highlight.
     if (d2 < 1.0) {
       const auto z = static_cast<float>(std::sqrt(1.0 - d2));
       color = vec3(0.2F + 0.6F * z, 0.04F * static_cast<float>(i), 0.5F * z) + vec3(4.0F * std::pow(z, 60.0F));
@@ -90,7 +90,7 @@ vec3 discs_and_floor(const dvec2& p) {
   return color;
 }
 
-/// Lines of 1/8 to 1.5 pixels, at all angles.
+/// Returns the color of lines of 1/8 to 1.5 pixels, at all angles.
 vec3 wires(const dvec2& p) {
   for (int i = 0; i < 14; ++i) {
     const double angle = 0.11 + 0.22 * i;
@@ -102,7 +102,7 @@ vec3 wires(const dvec2& p) {
   return vec3(0.05F);
 }
 
-/// Waves that are smooth, and a step.
+/// Returns the color of smooth waves and a step.
 vec3 waves(const dvec2& p) {
   const double wave = 0.5 + 0.5 * std::sin(1.3 * p.x) * std::cos(0.9 * p.y);
   return vec3(static_cast<float>(wave), p.x * 0.83 + p.y < 70.0 ? 1.0F : 0.0F, static_cast<float>(wave * wave));
@@ -113,7 +113,7 @@ struct Share {
   size_t refined = 0;
 };
 
-/// The pixels of a view, by a grid of many samples.
+/// Returns the true pixels of a view, as means over a grid of many samples.
 std::vector<dvec3> find_truth(const View& view, const Scene& scene) {
   constexpr int kSide = 48;
   std::vector<dvec3> truth;
@@ -128,7 +128,7 @@ std::vector<dvec3> find_truth(const View& view, const Scene& scene) {
   return truth;
 }
 
-/// Of pixels that have taken more than the first samples, how many are off by no more than they claim.
+/// Returns how many of the refined pixels, which have more than the first samples, have an error within their claim.
 Share judge(const Refined& refined, const View& view, const std::vector<dvec3>& truth) {
   Share share;
   size_t honest = 0;
@@ -160,8 +160,8 @@ TEST(RefinementTest, ClaimsHoldOf95In100Pixels) {
   }
 }
 
-/// Of the pixels that lines of this width run through, of a contrast of 0.8, the share that is off by more than the
-/// error in the end.
+/// Returns the fraction of the pixels on lines of this width and a contrast of 0.8 whose final error is too
+/// large.
 double share_missed(double width, uint32_t least_samples) {
   size_t missed = 0;
   size_t pixels = 0;
@@ -191,8 +191,8 @@ double share_missed(double width, uint32_t least_samples) {
   return static_cast<double>(missed) / static_cast<double>(pixels);
 }
 
-// What the manual says of lines that are thinner than a pixel over the first samples: no sample of a pixel and of those
-// around it may hit them.
+// The manual says this of lines that are thinner than a pixel divided by the first samples: no sample of a pixel and
+// its neighbours may hit them.
 TEST(RefinementTest, ThinLinesMayLieBetweenAllSamples) {
   for (const uint32_t samples : {4U, 8U, 16U}) {
     std::printf("%u first samples:", samples);
@@ -223,7 +223,7 @@ TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
   EXPECT_LT(unmet, refined.means.size() / 4);
 }
 
-// What is shown brighter by some stops is refined as if its light were brighter.
+// A picture that is shown brighter by some stops is refined as if its light were brighter.
 TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
   const auto dimmed = [](const dvec2& p) { return discs_and_floor(p) / 64.0F; };
   View view = make_view(1.0F / 64.0F);
@@ -234,25 +234,25 @@ TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
   for (size_t i = 0; i < refined.means.size(); ++i) EXPECT_EQ(64.0F * refined.means[i], expected.means[i]);
 }
 
-// Codes of sRGB: steep in the dark, flat in bright light, and without end nowhere.
+// Codes of sRGB change fast in the dark and slowly in bright light; their slope is finite everywhere.
 TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   const DisplayTransform plain;
   const vec3 shown = shown_claim(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), plain);
   EXPECT_FLOAT_EQ(shown.x, encode_srgb(0.01F));
   EXPECT_FLOAT_EQ(shown.y, encode_srgb(0.8F) - encode_srgb(0.79F));
   EXPECT_EQ(shown.z, 0.0F);
-  // A stop brighter all is twice as bright.
+  // One stop brighter, everything is twice as bright.
   const vec3 brighter = shown_claim(vec3(0.01F), vec3(0.2F), {.exposure_ev = 1.0F});
   EXPECT_NEAR(brighter.x, shown_claim(vec3(0.02F), vec3(0.4F), plain).x, 1e-6F);
-  // What is beyond white without a tone mapping is not with one, and a channel that is sure is not where they are
-  // mixed.
+  // Light beyond white without a tone mapping is not beyond white with one. A channel without error gets one if
+  // channels are mixed.
   const DisplayTransform mapped{.tone_mapping = ToneMapping::kAgx};
   EXPECT_EQ(shown_claim(vec3(0.0F, 0.0F, 2.0F), vec3(0.5F, 0.5F, 3.0F), plain), vec3(0.0F));
   const vec3 mixed = shown_claim(vec3(0.0F, 0.0F, 2.0F), vec3(0.5F, 0.5F, 3.0F), mapped);
   EXPECT_GT(mixed.x, 0.01F);
   EXPECT_GT(mixed.z, 0.01F);
   EXPECT_EQ(shown_claim(vec3(0.0F), vec3(0.5F), mapped), vec3(0.0F));
-  // Where light of one channel takes from what is shown of another, red is farthest with less of it and more green.
+  // If more light of one channel reduces what is shown of another, red changes most with less of it and more green.
   const DisplayTransform reinhard{.tone_mapping = ToneMapping::kReinhard};
   const vec3 red = glm::abs(shown_color(vec3(0.25F, 0.75F, 0.5F), reinhard) - shown_color(vec3(0.5F), reinhard));
   EXPECT_EQ(shown_claim(vec3(0.25F, 0.25F, 0.0F), vec3(0.5F), reinhard).x, red.x);
@@ -264,7 +264,7 @@ TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), target), shown.x);
 }
 
-// An unlit surface is as bright as a lit one beside it: light has no edge, and what is shown has one.
+// An unlit surface is as bright as a lit one beside it: the light has no edge, and the shown picture has one.
 TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
   View view = make_view(1.0F / 64.0F);
   const auto count_samples = [&](const DisplayTransform& display) {
@@ -289,7 +289,7 @@ TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
   EXPECT_GT(count_samples({.exposure_ev = 2.0F}), view.error_target->min_samples);
 }
 
-// In whichever channel, and however the others are: of such a pixel nothing is known.
+// If any channel is not finite, nothing is known of the pixel, whatever the other channels are.
 TEST(RefinementTest, AClaimThatIsNoNumberIsNeverSmallEnough) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   const float infinite = std::numeric_limits<float>::infinity();
@@ -307,7 +307,7 @@ TEST(RefinementTest, AClaimThatIsNoNumberIsNeverSmallEnough) {
       }
     }
   }
-  // So it takes all samples.
+  // Therefore the pixel takes all samples.
   for (int channel = 0; channel < 3; ++channel) {
     View view = make_view(1.0F / 64.0F);
     const Refined refined = refine(view, [&](const dvec2& p) {
@@ -330,7 +330,7 @@ TEST(RefinementTest, ErrorsAsTheyAreShownAskForMoreInTheDarkAndForLessInTheLight
   shown.error_target->display.emplace();
   EXPECT_GT(refine(shown, edge_of(0.0F, 0.02F)).samples, refine(linear, edge_of(0.0F, 0.02F)).samples);
   EXPECT_LT(refine(shown, edge_of(0.7F, 1.0F)).samples, refine(linear, edge_of(0.7F, 1.0F)).samples);
-  // Both are white, however far apart.
+  // Both sides are shown white, however different they are.
   EXPECT_EQ(refine(shown, edge_of(3.0F, 9.0F)).samples, 8U * 96 * 64);
   const Refined refined = refine(shown, discs_and_floor);
   for (size_t i = 0; i < refined.means.size(); ++i) {
@@ -348,8 +348,8 @@ TEST(RefinementTest, WhatIsFlatTakesTheFirstSamplesAlone) {
   EXPECT_EQ(refined.samples, 8U * 96 * 64);
 }
 
-// An edge of contrast c takes (0.62 c / E)^(4/3) samples or less, rounded up to a power of two, but for few pixels
-// whose batches happen to differ more, and these take twice as many.
+// An edge of contrast c takes at most (0.62 c / E)^(4/3) samples, rounded up to a power of two. A few pixels whose
+// batches happen to differ more take twice as many.
 TEST(RefinementTest, AnEdgeTakesWhatItsContrastAsksFor) {
   const auto edge = [](const dvec2& p) { return vec3(p.x + 0.31 * p.y < 50.0 ? 0.25F : 0.0F); };
   const Refined refined = refine(make_view(1.0F / 64.0F), edge);
@@ -384,7 +384,7 @@ TEST(RefinementTest, ItDoesNotMatterHowManyAreTracedAtOnce) {
   for (const size_t most : {1U, 8U, 1000U}) EXPECT_EQ(refine(view, wires, window, most).means, expected.means) << most;
 }
 
-// And its forecast is of the right size.
+// The forecast of the edge has the right size, too.
 TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
   const View view = make_view(1.0F / 16.0F);
   const PixelWindow window{uvec2(0), view.size};
@@ -406,7 +406,7 @@ TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
   }
 }
 
-// From the end of the first samples on.
+// The forecast is checked from the end of the first samples on.
 TEST(RefinementTest, WhatAllWillTakeIsForetold) {
   const View view = make_view(1.0F / 64.0F);
   const auto total = static_cast<double>(refine(view, waves).samples);

@@ -38,9 +38,10 @@ TEST(TileScheduler, CoverEverySampleOnceAndInOrder) {
   }
 }
 
-// Each ray of a sample takes a step of the stream, in whatever order glass parts them.
+// Each ray of a sample takes a step of the stream, in whatever order glass splits rays.
 TEST(TileScheduler, StepsSufficeForTheLargestTree) {
-  // All light leaves a surface as a mirror ray and as rays of each color, and these as a mirror ray and one ray.
+  // All light leaves the first surface as a mirror ray and as one ray for each color; each of these is split into a
+  // mirror ray and one more ray.
   const auto rays = [](auto& self, uint32_t depth, uint32_t colors) -> uint32_t {
     if (depth == 0) return 0;
     return 1 + self(self, depth - 1, colors) + colors * (1 + self(self, depth - 1, 1));
@@ -68,7 +69,7 @@ TEST(TileScheduler, GroupsSufficeForAllPixels) {
   }
 }
 
-// The stream of paths has room for so many.
+// The stream of paths has room for this many.
 TEST(TileScheduler, PiecesAreNoLargerThanAsked) {
   for (const double units : {1.0, 1e9}) {
     for (const uint32_t most_blocks : {1U, 100U}) {

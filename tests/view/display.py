@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A window on an X server without a screen, and a user's hands for it."""
+"""A window on an X server without a screen, and functions that act as its user."""
 
 import ctypes
 import os
@@ -13,11 +13,11 @@ import time
 
 
 class Failure(Exception):
-    """What a test found wrong."""
+    """Says what a test found wrong."""
 
 
 def wait_for(condition, what, seconds=180.0):
-    """The first true value of condition(), which is asked again and again."""
+    """Calls condition() again and again. Returns its first true value."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if value := condition():
@@ -27,11 +27,11 @@ def wait_for(condition, what, seconds=180.0):
 
 
 class Display:
-    """An X server of its own, on a display number that is free."""
+    """Runs an X server of its own, on a free display number."""
 
     def __init__(self, size="1024x768x24"):
-        # Another server that ends just now may take this one's socket along. Without -noreset a server begins anew when
-        # its last client goes, and refuses the next one meanwhile.
+        # Another server that ends at this moment may remove this one's socket. Without -noreset a server restarts when
+        # its last client goes, and refuses the next client meanwhile.
         self.size = tuple(map(int, size.split("x")[:2]))
         for _ in range(3):
             self._start(size)
@@ -52,8 +52,8 @@ class Display:
             number = pipe.readline().strip()
         if not number:
             raise Failure("Xvfb does not start")
-        # GLFW looks for a Wayland compositor first, and in the user's own folder there may be one.
-        self.runtime_folder = tempfile.TemporaryDirectory(prefix="promin_display_")  # of mode 0700, as is required
+        # GLFW first looks for a Wayland compositor, which may exist in the user's own folder.
+        self.runtime_folder = tempfile.TemporaryDirectory(prefix="promin_display_")  # of mode 0700, as required
         self.environment = {**os.environ, "DISPLAY": f":{number}", "XDG_RUNTIME_DIR": self.runtime_folder.name}
         self.environment.pop("WAYLAND_DISPLAY", None)
 
@@ -68,7 +68,7 @@ class Display:
 
 
 class Client:
-    """A connection to a server, by Xlib."""
+    """Holds a connection to a server, with Xlib."""
 
     def __init__(self, display):
         self.x11 = ctypes.CDLL("libX11.so.6")
@@ -84,13 +84,14 @@ class Client:
 
 
 class FileManager(Client):
-    """A window that files are dragged from, by version 5 of the protocol XDND."""
+    """Acts as a window from which files are dragged, with version 5 of the protocol XDND."""
 
     CLIENT_MESSAGE = 33
     SELECTION_REQUEST = 30
     SELECTION_NOTIFY = 31
     VERSION = 5
-    # Xlib's events as words: the type, the serial number, whether it was sent, the connection, and what each adds.
+    # Xlib's events are arrays of words: the type, the serial number, whether it was sent, the connection, and the
+    # event's own values.
     Event = ctypes.c_long * 24
 
     def __init__(self, display):
@@ -102,7 +103,7 @@ class FileManager(Client):
         self.list_type = self.atom("text/uri-list")
 
     def drop(self, files, target, place):
-        """Drops files at a place of the desktop, on a window there."""
+        """Drops files at a place of the desktop, on the window there."""
         self.x11.XSetSelectionOwner(
             self.server, ctypes.c_ulong(self.selection), ctypes.c_ulong(self.window), ctypes.c_ulong(0)
         )
@@ -133,7 +134,7 @@ class FileManager(Client):
         self._send(requestor, (self.SELECTION_NOTIFY, 0, 0, 0, requestor, selection, kind, name, time_stamp))
 
     def _wait_for(self, kind, message=None):
-        """The next event of a kind, of a client message by its name; others are dropped."""
+        """Returns the next event of a kind, or the next client message with this name; drops other events."""
         event = self.Event()
 
         def take():
@@ -147,11 +148,11 @@ class FileManager(Client):
 
 
 class Typist(Client):
-    """Presses keys that have no effect again and again, from the beginning of a block to its end."""
+    """Presses keys that have no effect, again and again, from the beginning of a block to its end."""
 
     INTERVAL = 0.02
 
-    # GLFW takes a key that comes up and goes down at once for one that repeats.
+    # GLFW takes a key that is released and pressed at the same time for one that repeats.
     KEYS = "jk"
 
     def __init__(self, display):
@@ -181,7 +182,7 @@ class Typist(Client):
 
 
 class Viewer:
-    """promin-view in a folder, with its output in files that grow."""
+    """Runs promin-view in a folder; its output goes to files."""
 
     def __init__(self, display, program, arguments, folder, **environment):
         self.display = display
@@ -206,18 +207,19 @@ class Viewer:
             raise Failure(f"xdotool {words}: {done.stderr}")
 
     def focus(self):
-        """Keys go to the window from now on."""
+        """Sends keys to the window from now on."""
         self.window = wait_for(self.find_window, "window")
         self.xdotool("windowfocus", "--sync", self.window)
 
     def find_window(self):
         self.check_alive()
-        # It fails where there is none yet.
+        # The search fails if there is no window yet.
         found = self.run_xdotool("search", "--onlyvisible", "--name", "promin$").stdout.strip()
         return found.split("\n")[0] if found else None
 
     def minimise(self, is_minimised):
-        """As a window manager does it: by the property that tells the window, and its mapping."""
+        """Sets the window's state as a window manager does: with the property that describes the state, and by mapping
+        the window."""
         states = {True: 3, False: 1}  # IconicState, NormalState of ICCCM 4.1.3.1
         client = Client(self.display)
         state = ctypes.c_ulong(client.atom("WM_STATE"))
@@ -228,18 +230,18 @@ class Viewer:
         self.xdotool("windowunmap" if is_minimised else "windowmap", "--sync", self.window)
 
     def processor_seconds(self):
-        """The processor time that the program has taken so far."""
+        """Returns the processor time that the program has used so far."""
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
         return sum(map(int, words[11:13])) / os.sysconf("SC_CLK_TCK")
 
     def processor_share(self, seconds):
-        """Watches the program for that long. Returns the share of one core that it takes meanwhile."""
+        """Watches the program for this time. Returns the fraction of one core that it uses meanwhile."""
         before, start = self.processor_seconds(), time.monotonic()
         time.sleep(seconds)
         return (self.processor_seconds() - before) / (time.monotonic() - start)
 
     def read(self, stream):
-        # A handle of its own: the program writes where this one stands.
+        # The file needs a handle of its own, because the program writes at this one's position.
         return pathlib.Path(f"/proc/self/fd/{self.logs[stream].fileno()}").read_text()
 
     @property
@@ -274,7 +276,7 @@ class Viewer:
         manager.close()
 
     def wait_for_line(self, pattern, stream, what):
-        """The first line that has the pattern."""
+        """Returns the first line that matches the pattern."""
 
         def search():
             self.check_alive()

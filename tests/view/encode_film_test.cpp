@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What a window shows (shaders/window/encode_film.comp) against what PNG files have.
+// These tests compare what a window shows (shaders/window/encode_film.comp) with the content of PNG files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 constexpr uint32_t kSamples = 2;
 constexpr uvec2 kSize(40, 25);
 
-/// Sums of two samples, each pixel another colour: from black to far beyond white.
+/// Returns sums of two samples. Each pixel has another colour, from black to far beyond white.
 std::vector<vec3> make_sums() {
   std::vector<vec3> sums;
   float x = 1e-4F;
@@ -38,14 +38,14 @@ std::vector<vec3> make_sums() {
 
 class EncodeFilmTest : public test::DeviceTest {
  protected:
-  /// The bytes that the window shows, R, G and B of each pixel.
+  /// Returns the bytes that the window shows: R, G and B of each pixel.
   static std::vector<std::array<int, 3>> encode(const std::vector<vec3>& sums, const DisplayTransform& display,
                                                 const std::vector<vec4>& unlit = {}) {
     constexpr auto kStorage = vk::BufferUsageFlagBits::eStorageBuffer;
     layout::FilmHead head{};
     head.dispatch.window = uvec4(0, 0, kSize);
     head.dispatch.sampling.x = kSamples;
-    // What lies between must not be taken for pixels.
+    // The numbers between the pixels must not be used as pixels.
     std::ranges::fill(head.ray_counts, uvec4(std::bit_cast<uint32_t>(1e9F)));
     gpu::Buffer film(device(), sizeof head + (sums.size() + unlit.size()) * sizeof(uvec4), kStorage);
     film.write(std::as_bytes(std::span(&head, 1)));
@@ -110,7 +110,7 @@ TEST_F(EncodeFilmTest, AWindowShowsWhatPngFilesHave) {
         if (display.dithers) code = dithered(code, at % kSize.x, at / kSize.x, static_cast<uint32_t>(c));
         const auto in_file = static_cast<int>(std::lround(code));
         const int in_window = shown[i][static_cast<size_t>(c)];
-        // The device's pow may round the other way.
+        // The device's pow may round differently.
         ASSERT_LE(std::abs(in_window - in_file), 1) << "pixel " << i << ", radiance " << sums[i][c];
         differing += in_window == in_file ? 0 : 1;
       }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// The panel of an explained pixel, laid out in memory, and the place that it takes beside the model.
+// These tests check the panel of an explained pixel, laid out in memory, and its place beside the model.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(ScreenCover, APanelHidesLittle) {
   EXPECT_EQ(choose_corner(cover, {2.0, 2.0}, margin).lo, margin) << "what does not fit begins within the window";
 }
 
-/// A board of the height of the picture, at this place to the right of the middle, in halves of that height.
+/// Returns a board as high as the picture, at this place to the right of the middle, in halves of that height.
 Scene make_scene(float right) {
   Scene scene;
   scene.geometries.emplace_back(test::make_board());
@@ -61,7 +61,7 @@ TEST(ScreenCover, KnowsTheWallsOfARoom) {
   Camera camera = test::make_board_view(uvec2(1280, 720)).camera;
   camera.projection = Projection::kPerspective;
   camera.yfov = 1.0F;
-  // A floor from before the camera to behind it.
+  // The floor reaches from before the camera to behind it.
   Scene scene = make_scene(0.0F);
   scene.objects.back().world_from_object = dmat4(dvec4(4.0, 0.0, 0.0, 0.0), dvec4(0.0, 0.0, -4.0, 0.0),
                                                  dvec4(0.0, 1.0, 0.0, 0.0), dvec4(0.0, -1.0, 0.0, 1.0));
@@ -88,7 +88,7 @@ class ExplanationPanelTest : public testing::Test {
     ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
   }
 
-  /// A pixel that sees a board, through so many rays.
+  /// Returns a pixel that sees a board through this number of rays.
   static ExplainedPixel explain(float right, size_t ray_count) {
     const auto scene = std::make_shared<const Scene>(make_scene(right));
     ExplainedSample sample;
@@ -104,7 +104,7 @@ class ExplanationPanelTest : public testing::Test {
   }
   static Camera camera() { return test::make_board_view(uvec2(1280, 720)).camera; }
 
-  /// Where the panel is when it has settled.
+  /// Returns the panel's place when it no longer moves.
   WindowArea show(const std::optional<WindowArea>& other = std::nullopt) {
     for (int i = 0; i < 3; ++i) {
       ImGui::GetIO().DeltaTime = 0.1F;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// A Vulkan layer that fails one call, as a driver would. PROMIN_TEST_FAULT says which: "vkQueueSubmit 40 -4" gives the
-// 40th submission the result -4, VK_ERROR_DEVICE_LOST. For one instance with one device.
+// This Vulkan layer makes one call fail, as a driver would. PROMIN_TEST_FAULT says which one: "vkQueueSubmit 40 -4"
+// gives the 40th submission the result -4, VK_ERROR_DEVICE_LOST. The layer supports one instance with one device.
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
@@ -34,7 +34,7 @@ Fault read_fault() {
   return fault;
 }
 
-/// The result of this call if it is the one to fail.
+/// Returns the result of this call: an error if it is the one to fail.
 VkResult fail(const char* call) {
   static const Fault fault = read_fault();
   static std::atomic<int> count = 0;
@@ -47,7 +47,7 @@ Function next(const char* name) {
   return reinterpret_cast<Function>(next_device_proc(the_device, name));
 }
 
-/// What the loader tells of the next layer in the chain of a create info.
+/// Returns the loader's information on the next layer, from the chain of a create info.
 template <typename Link>
 Link* find_link(const void* chain, VkStructureType type) {
   for (auto* item = static_cast<const Link*>(chain); item != nullptr; item = static_cast<const Link*>(item->pNext)) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// The overlay without a window: its panel is laid out and clicked in memory.
+// These tests check the overlay without a window: its panel is laid out and clicked in memory.
 
 #include "view/panel/overlay.h"
 
@@ -37,7 +37,7 @@ class OverlayTest : public test::DeviceTest {
     int width = 0;
     int height = 0;
     ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-    for (int i = 0; i < 3; ++i) show({-1.0F, -1.0F}, false);  // it settles
+    for (int i = 0; i < 3; ++i) show({-1.0F, -1.0F}, false);  // repeats until the panel no longer moves
   }
 
   void show(const ImVec2& pointer, bool is_down) {
@@ -65,7 +65,7 @@ class OverlayTest : public test::DeviceTest {
 #endif
   }
 
-  /// Presses a key, and collects what it has done.
+  /// Presses a key, and collects its effects.
   void press(ImGuiKey key) {
     OverlayAnswer sum;
     for (const bool is_down : {true, false, false}) {
@@ -81,14 +81,14 @@ class OverlayTest : public test::DeviceTest {
     for (const bool is_down : {false, true, false, false}) show(place, is_down);
   }
 
-  /// Clicks down the panel's left side until that has an effect.
+  /// Clicks down the panel's left side until a click has an effect.
   template <typename Effect>
   bool click_until(const Effect& has_effect) {
     for (float y = 20.0F; y < 400.0F && !has_effect(); y += 5.0F) click({25.0F, y});
     return has_effect();
   }
 
-  /// How far what is drawn reaches to the right.
+  /// Returns how far the drawing reaches to the right.
   static float drawn_width() {
     float width = 0.0F;
     const ImDrawData& data = *ImGui::GetDrawData();
@@ -99,7 +99,7 @@ class OverlayTest : public test::DeviceTest {
   }
 
   const world::Scene scene_ = test::make_scene_of_everything();
-  /// What the overlay lists: its lights and cameras.
+  /// The scene whose lights and cameras the overlay lists.
   const Scene described_ = [this] {
     Scene scene;
     scene.lights = scene_.lights;
@@ -149,10 +149,10 @@ TEST_F(OverlayTest, APathIsTypedAtOnceAndEscapeGivesItUp) {
 TEST_F(OverlayTest, GrowsWithTheDisplaysScale) {
   const float width = drawn_width();
   EXPECT_GT(width, 200.0F);
-  // A display where a unit of the window's coordinates is a pixel.
+  // On this display, a unit of the window's coordinates is one pixel.
   use_scale({2.0, 1.0});
   EXPECT_NEAR(drawn_width(), 2.0F * width, 0.05F * width);
-  // One where it is two: the window grows by itself, the overlay's fonts get finer.
+  // On this display a unit is two pixels: the window grows by itself, and the overlay's fonts get finer.
   use_scale({2.0, 2.0});
   EXPECT_NEAR(drawn_width(), width, 0.05F * width);
 }

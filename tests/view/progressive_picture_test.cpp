@@ -14,7 +14,7 @@
 namespace promin {
 namespace {
 
-const uvec2 kSize(150, 100);  // neither is a multiple of the block
+const uvec2 kSize(150, 100);  // neither number is a multiple of the block's size
 
 class ProgressivePictureTest : public test::DeviceTest {
  protected:
@@ -28,14 +28,14 @@ class ProgressivePictureTest : public test::DeviceTest {
     return picture;
   }
 
-  /// Records a frame's tracing and waits for it, without telling how long it took: budgets stay the smallest.
+  /// Records a frame's tracing and waits for it, but does not report the time: budgets stay the smallest.
   double trace(ProgressivePicture& picture) const {
     double units = 0.0;
     device().run([&](const vk::raii::CommandBuffer& commands) { units = picture.record(commands); });
     return units;
   }
 
-  /// What is shown.
+  /// Returns the shown picture.
   static Image read(const ProgressivePicture& picture) {
     const ShownPicture& shown = *picture.shown();
     Image image{shown.size, std::vector<vec3>(size_t{shown.size.x} * shown.size.y)};
@@ -60,7 +60,7 @@ TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {
   }
 }
 
-// Frames in which one piece ends and the next begins, with all samples of some blocks and a few of others.
+// In these frames one piece ends and the next begins, with all samples of some blocks and a few of others.
 TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
   Renderer renderer = make_renderer(device(), scene_);
   View view = test::make_view(kSize);
@@ -68,7 +68,7 @@ TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
   const Image expected = renderer.render(view).image;
   for (const double units : {150.0, 1050.0, 3000.0}) {
     ProgressivePicture picture = make_picture();
-    picture.take_finished({.units = 1.0, .time_ms = 1.0});  // the first is not taken
+    picture.take_finished({.units = 1.0, .time_ms = 1.0});  // the first time is not used
     picture.want(view);
     while (!picture.is_complete() || picture.shown()->samples_per_pixel != 16) {
       picture.take_finished({.units = units, .time_ms = 1.0});
@@ -121,7 +121,7 @@ TEST_F(ProgressivePictureTest, EveryErrorIsWhatTheRendererGives) {
   EXPECT_EQ(trace(picture), 0.0);
 }
 
-// A refined picture is put on a film that has held a smaller one, with a second record where there are unlit surfaces.
+// A refined picture is written to a film that has held a smaller one, with a second record for unlit surfaces.
 TEST_F(ProgressivePictureTest, RefinedFilmsAreAsIfTracedAndTellOfUnlitSurfaces) {
   ProgressivePicture picture = make_picture(layout::FEATURE_UNLIT_SHARE);
   ASSERT_TRUE(picture.has_unlit());
@@ -146,7 +146,7 @@ TEST_F(ProgressivePictureTest, RefinedFilmsAreAsIfTracedAndTellOfUnlitSurfaces) 
   EXPECT_TRUE(std::ranges::any_of(unlit, [](const vec4& one) { return one.w == 1.0F; }));
 }
 
-// Samples that are under way when the view changes bring nothing, and a pause holds back what has not begun.
+// Samples in progress are lost when the view changes, and a pause delays samples that have not begun.
 TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
   ProgressivePicture picture = make_picture();
   View view = with_target(test::make_view(kSize), 1.0F / 8.0F);
@@ -177,7 +177,7 @@ TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
   EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
 }
 
-// Where nothing is seen but the background, the first samples are exact: only the last error is shown after them.
+// If only the background is seen, the first samples are exact: after them only the final error is reported.
 TEST_F(ProgressivePictureTest, WhatIsExactIsShownOnceMore) {
   ProgressivePicture picture = make_picture();
   View view = with_target(test::make_view(kSize), 1.0F / 4096.0F);
@@ -208,7 +208,7 @@ TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
   EXPECT_FALSE(picture.is_complete());
   trace(picture);
   EXPECT_LT(picture.shown()->size.x, kSize.x);
-  // It has the aspect ratio of the window, to a pixel, and shows the new view.
+  // The picture has the window's aspect ratio, to a pixel, and shows the new view.
   view.size = picture.shown()->size;
   EXPECT_NEAR(view.size.x * kSize.y, view.size.y * kSize.x, kSize.x + kSize.y);
   EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
@@ -265,12 +265,12 @@ TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
   picture.want(view);
   const double units = trace(picture);
   const uvec2 before = picture.shown()->size;
-  picture.take_finished({.units = units, .time_ms = 1.0});  // the first, which compiles, is not taken
+  picture.take_finished({.units = units, .time_ms = 1.0});  // the first time, which includes compiling, is not used
   picture.take_finished({.units = units, .time_ms = 0.5});
   view.camera.eye.x += 0.25F;
   picture.want(view);
   trace(picture);
-  // Twice the pixels, but for blocks that are not full.
+  // The picture has twice the pixels, except for blocks that are not full.
   EXPECT_NEAR(picture.shown()->size.x, std::sqrt(2.0) * before.x, 0.12 * before.x);
 }
 

@@ -106,7 +106,7 @@ TEST(TurnLight, TurnsTheSkyAndWhatShinesAlongADirection) {
   EXPECT_EQ(lights[1].direction, spot.direction) << "it has a place";
 }
 
-/// A folder of programs that stand in for the desktop's, as the only ones on PATH.
+/// A folder with programs that replace the desktop's; it is the only folder on PATH.
 class FileDialogTest : public TempFolder {
  protected:
   void SetUp() override { setenv("PATH", folder_.c_str(), 1); }
@@ -115,7 +115,7 @@ class FileDialogTest : public TempFolder {
     std::ofstream(folder_ / name) << "#!/bin/sh\n" << lines;
     fs::permissions(folder_ / name, fs::perms::owner_all);
   }
-  /// What the user has chosen, once the dialog is closed.
+  /// Returns the user's choice after the dialog has closed.
   static std::optional<std::string> wait(FileDialog& dialog) {
     std::optional<std::string> file;
     while (dialog.is_open() && !file) file = dialog.take();
@@ -167,7 +167,7 @@ TEST(DescribeCommand, HasNoneForAnOrthographicViewOfNoCamera) {
   EXPECT_TRUE(can_describe({.file = "s", .camera_index = 1}, view));
 }
 
-// Every float's angle comes back from nine digits of degrees.
+// The angle of every float can be recovered from nine digits of degrees.
 TEST(DescribeCommand, AnglesComeBackToTheBit) {
   View view;
   for (float yfov = 0.001F; yfov < 3.1F; yfov *= 1.0037F) {
@@ -228,10 +228,10 @@ TEST(FlightReplay, PlaysSecondsInSeconds) {
   replay.next_camera(100.0);
   EXPECT_FALSE(replay.is_due(100.24));
   ASSERT_TRUE(replay.is_due(100.25));
-  replay.next_camera(100.3);  // late, but the next is in time
+  replay.next_camera(100.3);  // late, but the next frame is in time
   EXPECT_FALSE(replay.is_due(100.49));
   ASSERT_TRUE(replay.is_due(100.5));
-  replay.next_camera(107.0);  // much too late: those after it are not hurried
+  replay.next_camera(107.0);  // much too late: the frames after it keep their distance
   EXPECT_FALSE(replay.is_due(107.24));
   EXPECT_TRUE(replay.is_due(107.25));
 }
@@ -266,7 +266,7 @@ TEST_F(SceneWatchTest, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
   write("a", "new");
   watch.has_changed();
   EXPECT_TRUE(watch.has_changed());
-  // Written between the reading and its end.
+  // The file is written after it has been read, but before reading ends.
   const std::vector<SourceFile> sources = read();
   write("a", "newer");
   watch.follow(sources);
@@ -274,7 +274,7 @@ TEST_F(SceneWatchTest, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
   EXPECT_TRUE(watch.has_changed());
 }
 
-// The window gives up a tree by what its progress throws: no builder may go on then.
+// The window cancels a tree with an exception from the progress function: no builder may go on after it.
 TEST(PackChoice, EndsByWhatItsProgressThrows) {
   world::Scene scene;
   scene.materials.resize(1);

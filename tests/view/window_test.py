@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""promin-view as a user meets it: a real window on an X server, keys and pointer by xdotool.
+"""Tests promin-view as a user meets it: a real window on an X server, with keys and pointer from xdotool.
 
 window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the programs.
 """
@@ -34,10 +34,10 @@ def run(*words, environment=None):
 
 
 class Session:
-    """A window on a scene, the first of its files, in a folder that holds a copy of them."""
+    """Runs a window on a scene, which is the first of its files, in a folder with a copy of them."""
 
     SHOWCASE = ("showcase.gltf", "showcase.bin")
-    # Its kernels compile in a third of the showcase's time.
+    # The kernels of this scene compile in a third of the showcase's time.
     SMALL = ("light_point.gltf",)
 
     def __init__(self, bin_folder, scenes, folder, *arguments, files=SHOWCASE, takes_keys=True, **environment):
@@ -50,7 +50,7 @@ class Session:
         try:
             words = [files[0], "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
             self.viewer = Viewer(self.display, bin_folder / "promin-view", words, folder, **environment)
-            # A replay takes no keys, and may be over before the window is found.
+            # A replay takes no keys, and may end before the window is found.
             if takes_keys and "--replay" not in arguments:
                 self.viewer.focus()
         except BaseException:
@@ -65,7 +65,7 @@ class Session:
         self.display.close()
 
     def print_command(self):
-        """What C prints."""
+        """Presses C and returns the command that it prints."""
         count = self.viewer.out.count("\n")
         self.viewer.press("c")
         wait_for(lambda: self.viewer.out.count("\n") > count, "command")
@@ -76,7 +76,7 @@ class Session:
         self.viewer.wait_for_line(f"wrote promin-{number:04}.exr", 1, "screenshot")
 
     def render(self, command, output):
-        """Runs a command as it was printed, to another file."""
+        """Runs a command as it was printed, but with another output file."""
         words = shlex.split(command)
         expect(words[:2] == ["promin", "render"], f"not a command of promin: {command}")
         words[words.index("-o") + 1] = output
@@ -87,11 +87,11 @@ class Session:
         return self.folder / output
 
     def find_middle(self, command):
-        """The point that the camera of a command looks at."""
+        """Returns the point at which the camera of a command looks."""
         return self.find_point(command, (1, 1), (0, 0))
 
     def find_point(self, command, size, pixel):
-        """The point that a pixel of a command's picture shows, where that had this size."""
+        """Returns the point at a pixel of a command's picture, as if the picture had this size."""
         words = shlex.split(command)[1:]
         words[words.index("--size") + 1 : words.index("--size") + 3] = map(str, size)
         place = words.index("-o")
@@ -103,7 +103,7 @@ class Session:
         return json.loads(done.stdout)["samples"][0]["rays"][0]["hit"]["position"]
 
     def expect_same_picture(self, number, command):
-        """The screenshot is what the command renders."""
+        """Expects that the screenshot equals the picture that the command renders."""
         png = self.render(command, "view.png")
         expect(
             png.read_bytes() == (self.folder / f"promin-{number:04}.png").read_bytes(),
@@ -115,7 +115,8 @@ class Session:
         expect(json.loads(done.stdout)["largest"] == 0, f"the EXR differs: {done.stdout}")
 
     def expect_shown(self, number, words):
-        """The next screenshot, of this number, is what the printed command renders, which has these words."""
+        """Expects that the next screenshot, with this number, equals the picture of the printed command, which has
+        these words."""
         self.take_screenshot(number)
         command = self.print_command()
         expect(words in command, f"not what is shown: {command}")
@@ -123,7 +124,7 @@ class Session:
         return command
 
     def quit(self):
-        # It may end before a look at whether it runs.
+        # The program may end before the test looks whether it runs.
         self.viewer.xdotool("key", "Escape")
         code = self.viewer.wait_for_end()
         expect(code == 0, f"it ended with {code}:\n{self.viewer.err}")
@@ -141,7 +142,7 @@ def look_of(command):
 def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, files=Session.SMALL, PROMIN_VALIDATION="core")
     with session as viewer:
-        viewer.press("Tab")  # the overlay covers so small a window, and would take the pointer
+        viewer.press("Tab")  # the overlay covers so small a window, and would catch the pointer
         session.take_screenshot(1)
         start = session.print_command()
         viewer.press("p")
@@ -161,7 +162,7 @@ def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
         reset = session.print_command()
         expect(eye_of(reset) == eye_of(start), f"the camera was not reset: {reset}")
 
-        # An orbit turns around what is in the middle: it stays there, and the camera needs not turn to it.
+        # An orbit turns around the point in the middle: the point stays there, and the camera need not turn to it.
         middle = session.find_middle(reset)
         viewer.press("o")
         wait_for(lambda: viewer.hold("d", 0.05) or look_of(session.print_command()) != look_of(reset), "orbit")
@@ -196,12 +197,12 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
             except Failure:
                 return False
 
-        # The overlay's first switch is for shadows: what it changes is traced.
+        # The overlay's first switch is for shadows; the traced picture changes with it.
         size = f"--size {SIZE[0]} {SIZE[1]}"
         viewer.press("Tab")
         viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
         wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
-        # Where it is depends on how many lines the message takes that a screenshot was written.
+        # The switch's place depends on the number of lines of the message that a screenshot was written.
         for y in (137, 120, 154, 103):
             viewer.xdotool("mousemove", "--window", viewer.window, 28, y, "sleep", 0.2, "click", 1)
             if has_shadows_soon():
@@ -217,7 +218,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         viewer.press("F7")
         command = session.expect_shown(3, " --shading steps ")
 
-        # A click explains a pixel with the scene's numbers of lights, and moves nothing.
+        # A click explains a pixel, with the scene's numbers of lights, and moves nothing.
         viewer.xdotool("mousemove", "--window", viewer.window, 140, 90, "click", 1)
         viewer.wait_for_line("pixel 140 90: ", 1, "explanation")
         lights = set(re.findall(r"\blight (\d)", viewer.err))
@@ -233,7 +234,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
 
 
 def lights_as_render_does(bin_folder, scenes, folder):
-    """A scene without lights and camera."""
+    """Uses a scene without lights and cameras."""
     files = ("obj_materials.obj", "obj_materials.mtl")
     session = Session(bin_folder, scenes, folder, files=files)
     with session as viewer:
@@ -243,7 +244,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
         command = session.print_command()
         session.expect_same_picture(1, command)
 
-        # A debug view is not exposed.
+        # A debug view has no exposure.
         viewer.press("F2")
         session.expect_shown(2, " --shading normals ")
         session.quit()
@@ -254,13 +255,13 @@ def lights_as_render_does(bin_folder, scenes, folder):
     with session as viewer:
         viewer.press("Tab", "p")
         command = session.expect_shown(3, " ".join(words))
-        # What is read again is lit and shown as before.
+        # A scene that is read again is lit and shown as before.
         text = session.scene.read_text()
         session.scene.write_text(text + "# changed\n")
         viewer.wait_for_line("note: read obj_materials.obj", 1, "scene again")
         session.take_screenshot(4)
         session.expect_same_picture(4, command)
-        # At rest it is refined, to an error of what is shown.
+        # At rest, the picture is refined to an error of the displayed values.
         viewer.press("p")
         wait_for(lambda: " --target-error 0.0625 " in session.print_command(), "a refined picture")
         session.take_screenshot(5)
@@ -276,7 +277,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
 def plays_what_it_recorded(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, "--record", "flight.json")
     with session as viewer:
-        # Paused, a screenshot is of one sample a pixel, as what `promin render` gives below.
+        # In a pause, a screenshot has one sample a pixel, as `promin render` gives below.
         viewer.press("p")
         session.take_screenshot(1)
         viewer.hold("w", 0.2)
@@ -300,7 +301,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
             f"{len(path)} frames were recorded, and replayed: {viewer.out}",
         )
 
-    # By time, it takes its time.
+    # The flight by time takes its real time.
     begin = time.monotonic()
     session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10")
     with session as viewer:
@@ -310,7 +311,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
     count = math.floor(seconds * 10 + 1e-6) + 1
     expect(viewer.out.startswith(f"{count} frames: "), f"{count} frames are due: {viewer.out}")
 
-    # Between frames window and renderer have the same cameras.
+    # Between frames, window and renderer use the same cameras.
     half_way = {**flight, "fps": 7, "frames": [{**path[0], "time_s": 0}, {**path[-1], "time_s": 0.2}]}
     (folder / "half_way.json").write_text(json.dumps(half_way))
     session = Session(bin_folder, scenes, folder, "--replay", "half_way.json", "--keep-open")
@@ -349,7 +350,7 @@ def stops_at_a_signal(bin_folder, scenes, folder):
     pairs = [f"promin-{number:04}.{ending}" for number in (1, 2) for ending in ("exr", "png")]
     expect(names in (["flight.json", *pairs[:2]], ["flight.json", *pairs]), f"files are left half written: {names}")
 
-    # No option of `promin render` takes the size of what an orthographic camera sees.
+    # No option of `promin render` takes the height of an orthographic camera's view.
     flight = {"format": "promin camera path", "version": 1, "frames": [{**frames[0], "ymag": 2.5}]}
     del flight["frames"][0]["fov_deg"]
     (folder / "flight.json").write_text(json.dumps(flight))
@@ -371,7 +372,7 @@ def survives_its_window(bin_folder, scenes, folder):
             viewer.xdotool("windowsize", viewer.window, SIZE[0] + 37 * (i % 5) - 60, SIZE[1] + 23 * (i % 7) - 40)
             viewer.hold("w" if i % 2 else "s", 0.02)
             viewer.check_alive()
-        # Minimised it has no pixels, and traces none although a key is down and there is refining to do.
+        # A minimised window has no pixels, and traces none although a key is down and there is a picture to refine.
         viewer.xdotool("keydown", "w")
         viewer.minimise(True)
         wait_for(lambda: viewer.processor_share(0.5) < 0.1, "rest of a minimised window", 30.0)
@@ -387,7 +388,7 @@ def survives_its_window(bin_folder, scenes, folder):
 
 
 def quits_while_it_compiles(bin_folder, scenes, folder):
-    """With nothing in the driver's cache; the first time as soon as there is a window."""
+    """Starts with an empty driver cache; the first time it acts as soon as there is a window."""
     for awaited in (None, "loaded showcase"):
         session = Session(bin_folder, scenes, folder, "-v", MESA_SHADER_CACHE_DIR=str(folder / "no cache"))
         with session as viewer:
@@ -398,10 +399,10 @@ def quits_while_it_compiles(bin_folder, scenes, folder):
 
 
 def answers_while_it_works(bin_folder, scenes, folder):
-    """A key every 20 ms, while it loads, compiles, refines and explains with nothing in the driver's cache."""
+    """Presses a key every 20 ms while the window loads, compiles, refines and explains with an empty driver cache."""
     session = Session(bin_folder, scenes, folder, "-v", MESA_SHADER_CACHE_DIR=str(folder / "no cache"))
     with session as viewer:
-        viewer.press("Tab")  # the panel would take the click
+        viewer.press("Tab")  # the panel would catch the click
         typed = {}
         with Typist(viewer.display) as typist:
             for pattern, stage in (
@@ -416,11 +417,12 @@ def answers_while_it_works(bin_folder, scenes, folder):
                 typed[stage] = (typist.count, int(re.search(r"(\d+) keys? pressed", line).group(1)))
         session.quit()
         worst = re.search(r"no input waited longer than (\d+) ms, for work of at most (\d+) ms; (\d+) keys", viewer.err)
-    # Tab and Esc are keys, too; the last is not waited for.
+    # Tab and Esc are keys, too; the test does not wait for the last one.
     expect(int(worst.group(3)) >= typist.count + 1, f"{typist.count} keys were typed: {worst.group(0)}")
     stages = [(0, 0), *typed.values()]
     for stage, (typed_before, answered_before), (typed_then, answered_then) in zip(typed, stages, stages[1:]):
-        # A window that stands still meanwhile answers most after the stage. Short ones say nothing: the test looks late.
+        # If the window does not respond during a stage, it answers most keys after it. Short stages prove nothing,
+        # because the test may look late.
         count = typed_then - typed_before
         answered = answered_then - answered_before
         expect(count < 100 or 2 * answered >= count, f"few keys were answered before the {stage}: {typed}")
@@ -449,7 +451,7 @@ def looks_from_where_keys_say(bin_folder, scenes, folder):
         wait_for(lambda: distance() < 1e-3 * height, "framed model", 60)
         expect(math.dist(map(float, look_of(session.print_command())), (0, -1, 0)) < 1e-5, "F turned the camera")
 
-        # A double click looks at the point that was there.
+        # A double click turns the camera to the point that was under the pointer.
         viewer.press("r")
         wait_for(lambda: eye_of(session.print_command()) == eye_of(command), "reset camera", 60)
         place = (95, 50)
@@ -459,7 +461,7 @@ def looks_from_where_keys_say(bin_folder, scenes, folder):
         middle = session.find_point(session.print_command(), (1, 1), (0, 0))
         expect(math.dist(point, middle) < 0.02 * math.dist(point, map(float, eye_of(command))), f"{middle}, not {point}")
 
-        # Full screen and back.
+        # These lines test full screen and back.
         viewer.press("F11")
         width, height = viewer.display.size
         wait_for(lambda: f"--size {width} {height} " in session.print_command(), "full screen", 60)
@@ -469,7 +471,7 @@ def looks_from_where_keys_say(bin_folder, scenes, folder):
 
 
 def opens_and_saves_by_dialog(bin_folder, scenes, folder):
-    """Opens and saves files through a stand-in for the desktop's dialog, which returns fixed names."""
+    """Opens and saves files through a replacement for the desktop's dialog, which returns fixed names."""
     programs = folder / "programs"
     programs.mkdir()
     shutil.copy(scenes / "box.gltf", folder / "another.gltf")
@@ -481,12 +483,12 @@ def opens_and_saves_by_dialog(bin_folder, scenes, folder):
         viewer.xdotool("windowsize", "--sync", viewer.window, 340, 300)
         wait_for(lambda: "sphere.gltf" in session.print_command() and "340 300" in session.print_command(), "picture")
 
-        # A pen is nowhere before it touches the panel.
+        # A pen has no position before it touches the panel.
         move = ("mousemove", "--window", viewer.window)
         viewer.xdotool(*move, 320, 280, "sleep", 0.5, *move, 150, 20, "click", 1, "sleep", 1)
 
         def click_until(x, has_effect, what):
-            """The buttons are below some lines of text."""
+            """Finds the buttons, which are below some lines of text."""
             for y in [*range(50, 110, 8)] * 3:
                 viewer.xdotool("mousemove", "--window", viewer.window, x, y, "sleep", 0.2, "click", 1, "sleep", 0.5)
                 if has_effect():
@@ -516,7 +518,7 @@ def opens_what_is_dropped(bin_folder, scenes, folder):
         wait_for(lambda: box.name in session.print_command(), "dropped scene", 60)
         session.expect_shown(1, f"'{box}'")
 
-        # What is no scene is named, and the picture stays.
+        # The message names a file that is not a scene, and the picture stays.
         text = folder / "words.txt"
         text.write_text("not a scene")
         viewer.drop(text)
@@ -533,7 +535,7 @@ def turns_the_light(bin_folder, scenes, folder):
         viewer.xdotool("keydown", "shift")
         viewer.drag((40, 50), (120, 50))
         viewer.xdotool("keyup", "shift")
-        # 80 pixels of a window that is 96 high.
+        # The pointer moves 80 pixels in a window with a height of 96.
         wait_for(lambda: " --light-rotation 160 " in session.print_command(), "turned light", 60)
         session.take_screenshot(2)
         turned = session.print_command()
@@ -541,7 +543,7 @@ def turns_the_light(bin_folder, scenes, folder):
         session.expect_same_picture(2, turned)
         pictures = [(folder / f"promin-000{number}.png").read_bytes() for number in (1, 2)]
         expect(pictures[0] != pictures[1], "the light was not turned")
-        # A pixel is explained in that light.
+        # A pixel is explained in the rotated light.
         viewer.xdotool("mousemove", "--window", viewer.window, 80, 50, "click", 1)
         session.quit()
 
@@ -576,7 +578,7 @@ def reads_a_changed_scene(bin_folder, scenes, folder):
         )
         session.expect_same_picture(3, after)
 
-        # The files beside it are watched, too, and what the loader warns of is said.
+        # The window watches the files beside the scene, too, and shows the loader's warnings.
         warned = changed.replace('"type": "plain"', '"type": "gradient"')
         expect(warned != changed, "the showcase has another sky now: change this test")
         session.scene.write_text(warned)
@@ -588,13 +590,13 @@ def reads_a_changed_scene(bin_folder, scenes, folder):
 
 
 def fails_in_a_sentence(bin_folder, scenes, folder):
-    """What the driver answers when a device is lost or its memory is short: at the start, and when the window flies."""
+    """Simulates a lost device and too little memory, at the start and while the window flies."""
     lost, no_memory = -4, -2
     for call, number, result, sentence in (
         ("vkAllocateMemory", 3, no_memory, "the device has not enough memory ("),
         ("vkQueueSubmit", 12, lost, "the device was lost ("),
     ):
-        # The path is of no other layers: those of validation are not there.
+        # The path of layers contains no others: those of validation are not there.
         layer = {"VK_LAYER_PATH": os.environ["PROMIN_TEST_LAYERS"], "VK_INSTANCE_LAYERS": "VK_LAYER_PROMIN_fault"}
         layer["PROMIN_VALIDATION"] = ""
         fault = {"PROMIN_TEST_FAULT": f"{call} {number} {result}"}
@@ -604,7 +606,7 @@ def fails_in_a_sentence(bin_folder, scenes, folder):
             expect(code == 1, f"{fault} ended with {code}: {viewer.err}")
             errors = [line for line in viewer.err.splitlines() if re.match("promin-view: (?!note|warning)", line)]
             expect(len(errors) == 1 and errors[0].startswith(f"promin-view: {sentence}"), viewer.err)
-    # The flight until then is kept.
+    # The flight so far is kept.
     expect(json.loads((folder / "flight.json").read_text())["frames"], "the flight was lost")
 
 
@@ -616,7 +618,7 @@ def only_the_window_links_glfw(bin_folder, *_):
 
 
 def needs_a_display(bin_folder, scenes, _):
-    # Nor a folder where one could be found, which a driver or library must not complain of.
+    # There is also no folder where a display could be found; neither driver nor library may complain about that.
     missing = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
     environment = {name: value for name, value in os.environ.items() if name not in missing}
     done = run(bin_folder / "promin-view", scenes / "sphere.gltf", environment=environment)

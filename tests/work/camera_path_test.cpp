@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// As uneven as fp32 allows: turned in many small steps.
+/// Returns a path as uneven as fp32 allows: it is turned in many small steps.
 CameraPath make_path(size_t count) {
   CameraPath path;
   std::mt19937 generator(1);
@@ -49,7 +49,7 @@ class CameraPathTest : public TempFolder {
  protected:
   std::filesystem::path file() const { return folder_ / "path.json"; }
 
-  /// What reading a file of this text says; empty if nothing is wrong.
+  /// Returns the error of reading a file with this text; empty if there is none.
   std::string refusal(const std::string& text) const {
     std::ofstream(file()) << text;
     return message_of([&] { read_camera_path(file()); });
@@ -113,7 +113,7 @@ TEST_F(CameraPathTest, HalfWayIsHalfTheTurnAndHalfTheWay) {
   }
 }
 
-// As slerp of a rotation by itself would not.
+// The slerp of a single rotation would not give this.
 TEST_F(CameraPathTest, ARestKeepsItsBits) {
   CameraPath path = make_path(100);
   for (size_t i = 1; i < path.frames.size(); i += 2) path.frames[i].camera = path.frames[i - 1].camera;
@@ -127,7 +127,7 @@ TEST_F(CameraPathTest, PicturesAreTakenBySecondsOrAsStored) {
   CameraPath path = make_path(3);
   path.frames[0].time_s = 0.1;
   path.frames[1].time_s = 0.2;
-  path.frames[2].time_s = 0.7;  // times 10, a hair less than 7
+  path.frames[2].time_s = 0.7;  // 0.7 times 10 is slightly less than 7
   const PathPictures stored(path);
   ASSERT_EQ(stored.count(), 3U);
   EXPECT_EQ(stored.interval_s(), 0.0);

@@ -20,7 +20,7 @@ constexpr double kRight = std::numbers::pi / 2.0;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTolerance = 1e-14;
 
-/// |QtQ - I|: the largest element.
+/// Returns |QtQ - I|: the largest element.
 double orthonormality_error(const dmat3& q) {
   const dmat3 difference = glm::transpose(q) * q - dmat3(1.0);
   double error = 0.0;
@@ -30,7 +30,7 @@ double orthonormality_error(const dmat3& q) {
   return error;
 }
 
-/// Q as the renderer gets it: right, up and -look in fp32.
+/// Returns Q as the renderer gets it: right, up and -look in fp32.
 dmat3 matrix_in_use(const Camera& camera) {
   return {dvec3(glm::cross(camera.look, camera.up)), dvec3(camera.up), -dvec3(camera.look)};
 }
@@ -95,7 +95,7 @@ TEST(FreeCamera, PositiveAlphaRollsAnticlockwiseSeenFromBehind) {
 TEST(FreeCamera, OneRotationIsMzMyMx) {
   FreeCamera camera;
   camera.rotate(0.2, 0.3, 0.5);
-  // Mx takes -Z to (0, sin, -cos); then My; then Mz, written out.
+  // Mx takes -Z to (0, sin, -cos); My and then Mz are written out.
   const dvec3 after_x(0, std::sin(0.5), -std::cos(0.5));
   const dvec3 after_y(std::sin(0.3) * after_x.z, after_x.y, std::cos(0.3) * after_x.z);
   const dvec3 after_z(std::cos(0.2) * after_y.x - std::sin(0.2) * after_y.y,
@@ -104,7 +104,7 @@ TEST(FreeCamera, OneRotationIsMzMyMx) {
 }
 
 TEST(FreeCamera, RotatesAboutItsOwnAxes) {
-  // Q M: turned left, "up" is still the camera's up. M Q would roll about the world's X instead.
+  // The turn is Q M: after a turn to the left, "up" is still the camera's up. M Q would roll about the world's X.
   FreeCamera camera;
   camera.rotate(0, kRight, 0);
   camera.rotate(0, 0, kRight);
@@ -156,7 +156,7 @@ TEST(FreeCamera, FindsItsWayBackAfterAHundredThousandSteps) {
 }
 
 TEST(FreeCamera, HasNoGimbalLock) {
-  // Straight up, then turning: every step turns the camera by the angle asked for, and look stays in its own plane.
+  // The camera looks straight up and then turns: every step turns it by the given angle, and look stays in its plane.
   FreeCamera camera;
   camera.rotate(0, 0, kRight);
   const dvec3 axis = camera.up();
@@ -166,7 +166,7 @@ TEST(FreeCamera, HasNoGimbalLock) {
     EXPECT_NEAR(std::acos(glm::dot(before, camera.look())), kDegree, 1e-12);
     expect_near(camera.up(), axis, 1e-13);
   }
-  // And over the zenith: up swings through as steadily.
+  // The camera then goes over the zenith, and up turns as steadily.
   for (int step = 0; step < 180; ++step) {
     const dvec3 before = camera.up();
     camera.rotate(0, 0, kDegree);

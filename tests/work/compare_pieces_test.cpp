@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// What two devices may differ by on one piece of a job.
+// These tests check how much the results of two devices for one piece of a job may differ.
 #include "work/jobs/compare_pieces.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ TEST(ComparePartsTest, NumbersMayDifferByLittle) {
   PicturePart anew = make_part();
   anew.image.pixels[7].y += 0.0039F;
   anew.image.pixels[8] = vec3(0.501F, 0.5F, 0.498F);
-  // Relative to a number beyond 1.
+  // Above 1, differences are relative to the number.
   anew.channels[0].values[9] = std::bit_cast<uint32_t>(20.07F);
   const PieceDifference difference = compare_parts(make_part(), anew, "a.piece");
   EXPECT_EQ(difference.count, 1000U);
@@ -72,7 +72,7 @@ TEST(ComparePartsTest, PartsOfOtherPicturesAreRefused) {
   EXPECT_THROW(compare_parts(make_part(), anew, "a.piece"), InputError);
 }
 
-/// A ball of radius 1 at 10 before the rays, and a plane behind.
+/// Returns a ball of radius 1 at a distance of 10 before the rays, and a plane behind it.
 Scene make_scene() {
   Scene scene;
   scene.materials.resize(1);
@@ -104,7 +104,7 @@ PieceDifference compare_one(const Hit& there, const Hit& anew) {
 }
 
 TEST(HitComparisonTest, TMayDifferByTwiceItsBound) {
-  // The way is 2 |dt| along the normal, and S is 10 and half the diagonal of the ball's box.
+  // The distance is 2 |dt| along the normal, and S is 10 plus half the diagonal of the ball's box.
   const double unit = 0x1p-24 * (10.0 + std::sqrt(3.0)) / 2.0;
   const double ulp = 0x1p-21;
   for (const int steps : {1, 5, 11, 12, 40}) {
@@ -114,7 +114,7 @@ TEST(HitComparisonTest, TMayDifferByTwiceItsBound) {
     EXPECT_EQ(difference.mismatches, k > 16.0 ? 1U : 0U) << k;
     EXPECT_NEAR(difference.largest, k > 16.0 ? 0.0 : k, 1e-3) << steps;
   }
-  // Grazing, the point moves along the surface.
+  // At grazing incidence the point moves along the surface.
   Hit grazing = make_hit(0, 4.5F);
   grazing.normal = vec3(1, 0, 0);
   EXPECT_EQ(compare_one(grazing, make_hit(0, 4.6F)).mismatches, 0U);
@@ -133,7 +133,7 @@ TEST(HitComparisonTest, OtherSurfacesAreOthers) {
   neighbour.primitive = 1;
   EXPECT_EQ(compare_one(make_hit(0, 4.5F), neighbour).mismatches, 1U);
   EXPECT_EQ(compare_one(make_hit(0, std::numeric_limits<float>::quiet_NaN()), make_hit(0, 4.5F)).mismatches, 1U);
-  // An object that there is not.
+  // The object does not exist.
   EXPECT_EQ(compare_one(make_hit(5, 4.5F), make_hit(5, 4.500001F)).mismatches, 1U);
 }
 

@@ -63,7 +63,7 @@ std::string refusal(const std::string& members) {
 
 const std::string kHere = std::filesystem::current_path().string() + "/";
 
-/// Options with values, one of each kind and range at least, and the member that each gives.
+/// Options with values, with at least one of each kind and range, and the member that each gives.
 const std::pair<std::vector<std::string>, std::pair<const char*, json>> kOptions[] = {
     {{"-o", "a.exr", "-o", "-"}, {"output", {kHere + "a.exr", "-"}}},
     {{"--spp", "16"}, {"spp", 16}},
@@ -137,7 +137,7 @@ TEST(SpecJsonTest, EachOptionIsAMemberThatReadsBack) {
   }
 }
 
-// A new option needs a row in the table of fields, or a place among those that each process chooses.
+// A new option needs a row in the table of fields, or a place among the options that each process chooses.
 TEST(SpecJsonTest, EveryOptionIsKnown) {
   const std::set<std::string> of_processes = {"explain", "skip-existing", "job",     "piece",  "device",
                                               "threads", "quiet",         "verbose", "repeat", "stats",
@@ -172,7 +172,7 @@ TEST(SpecJsonTest, TheTextIsCanonical) {
   EXPECT_EQ(write_spec(parse(R"("size": [64, 48], "aov": ["normal", "depth"], "scene": "/a.gltf", "spp": 8)")),
             "{\n \"promin_render_spec\": 1,\n \"scene\": \"/a.gltf\",\n \"size\": [64,48],\n"
             " \"aov\": [\"depth\",\"normal\"]\n}\n");
-  // Only all members that pieces depend on.
+  // write_spec_of_pieces() keeps exactly the members on which pieces depend.
   const RenderSpec spec = parse(R"("scene": "/a.gltf", "output": "a.exr", "pieces": 4)");
   EXPECT_THAT(write_spec(spec), HasSubstr("\"output\""));
   EXPECT_EQ(write_spec_of_pieces(spec),
@@ -226,7 +226,7 @@ TEST(SpecJsonTest, WrongMembersAreRefusedTogether) {
   EXPECT_THROW(parse_spec<RenderSpec>("{", "spec.json"), InputError);
 }
 
-// The manual has them in brackets. A job that gives them is the job that does not.
+// The manual puts these options in brackets. A job with them equals a job without them.
 TEST(SpecJsonTest, DefaultsCountAsNotGiven) {
   const std::vector<std::pair<std::string, std::string>> defaults = {{"--spp", "8"},
                                                                      {"--filter", "box"},
@@ -251,7 +251,7 @@ TEST(SpecJsonTest, BitsHaveTheWordsOfOptions) {
   EXPECT_EQ(
       list_bits(of_render({"--max-depth", "3", "--half", "--eye", "1", "2.5", "3", "--environment", "dir/a.hdr"})),
       (Bits{{"--max-depth", "3"}, {"--eye", "1 2.5 3"}, {"--environment", "a.hdr"}, {"--half", "given"}}));
-  // These change no bit.
+  // These options change no bit.
   EXPECT_TRUE(list_bits(of_render({"-o", "a.exr", "--pieces", "3", "--builder", "median", "--root", "a"})).empty());
 }
 

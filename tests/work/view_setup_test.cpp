@@ -125,7 +125,7 @@ TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
   options.camera = "side";
   EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
 
-  // A camera of the user's own takes nothing of the scene's.
+  // A camera of the user's own takes nothing from the scene's cameras.
   options.camera = "main";
   options.pose.eye = dvec3(0.0);
   options.pose.direction = dvec3(0.0, 0.0, -1.0);
@@ -246,13 +246,13 @@ TEST(LightUpTest, TheBackgroundIsTheUsers) {
   light_up(studio, {.background = environment});
   EXPECT_TRUE(studio.environment.shows_sky);
 
-  // Without a sky the environment is ambient light.
+  // Without a sky, the environment is ambient light.
   Scene ambient = make_scene();
   light_up(ambient, {.light = LightChoice::kHeadlight, .background = environment});
   EXPECT_FALSE(ambient.environment.shows_sky);
   EXPECT_EQ(ambient.environment.background, vec3(0.1F));
 
-  // A file that shows its sky no longer does.
+  // With another background, the file's own sky is no longer shown.
   Scene sky = make_scene();
   sky.environment.sky = GradientSky{};
   sky.environment.shows_sky = true;
@@ -279,7 +279,7 @@ TEST(ChooseDisplayTest, OptionsComeBeforeTheScene) {
             (DisplayTransform{0.0F, ToneMapping::kNeutral}));
 }
 
-/// What is said of a scene for a picture that is displayed.
+/// Returns the notes on a scene for a picture that is displayed.
 std::string assumptions_of(Scene scene, const ViewOptions& options) {
   const AssumedLight assumed = light_up(scene, options.look);
   return describe_assumptions(scene, options, assumed, choose_display(scene, options.look, DebugView::kNone));
@@ -320,7 +320,7 @@ TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
   options.pose.from.reset();
   options.pose.eye = dvec3(0.0, 0.0, 1.0);
   EXPECT_EQ(assumptions_of(Scene(), options), "");
-  // Nothing of the display where nothing is displayed.
+  // If nothing is displayed, the notes say nothing about the display.
   Scene scene;
   scene.cameras = {Camera()};
   const AssumedLight assumed = light_up(scene, {});
@@ -328,7 +328,7 @@ TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
             "assumed: the light of a studio, a grey background");
 }
 
-/// A ball at (1, 2, 3), for which files have no camera.
+/// Returns a ball at (1, 2, 3), in a file that has no camera.
 Scene make_ball() {
   Scene scene;
   scene.add("ball", Sphere{.center = dvec3(1.0, 2.0, 3.0)});

@@ -14,7 +14,7 @@ import sys
 from figures import join, markdown_table
 from stats import read_figures
 
-# The methods of the kernels and their sources; shaders/trace/primitives/*.glsl have the reasons.
+# The kernels use these methods from these sources; shaders/trace/primitives/*.glsl give the reasons.
 METHODS = {
     "sphere": (
         "around the closest approach, corrected once; discriminant (r - |p|)(r + |p|) in units of r",
@@ -63,7 +63,7 @@ Figures **in bold** exceed their bounds.
 def number(value):
     if value is None:
         return ""
-    value = float(value)  # "inf" and "nan" too, for which JSON has no numbers
+    value = float(value)  # also reads "inf" and "nan", for which JSON has no numbers
     if not math.isfinite(value):
         return str(value)
     if value == int(value) and abs(value) < 1e6:
@@ -72,13 +72,13 @@ def number(value):
 
 
 def cell(figure, bound):
-    """The figure, in bold beyond its bound; NaN is beyond any."""
+    """Returns the figure, in bold if it is beyond its bound; NaN is beyond any bound."""
     is_beyond = figure is not None and bound is not None and not float(figure) <= bound
     return f"**{number(figure)}**" if is_beyond else number(figure)
 
 
 def table(header, rows):
-    """Rows of cells."""
+    """Returns a table of these rows of cells."""
     return markdown_table([(head, lambda row, i=i: row[i]) for i, head in enumerate(header)], rows).rstrip("\n")
 
 
@@ -147,7 +147,7 @@ def rows_section(runs):
     body = []
     for row in sorted({row for row, what in figures}):
         entries = {what: entry for (r, what), entry in figures.items() if r == row}
-        # Events that must never happen share one line if they did not.
+        # Events that must never happen share one line if none of them happened.
         never = [what for what, entry in entries.items() if all(measured == (0, 0) for measured in entry.values())]
         for what, entry in entries.items():
             if what not in never:
@@ -209,7 +209,7 @@ def drivers_section(runs, tried, reports):
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    # The system's driver first.
+    # The system's driver comes first.
     tried = sorted((f.stem for f in folder.glob("*.log")), key=lambda name: (name != "system", name))
     files = {name: folder / f"{name}.json" for name in tried}
     runs = {name: json.loads(file.read_text()) for name, file in files.items() if file.exists()}

@@ -11,10 +11,10 @@ import pathlib
 from figures import gap_text, interval, markdown_table, number, spread
 from stats import fit_doublings, read_figures
 
-# The targets of a driver: (rate over Embree's for camera, shadow and random rays, time over Tachyon's).
+# Targets of each driver: (rate over Embree's for camera, shadow and random rays, time over Tachyon's).
 _TARGETS = {"Mesa 22.3.6": (0.45, 0.42, 0.33, 1.5), "Mesa 25.0.7": (0.75, 0.62, 0.5, 1.0)}
-_MOST_BUILD_TIME = 1.5  # over Embree's
-_MOST_BYTES = 100  # a triangle
+_MOST_BUILD_TIME = 1.5  # a multiple of Embree's time
+_MOST_BYTES = 100  # bytes of each triangle
 _RAYS = ("camera", "shadow", "random")
 
 _TIMES = [
@@ -81,7 +81,7 @@ _FIRST_COLUMNS = [
 
 
 def _target(value, least=None, most=None):
-    """The target, and whether the value meets it."""
+    """Returns the target, and says whether the value meets it."""
     if value is None or (least is None and most is None):
         return "–"
     if least is not None:
@@ -99,7 +99,7 @@ def _ratio_of(row, key="time_ratio"):
 
 
 def _rate_target(report, row):
-    """A ratio of rates is the inverse of the ratio of times."""
+    """Returns the ratio of rates, which is the inverse of the ratio of times."""
     ratio = _ratio_of(row)
     return _target(ratio and 1 / ratio, least=dict(zip(_RAYS, _targets_of(report)))[row["rays"]])
 
@@ -109,7 +109,8 @@ def _picture_target(report, row):
 
 
 def _table(reports, section, key, columns, further=()):
-    """The rows of all reports, with the driver first and the columns of report and row last."""
+    """Returns the rows of all reports. The driver is the first column; the columns of the report and of the row are
+    last."""
     columns = [("driver", lambda of: of[0]["provenance"]["driver"])] + [
         (head, lambda of, make=make: make(of[1])) for head, make in columns
     ]
@@ -129,7 +130,7 @@ def _growth_table(growth):
 
 
 def tables(reports, growth):
-    """The text, in parts."""
+    """Returns the text, in parts."""
     p = reports[0]["provenance"]
     peers = [row["peer"] for row in reports[0]["rates"]["rows"] if "peer" in row]
     runs = ", ".join(
@@ -167,7 +168,7 @@ def tables(reports, growth):
 
 
 def _read_driver(folder):
-    """The rates of a driver, with the pictures of the peers if they were measured."""
+    """Returns the tables of a driver's rates, with the pictures of the peers if they were measured."""
     peers = folder / "peers.json"
     return read_figures(folder / "rates.json") | (read_figures(peers) if peers.exists() else {})
 

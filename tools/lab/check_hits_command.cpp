@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-lab check-hits: a device's answers in a scene of any size against the oracle's brute force.
+// promin-lab check-hits compares a device's answers in a scene of any size with the oracle's brute force.
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,8 @@
 namespace promin::lab {
 namespace {
 
-/// Half from the camera over its square view, half chords between points of the sphere around the scene.
+/// Returns rays. Half of them start at the camera and go through its square view; half are chords between points of the
+/// sphere around the scene.
 std::vector<Ray> make_rays(const world::Scene& scene, size_t count) {
   std::mt19937 generator(1);
   const auto uniform = [&] { return 2.0 * static_cast<double>(generator()) * 0x1p-32 - 1.0; };
@@ -55,8 +56,8 @@ std::vector<Ray> make_rays(const world::Scene& scene, size_t count) {
   return rays;
 }
 
-/// Holds every answer against the oracle's and prints what came of it, with those that are not within the bounds of
-/// docs/accuracy.md. Throws RunError where there are such.
+/// Compares every answer with the oracle's and prints the result, with the answers that are not within the bounds of
+/// docs/accuracy.md. Throws RunError if there are such answers.
 void check(const std::string& file, const std::string& builder, size_t count) {
   const world::Scene scene = world::flatten(load_scene(file));
   const std::vector<Ray> rays = make_rays(scene, count);
@@ -73,7 +74,7 @@ void check(const std::string& file, const std::string& builder, size_t count) {
     verdicts[i] = oracle::judge(scene, ray, {hits[i].t, hits[i].object, hits[i].primitive});
   });
   const gpu::DeviceInfo info = gpu::info_of(*device);
-  // K may double where division and square root are not known to be correctly rounded.
+  // K may be twice as large on devices that may not round division and square root correctly.
   const oracle::Real most_k = info.type == "CPU" ? oracle::kB1 : 2 * oracle::kB1;
   size_t hit_count = 0;
   size_t beyond_b1 = 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-lab difference: how far a picture of another renderer is from one of promin, in linear light clamped to [0,
-// 1], the range that each renderer can write.
+// promin-lab difference measures the difference of a picture by another renderer from one by promin, in linear light
+// clamped to [0, 1], the range that each renderer can write.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers and tables for people."""
+"""Formats numbers and tables for people."""
 
 
 def number(value, digits=3):
-    """Returns an en dash for what was not measured."""
+    """Returns the figure as text, and an en dash for a figure that was not measured."""
     if value is None:
         return "–"
     if isinstance(value, str):
@@ -22,7 +22,7 @@ def number(value, digits=3):
 
 
 def spread(times):
-    """The median with the quartiles."""
+    """Returns the median with the quartiles."""
     if not times:
         return "–"
     low, high = times["lower_quartile"], times["upper_quartile"]
@@ -30,7 +30,7 @@ def spread(times):
 
 
 def interval(ratio):
-    """The median with its interval."""
+    """Returns the median with its interval."""
     if not ratio:
         return "–"
     low, high = ratio["interval_lower"], ratio["interval_upper"]
@@ -38,14 +38,14 @@ def interval(ratio):
 
 
 def markdown_table(columns, rows):
-    """A column is its head and a function that makes a cell from a row."""
+    """Returns a Markdown table. A column is its head and a function that makes a cell from a row."""
     lines = [[head for head, _ in columns], *([make(row) for _, make in columns] for row in rows)]
     lines = ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |" for cells in lines]
     return "\n".join([lines[0], "|" + "---|" * len(columns), *lines[1:]]) + "\n"
 
 
 def gap_text(gaps):
-    """Returns sentences on what was not measured, with the reason where it is installed."""
+    """Returns sentences that name what was not measured, with the reason if it is installed."""
     absent = [gap["name"] for gap in gaps if not gap["is_installed"]]
     parts = [f"Not measured, because not installed: {join(absent)}."] if absent else []
     parts += [f"Not measured: {gap['name']}, which failed: {gap['reason']}" for gap in gaps if gap["is_installed"]]
@@ -53,6 +53,6 @@ def gap_text(gaps):
 
 
 def join(words):
-    """ "a, b and c" """
+    """Returns the words as a list like "a, b and c"."""
     words = list(words)
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// How time, steps and memory grow with triangles.
+// promin-lab growth measures how time, steps and memory grow with the number of triangles.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -29,7 +29,7 @@ class GrowthBench {
   }
 
  private:
-  /// A mesh of the wavy sphere with what is measured of it.
+  /// A mesh of the wavy sphere, with the measurements of it.
   struct Size {
     uint32_t wanted;
     world::Scene scene;
@@ -60,7 +60,7 @@ class GrowthBench {
     return {{"curve", curve}, {"value", size.triangle_count()}};
   }
 
-  /// All sizes stay on the device, so that each turn has them all.
+  /// The meshes of all sizes stay on the device, so that each turn measures all of them.
   void measure_triangles() {
     std::deque<Size> sizes;
     for (const uint32_t wanted : sizes_) {

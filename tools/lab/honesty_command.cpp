@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// promin-lab honesty: whether pictures with an error target are as exact as they claim, and what they take beside
-// pictures of as many samples in each pixel that are as exact. Whole pictures are timed; what is true is known of some
-// windows of them, from many samples of a lattice, which these pictures do not take.
+// promin-lab honesty measures whether pictures with an error target are as exact as they claim. It compares their time
+// with that of equally exact pictures with the same number of samples in each pixel. Whole pictures are timed. The true
+// values are known for some windows of them, from many samples on a lattice, which the measured pictures do not use.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -32,11 +32,11 @@ struct HonestyOptions {
   uint32_t truth_samples = 1024;
   uint32_t most_samples = 128;
   uint32_t runs = 3;
-  /// Errors and claims are those of the shown picture.
+  /// True if errors and claims are those of the shown picture.
   bool is_shown = false;
 };
 
-/// Windows along each side of the picture, and their share of it.
+/// The number of windows along each side of the picture, and the fraction of the side that they cover.
 constexpr uint32_t kWindows = 5;
 constexpr uint32_t kShare = 5;
 
@@ -51,10 +51,10 @@ std::vector<PixelWindow> choose_windows(const uvec2& size) {
   return windows;
 }
 
-/// Errors of the pixels whose truth is known.
+/// Errors of the pixels whose true value is known.
 struct Errors {
   double rmse = 0.0;
-  /// The error of a pixel's worst channel that 999 in 1000 pixels do not reach.
+  /// The error that 999 of 1000 pixels stay below. A pixel's error is that of its worst channel.
   double worst = 0.0;
 };
 
@@ -96,7 +96,7 @@ class HonestyBench {
     std::vector<std::function<double()>> contestants;
     for (size_t i = 0; i < views.size(); ++i) {
       contestants.emplace_back([&, i] {
-        // With what the host does between dispatches, which is more where pixels are refined.
+        // The time includes the host's work between dispatches, which is more where pixels are refined.
         const Stopwatch rendering;
         results[i] = plain_renderer_->render(views[i]);
         return rendering.ms();
@@ -132,7 +132,7 @@ class HonestyBench {
     }
   }
 
-  /// A color as errors measure it.
+  /// Returns a color in the units in which errors are measured.
   vec3 shown(const vec3& color) const { return display_ ? shown_color(color, *display_) : color; }
 
   Errors errors_of(const Image& image) const {
@@ -153,7 +153,7 @@ class HonestyBench {
     return {std::sqrt(sum2 / (3.0 * static_cast<double>(worst.size()))), *at};
   }
 
-  /// Returns the share of the refined pixels whose error is within the claim.
+  /// Returns the fraction of the refined pixels whose error is within the claim.
   double honest_share(View view) {
     size_t refined = 0;
     size_t honest = 0;
@@ -172,8 +172,8 @@ class HonestyBench {
     return static_cast<double>(honest) / static_cast<double>(std::max<size_t>(refined, 1));
   }
 
-  /// The time of a picture over that of one with as many samples in each pixel and the same error: between those of
-  /// powers of two, along a straight line of logarithms.
+  /// Returns the ratio of a picture's time to the time of an unrefined picture with the same error. That time is
+  /// interpolated between pictures with powers of two samples a pixel, along a straight line of logarithms.
   template <typename Error>
   static std::string ratio_to(const std::vector<Point>& uniform, const Point& point, const Error& error_of) {
     for (size_t i = 1; i < uniform.size(); ++i) {

@@ -26,7 +26,7 @@ PEERS = ("Tachyon", "POV-Ray")
 
 
 def run_program(*command, folder):
-    """Returns the standard output and error of a program, and its milliseconds. Throws RuntimeError."""
+    """Runs a program and returns its output and errors as text, and its time in milliseconds. Throws RuntimeError."""
     start = time.monotonic()
     words = [str(word) for word in command]
     done = subprocess.run(
@@ -52,7 +52,7 @@ class Peer:
         self._command, self._seconds, self._sampling = command.split(), re.compile(seconds), sampling
 
     def render(self, folder, samples=1):
-        """Returns the milliseconds of tracing."""
+        """Returns the time of tracing in milliseconds."""
         output, _ = run_program(*self._command, *self._sampling(samples).split(), folder=folder)
         version = re.search(r"Version ([\d.]*\d)", output)
         seconds = self._seconds.search(output)
@@ -65,7 +65,8 @@ class Peer:
         return trace_ms
 
     def attempt(self, work, *arguments):
-        """Returns None after a failure, whose last line is the reason why this peer is not measured."""
+        """Returns work(*arguments). Returns None after a failure, whose last line is the reason why this peer is not
+        measured."""
         if self.failure is None:
             try:
                 return work(*arguments)
@@ -98,14 +99,15 @@ def gap_of(name, peer, failure=None):
 
 
 class _Promin:
-    """`promin render` of the sphereflake and of one sphere."""
+    """Runs `promin render` on the sphereflake and on one sphere."""
 
     def __init__(self, programs, folder, side):
         self._program, self._folder, self._side = programs / "promin", folder, side
         self.trace_ms, self.process_ms, self.one_sphere_process_ms, self.rays = [], [], [], {}
 
     def _render(self, name, side):
-        """Returns the milliseconds of tracing by the device and of the whole process by the clock, and the rays."""
+        """Returns the milliseconds that the device traces, the milliseconds of the whole process by the clock, and the
+        number of rays."""
         command = (self._program, "render", f"{name}.gltf", "-o", f"{name}.exr", "--size", side, side)
         settings = ("--spp", 1, "--max-depth", MAX_DEPTH, "--quiet", "--stats", "stats.json")
         _, took_ms = run_program(*command, *settings, folder=self._folder)
@@ -128,9 +130,10 @@ def _ratios(times, others):
 
 
 def _run_turns(promin, peers, runs, folder):
-    """Runs every contestant once a turn; a peer that fails drops out. Returns why promin failed, or None."""
+    """Runs every contestant once in each turn; a peer that fails drops out. Returns the reason why promin failed, or
+    None."""
     try:
-        # The first round only warms caches.
+        # The first turn only warms the caches.
         for turn in range(runs + 1):
             promin.render()
             for peer in peers:
@@ -155,7 +158,8 @@ def _row_of(peer, promin, difference):
 
 
 def _first_row(promin):
-    """The first picture may take the time of its tracing and of two whole processes that trace next to nothing."""
+    """Returns the row of the first picture. It may take the time of its tracing and of two whole processes that trace
+    next to nothing."""
     allowed_ms = [trace + 2 * small for trace, small in zip(promin.trace_ms, promin.one_sphere_process_ms)]
     return {
         "trace_ms": promin.trace_ms,
@@ -169,14 +173,14 @@ def _first_row(promin):
 
 
 def _compare(programs, folder, peer):
-    """Returns how far the peer's picture is from promin's; None after a failure."""
+    """Returns the difference of the peer's picture from promin's; None after a failure."""
     words = (programs / "promin-lab", "difference", "flake.exr", peer.picture)
     output = peer.attempt(lambda: run_program(*words, folder=folder)[0])
     return json.loads(output) if output is not None else None
 
 
 def measure(programs, folder, runs, side, level):
-    """Returns "rows" of peers, "first" for the first picture, and "gaps"."""
+    """Measures. Returns a dict: "rows" of the peers, "first" for the first picture, and "gaps" for missing peers."""
     for name, depth in (("flake", level), ("ball", 0)):
         sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
     of_scene = {"scene": f"sphereflake:{level}"}

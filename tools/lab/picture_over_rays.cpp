@@ -18,7 +18,7 @@ namespace {
 
 using measure::EmbreeCaster;
 
-/// Milliseconds of each turn.
+/// The milliseconds of each turn.
 using Times = std::vector<double>;
 
 Times sum_of(std::span<const Times> sets) {
@@ -32,14 +32,14 @@ Times difference_of(Times a, std::span<const double> b) {
   return a;
 }
 
-/// A picture, or the part of it that is the rays of these sets.
+/// A picture, or the part of a picture's work that consists of the rays of these sets.
 struct Part {
   std::string what;
   Times ms;
   uint64_t traced_rays;
   std::span<const measure::RaySet> sets;
   std::span<const Times> cast_ms;
-  /// Empty without the peer.
+  /// Empty if the peer is not installed.
   std::span<const Times> peer_ms;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 using measure::EmbreeCaster;
 
-/// Rays with a hit by one and none by the other.
+/// Returns the number of rays that hit in one answer and miss in the other.
 uint64_t count_differences(std::span<const Hit> a, std::span<const Hit> b) {
   uint64_t count = 0;
   for (size_t i = 0; i < a.size(); ++i) count += std::isfinite(a[i].t) != std::isfinite(b[i].t) ? 1 : 0;
@@ -47,7 +47,7 @@ void time_rays(Caster& caster, EmbreeCaster* embree, const measure::RaySet& set,
   row["differing_hits"] = count_differences(own, single);
 }
 
-/// From triangles in memory to all that is copied to the device, and the builder's part of it.
+/// Measures the time from triangles in memory until all is copied to the device, and the builder's time within it.
 void time_builds(const world::Scene& scene, const std::string& builder, EmbreeCaster* embree, uint32_t runs,
                  Json& row) {
   std::vector<double> bvh_ms;
@@ -58,7 +58,7 @@ void time_builds(const world::Scene& scene, const std::string& builder, EmbreeCa
   }};
   if (embree != nullptr) contestants.emplace_back([&] { return embree->time_build(); });
   const std::vector<std::vector<double>> ms = measure::time_in_turns(contestants, runs);
-  bvh_ms.erase(bvh_ms.begin());  // the warm-up's
+  bvh_ms.erase(bvh_ms.begin());  // drops the time of the warm-up
   row["promin_ms"] = ms[0];
   row["bvh_ms"] = bvh_ms;
   if (embree == nullptr) return;

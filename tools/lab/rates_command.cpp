@@ -35,7 +35,7 @@ void print_build(const std::string& scene, const Json& build) {
   fmt::print("\n");
 }
 
-/// Millions of the row's rays a second, by the median of these times.
+/// Returns the rate of the row's rays in millions a second, from the median of these times.
 std::string rate_of(const Json& row, const char* key) {
   if (!row.contains(key)) return "-";
   return fmt::format("{:.2f}", row["count"].get<double>() / (1e3 * quartiles_of(row, key).median));
@@ -46,7 +46,7 @@ void print_rays(const Json& row) {
   std::string ratio = "-";
   std::string differing = "-";
   if (row.contains("time_ratio")) {
-    // A ratio of rates is the inverse of the ratio of times.
+    // Returns the ratio of rates, which is the inverse of the ratio of times.
     const measure::Quartiles q = quartiles_of(row, "time_ratio");
     ratio = fmt::format("{:.3f}", 1.0 / q.median);
     quartiles = fmt::format("{:.3f}-{:.3f}", 1.0 / q.upper, 1.0 / q.lower);
@@ -85,7 +85,7 @@ void print_rates(const std::string& scene, const Json& rates) {
 }
 
 void check_options(const LabOptions& options) {
-  // A fault that would end the work half-way is found before the work begins.
+  // The command opens all scenes first, so that an error in one is found before the long work begins.
   for (const std::string& scene : options.scenes) measure::open_scene(scene);
   if (!options.rays) return;
   if (options.runs == 0U) {
@@ -125,7 +125,7 @@ app::Command add_rates_command(CLI::App& program) {
   const auto options = std::make_shared<LabOptions>();
   app::OptionTable table(command);
   add_scenes(command, table, *options);
-  // 0 runs: only counts of steps.
+  // With 0 runs the command only counts steps.
   add_measuring_options(table, *options, 0);
   table.add("--builder", "NAME", fmt::format("{} [sah]", fmt::join(builder_names(), ", ")),
             [=](const app::OptionValues& words) { options->builder = words.choice(builder_names()); });

@@ -28,14 +28,14 @@ _TRUTH_DEPTH = 50
 
 
 class Plan:
-    """The sizes of a report: of a whole one, or of a quick one that only shows that everything works."""
+    """The sizes of the measurements: of a whole report, or of a quick one that only shows that everything works."""
 
     def __init__(self, is_quick, runs):
         self.is_quick = is_quick
         self.runs = runs or (1 if is_quick else 5)
         self.flake_level = 2 if is_quick else 4
         self.flake_side = 64 if is_quick else 320
-        # POV-Ray takes squares of whole numbers, and not more than 81.
+        # POV-Ray accepts only square numbers, up to 81.
         self.samples = {
             "promin": (1, 4, 16) if is_quick else (1, 2, 4, 8, 16, 32, 64),
             "Tachyon": (1, 4) if is_quick else (1, 4, 16, 64),
@@ -54,7 +54,7 @@ class Plan:
 
 
 class Lab:
-    """The programs, in a folder of their own for pictures."""
+    """Runs the programs. Their pictures go to a folder of their own."""
 
     def __init__(self, programs, folder, plan):
         self.programs, self.folder, self.plan = programs.resolve(), folder, plan
@@ -74,18 +74,18 @@ class Lab:
         return run_program(self.programs / "promin-lab", *words, folder=self.folder)[0]
 
     def error(self, picture, truth):
-        """The root of the mean squared difference in linear light from 0 to 1."""
+        """Returns the root of the mean squared difference of two pictures in linear light from 0 to 1."""
         return json.loads(self.lab("difference", picture, truth))["rmse"]
 
     def png(self, name):
-        """A picture for the page."""
+        """Returns a picture as a data URI for the page."""
         data = base64.b64encode((self.folder / name).read_bytes()).decode("ascii")
         return f"data:image/png;base64,{data}"
 
 
 def _run_turns(contestants, runs):
-    """Maps {name: function that returns milliseconds} to {name: list}. Each contestant runs once a turn, each turn in
-    another order. A contestant that returns None drops out."""
+    """Maps {name: function that returns milliseconds} to {name: list}. Each contestant runs once in each turn, in
+    another order each time. A contestant that returns None drops out."""
     times = {name: [] for name in contestants}
     order = list(contestants)
     shuffler = random.Random(1)
@@ -98,12 +98,12 @@ def _run_turns(contestants, runs):
     return {name: taken for name, taken in times.items() if taken is not None}
 
 
-# Measurements. Each returns rows with "ms", a list with one number a run.
+# These functions measure. Each returns rows with "ms", a list with one number for each run.
 
 
 def measure_renderers(lab):
-    """Error over time on the sphereflake, by promin and by each peer that is installed. The truth of each renderer is
-    its own picture of many samples, because no two renderers model light in quite the same way."""
+    """Measures error over time on the sphereflake, for promin and for each peer that is installed. The truth of each
+    renderer is its own picture of many samples, because no two renderers model light in quite the same way."""
     plan, folder = lab.plan, lab.folder
     flake = folder / "flake.gltf"
     sphereflake(plan.flake_level, has_endless_ground=True).write(flake)
@@ -156,7 +156,7 @@ def measure_renderers(lab):
 
 
 def measure_knobs(lab, scene):
-    """Settings of promin on one scene: {"knob", "setting", "ms", "error", "name" of the pictures, ...}."""
+    """Measures settings of promin on one scene: {"knob", "setting", "ms", "error", "name" of the pictures, ...}."""
     plan = lab.plan
     size = ("--size", *plan.size)
     lab.say(f"the truth of {scene.name}")
@@ -188,7 +188,8 @@ def measure_knobs(lab, scene):
 
 
 def measure_methods(lab, scene):
-    """promin's methods beside the textbook's: one picture by both, and rays into a closed mesh, where each must hit."""
+    """Compares promin's methods with the textbook's: one picture by each, and rays into a closed mesh, where each ray
+    must hit."""
     plan = lab.plan
     lab.say("promin's methods beside the textbook's")
     output = lab.lab("methods", scene, "-o", ".", "--side", plan.size[1], "--spp", 4, "--runs", plan.runs)
@@ -210,11 +211,11 @@ def measure_methods(lab, scene):
     }
 
 
-# Words.
+# These functions write words.
 
 
 def percent(error):
-    """An error as a part of white."""
+    """Returns an error as a percentage of white."""
     return f"{100 * error:.2g} %"
 
 
@@ -233,12 +234,12 @@ def median(row):
 
 
 def ratio_of(times, others):
-    """The median of the ratios of each turn."""
+    """Returns the median of the ratios of each turn."""
     return statistics.median(a / b for a, b in zip(times, others))
 
 
 def compared(ratio):
-    """ "12 % less time than" """
+    """Returns words like "12 % less time than"."""
     if abs(ratio - 1) < 0.02:
         return "the same time as"
     if ratio >= 2:
@@ -247,7 +248,8 @@ def compared(ratio):
 
 
 def _time_at(rows, error):
-    """The time at which these rows reach an error, along straight lines of logarithms; None beyond their ends."""
+    """Returns the time at which these rows reach an error, interpolated along straight lines of logarithms. Returns
+    None for an error beyond their ends."""
     rows = sorted(rows, key=median)
     for worse, better in zip(rows, rows[1:]):
         if worse["error"] >= error >= better["error"] > 0 and worse["error"] > better["error"]:
@@ -257,7 +259,8 @@ def _time_at(rows, error):
 
 
 def renderer_sentences(figures):
-    """Says how long a peer's picture with the most samples takes, and how long promin takes for the same error."""
+    """Says how long a peer takes for its picture with the most samples, and how long promin takes for the same
+    error."""
     for name, version in figures["versions"].items():
         own = [row for row in figures["rows"] if row["renderer"] == name]
         last = own[-1]
@@ -280,7 +283,7 @@ def _time_and_error(row):
 
 
 def knob_rows(lab, knobs, methods):
-    """(name, what it is, figures in words, picture, caption) of each knob."""
+    """Returns (name, what it is, figures in words, picture, caption) of each knob."""
     by_name = {}
     for row in knobs:
         by_name.setdefault(row["knob"], []).append(row)
@@ -335,10 +338,10 @@ def knob_rows(lab, knobs, methods):
     )
 
 
-# The page.
+# These functions write the page.
 
 def plot(rows):
-    """Error over time as SVG, a line a renderer, both axes logarithmic."""
+    """Returns a chart of error over time as SVG, with a line for each renderer; both axes are logarithmic."""
     import matplotlib
 
     matplotlib.use("svg")
@@ -378,7 +381,7 @@ def _figure(source, caption):
 
 
 def page(lab, scene, renderers, knobs, methods, footer):
-    """The page, in one file that needs no other."""
+    """Returns the page as one file that needs no other."""
     plan = lab.plan
     peers = join(["promin", *renderers["versions"].values()])
     top = [

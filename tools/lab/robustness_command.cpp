@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The cost of robustness: promin's kernels beside those with the textbook's methods (tools/plain/textbook), by rays and
-// by pictures.
+// promin-lab robustness measures the cost of robustness: it compares promin's kernels with those of the textbook's
+// methods (tools/plain/textbook), with rays and with pictures.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -71,7 +71,7 @@ void measure_robustness(const LabOptions& options) {
   session.write("robustness", {{"rows", rows}});
 }
 
-/// A picture by promin's methods and by the textbook's, timed in turns.
+/// Compares a picture by promin's methods with one by the textbook's; both are timed in turns.
 void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_t samples) {
   world::Scene scene = measure::open_scene(options.scenes.front());
   add_default_lights(scene);

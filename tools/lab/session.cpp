@@ -19,11 +19,12 @@
 namespace promin::lab {
 namespace {
 
-/// Returns the name of the CPU and its maker's numbers, because virtual machines often give several models one name.
+/// Returns the name of the CPU and its maker's numbers, because several models often have the same name on virtual
+/// machines.
 std::string cpu_model() {
   std::ifstream file("/proc/cpuinfo");
   std::map<std::string, std::string> fields;
-  // Only the first core's block of lines.
+  // The loop reads only the first core's block of lines.
   for (std::string line; std::getline(file, line) && !line.empty();) {
     const size_t colon = line.find(':');
     if (colon == std::string::npos || colon + 2 > line.size()) continue;
@@ -49,7 +50,7 @@ void add_scenes(CLI::App& command, app::OptionTable& table, LabOptions& options)
   table.add_required_repeated(
       "SCENE", "SCENE", "Scene files, or wavy:N or needles:N for a mesh of about N triangles",
       [&](const app::OptionValues& words) { options.scenes.assign(words.all().begin(), words.all().end()); });
-  command.get_option("SCENE")->expected(-1);  // one or more
+  command.get_option("SCENE")->expected(-1);  // accepts one scene or more
 }
 
 void add_measuring_options(app::OptionTable& table, LabOptions& options, uint32_t fewest_runs) {

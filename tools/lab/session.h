@@ -18,11 +18,11 @@ namespace promin::lab {
 
 using Json = nlohmann::ordered_json;
 
-/// The options of the commands that measure; each command adds those that it uses.
+/// Options of the commands that measure; each command adds the options that it uses.
 struct LabOptions {
-  /// Words of measure::open_scene.
+  /// Scenes as words that measure::open_scene() understands.
   std::vector<std::string> scenes;
-  /// The file of all runs as JSON; empty for none.
+  /// The JSON file for the times of all runs; empty for no file.
   std::filesystem::path output;
   std::optional<std::string> device;
   /// The number of timed runs of each contestant.
@@ -31,20 +31,20 @@ struct LabOptions {
   uint32_t side = 1024;
   std::string builder = "sah";
   uint32_t max_depth = View().max_depth;
-  /// A folder for the rays of a picture, a .npy file a set.
+  /// A folder for the rays of a picture, with one .npy file for each set.
   std::optional<std::filesystem::path> rays;
-  /// The commit of the sources.
+  /// The commit of the sources, as text.
   std::string commit = "unknown";
 };
 
 void add_scenes(CLI::App& command, app::OptionTable& table, LabOptions& options);
-/// --device, --runs, --side, --commit and --output.
+/// Adds --device, --runs, --side, --commit and --output.
 void add_measuring_options(app::OptionTable& table, LabOptions& options, uint32_t fewest_runs);
 
 /// The device and the options of a measurement.
 class Session {
  public:
-  /// Throws DeviceError.
+  /// Opens the device. Throws DeviceError.
   explicit Session(const LabOptions& options) : options_(options), device_(gpu::open_device(options.device)) {}
 
   const LabOptions& options() const { return options_; }
@@ -55,7 +55,7 @@ class Session {
   /// Prints a line to the standard error stream.
   void say(const std::string& text) const;
 
-  /// Returns what every figure depends on: device, driver, compiler, commit, date, CPU, runs.
+  /// Returns the facts on which every figure depends: device, driver, compiler, commit, date, CPU, runs.
   Json provenance() const;
 
   /// Writes {"provenance", "rates": ...} to the options' output, if they name a file.
@@ -66,10 +66,10 @@ class Session {
   gpu::DeviceHandle device_;
 };
 
-/// Returns the view of the scene's first camera, or of one that frames it.
+/// Returns the view of the scene's first camera, or of a default camera that frames the scene.
 View view_of(const world::Scene& scene, const uvec2& size);
 
-// An array of numbers in the JSON has one number a run: times of one unit, or ratios of times of the same turn.
-// tools/lab/stats.py computes medians and intervals from them.
+// An array of numbers in the JSON has one number for each run: times in one unit, or ratios of two times of the same
+// turn. tools/lab/stats.py computes medians and intervals from them.
 
 }  // namespace promin::lab

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Statistics of runs: medians, quartiles, intervals and growth; and the files of promin-lab with all runs."""
+"""Computes statistics of runs (medians, quartiles, intervals and growth), and reads the files of promin-lab with all
+runs."""
 
 import json
 import math
@@ -15,11 +16,12 @@ def _rounded(value):
 
 
 def median_interval(values):
-    """Returns (lower, upper, confidence) of one value or more: an interval that contains the median of all that might
-    be measured, whatever the distribution, with that probability. It lies between the k-th least and the k-th largest
-    value. These miss the median as often as fewer than k of n throws of a coin are heads:
-    1 - 2 sum_{i<k} C(n, i) / 2^n. It is the narrowest interval of at least 95 %. Fewer than 6 values have none, and give the least and the largest
-    (Conover, Practical Nonparametric Statistics, 3.2)."""
+    """Returns (lower, upper, confidence) for one value or more. With that confidence, the interval from lower to upper
+    contains the true median, whatever the distribution is. The interval lies between the k-th smallest and the k-th
+    largest value. Its confidence is the chance that of n throws of a coin at least k are heads and at least k are
+    tails: 1 - 2 sum_{i<k} C(n, i) / 2^n. The function returns the narrowest such interval of at least 95 %. Fewer than
+    6 values have none, and give the smallest and the largest value (Conover, Practical Nonparametric Statistics,
+    3.2)."""
     values, count = sorted(values), len(values)
     heads, k, confidence = 1, 1, max(0.0, 1 - 2 / 2**count)
     for i in range(1, (count + 1) // 2):
@@ -31,7 +33,7 @@ def median_interval(values):
 
 
 def figures_of_times(values):
-    """Returns the figures of times or of ratios of times, one a run."""
+    """Returns the figures of times or of ratios of times, of which each run has one."""
     lower, median, upper = statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else values * 3
     least, most, confidence = median_interval(values)
     return {
@@ -46,7 +48,7 @@ def figures_of_times(values):
 
 
 def fit_doublings(xs, ys):
-    """Returns by how much y grows with each doubling of x, and the share of the variance that such a line explains."""
+    """Returns the growth of y with each doubling of x, and the fraction of the variance that such a line explains."""
     doublings = [math.log2(x) for x in xs]
     slope = statistics.linear_regression(doublings, ys).slope
     return {"per_doubling": slope, "r_squared": statistics.correlation(doublings, ys) ** 2}
@@ -57,7 +59,7 @@ def mrays_per_s(count, times):
 
 
 def _summarise(value):
-    """Arrays of runs become figures."""
+    """Replaces arrays of runs by figures."""
     if isinstance(value, list) and value and isinstance(value[0], (int, float)):
         return figures_of_times(value)
     if isinstance(value, list):
@@ -68,7 +70,7 @@ def _summarise(value):
 
 
 def read_figures(file):
-    """Returns what a file of promin-lab or of peers.py contains, with medians and rates in the place of runs."""
+    """Returns the content of a file of promin-lab or of peers.py, with medians and rates in place of the runs."""
     report = _summarise(json.loads(pathlib.Path(file).read_text(encoding="utf-8")))
     for section in ("rates", "robustness"):
         for row in report.get(section, {}).get("rows", []):

@@ -28,7 +28,8 @@ void require_same_size(const Image& a, const Image& b) {
     throw InputError({"picture.empty", "the pictures have no pixels", name_size(a), "render them again"});
 }
 
-/// Whether a pixel shows something between the values of a picture there and around it, as far as `slack`.
+/// Returns whether a pixel lies between the least and the largest value of a picture at and around it, to within
+/// `slack`.
 bool is_between_neighbours(const Image& picture, uint32_t x, uint32_t y, const vec3& pixel, float slack) {
   vec3 lo = picture.at(x, y);
   vec3 hi = lo;
@@ -77,8 +78,8 @@ ImageDifference compare_images(const Image& a, const Image& b, const CompareOpti
   require_same_size(a, b);
   ImageDifference result;
   result.pixel_count = a.pixels.size();
-  // OpenImageIO knows no edges, and a NaN that both have is equal to it: such pixels are counted here, and black or
-  // equal in what it gets to see.
+  // OpenImageIO does not treat edges differently, and takes a NaN in both pictures as equal. Therefore such pixels are
+  // counted here, and OpenImageIO gets them black or equal.
   Image first = a;
   Image second = b;
   std::vector<PixelDifference> differing;

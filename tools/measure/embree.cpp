@@ -20,7 +20,7 @@
 namespace promin::measure {
 namespace {
 
-/// What a thread takes at a time.
+/// The number of rays that a thread takes at a time.
 constexpr size_t kChunkRays = 4096;
 constexpr size_t kPacketRays = 8;
 
@@ -51,7 +51,7 @@ RTCRay ray_of(const Ray& ray) {
   return result;
 }
 
-/// The functions of Embree 3 and 4 differ in what they take beside the rays.
+/// The functions of Embree 3 and 4 take different arguments besides the rays.
 #if PROMIN_EMBREE_MAJOR >= 4
 struct Calls {
   RTCIntersectArguments intersect_arguments;
@@ -190,7 +190,7 @@ class Caster final : public EmbreeCaster {
     return std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) { return ray.origin == rays.front().origin; });
   }
 
-  /// Copies of the triangles, not yet built.
+  /// Returns a scene with copies of the triangles, whose tree is not yet built.
   BuiltScene fill_scene() const {
     BuiltScene scene(rtcNewScene(device_.get()));
     for (size_t i = 0; i < source_.objects.size(); ++i) {

@@ -12,28 +12,30 @@
 namespace promin::measure {
 
 enum class EmbreeCall {
-  /// rtcIntersect1, rtcOccluded1.
+  /// Uses rtcIntersect1 and rtcOccluded1.
   kSingle,
-  /// rtcIntersect8, rtcOccluded8.
+  /// Uses rtcIntersect8 and rtcOccluded8.
   kPackets,
 };
 
-/// Embree on all cores over the triangles of a scene, in its default settings: build quality medium, no scene flag.
+/// Casts rays with Embree on all cores over the triangles of a scene, in its default settings: build quality medium, no
+/// scene flag.
 class EmbreeCaster {
  public:
   virtual ~EmbreeCaster() = default;
 
-  /// Answers each ray in the hit at the same place, as Caster does. Returns milliseconds.
+  /// Writes the answer to each ray to the same index of `hits`, as Caster does. Returns the time in milliseconds.
   virtual double cast(std::span<const Ray> rays, std::span<Hit> hits, HitQuery query, EmbreeCall call) = 0;
 
-  /// Milliseconds of rtcCommitScene for another scene of the same triangles.
+  /// Returns the milliseconds of rtcCommitScene for another scene of the same triangles.
   virtual double time_build() = 0;
 };
 
-/// "Embree 3.13.5" and what it uses; empty where promin was built without it.
+/// Returns "Embree 3.13.5" and the instructions it uses, for example; returns an empty text if promin was built without
+/// Embree.
 std::string embree_version();
 
-/// Null where promin was built without Embree and for a scene of anything but meshes.
+/// Returns null if promin was built without Embree or the scene has other shapes than meshes.
 std::unique_ptr<EmbreeCaster> make_embree_caster(const world::Scene& scene);
 
 }  // namespace promin::measure

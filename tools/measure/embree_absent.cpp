@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for embree.cpp where there is no Embree.
+// This file replaces embree.cpp in builds without Embree.
 #include "measure/embree.h"
 
 namespace promin::measure {

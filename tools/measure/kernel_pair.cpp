@@ -24,7 +24,7 @@ RaySet make_edge_rays(const Mesh& mesh, size_t count) {
   return set;
 }
 
-/// Rays that hit in `a` and miss in `b`.
+/// Returns the number of rays that hit in `a` and miss in `b`.
 uint64_t count_only(const std::vector<Hit>& a, const std::vector<Hit>& b) {
   uint64_t count = 0;
   for (size_t i = 0; i < a.size(); ++i) count += std::isfinite(a[i].t) && !std::isfinite(b[i].t) ? 1 : 0;

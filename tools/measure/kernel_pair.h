@@ -11,26 +11,27 @@
 
 namespace promin::measure {
 
-/// What promin's kernel and a plain one (tools/plain) come to over the same rays, in turns after a warm-up.
+/// The results of promin's kernel and of a plain one (tools/plain) over the same rays, in turns after a warm-up.
 struct KernelPair {
   std::string rays;
   size_t count = 0;
-  /// Of each run.
+  /// The milliseconds of each run.
   std::vector<double> robust_ms;
   std::vector<double> plain_ms;
-  /// Of the last run; to any-hit rays only t.
+  /// The hits of the last run. For any-hit rays only t is set.
   std::vector<Hit> robust_hits;
   std::vector<Hit> plain_hits;
 
-  /// Rays with a hit by the one kernel and none by the other, whichever is right.
+  /// Returns the number of rays that only this kernel says hit, whichever kernel is right.
   uint64_t count_only_robust() const;
   uint64_t count_only_plain() const;
 };
 
 KernelPair measure_pair(Caster& robust, Caster& plain, const RaySet& set, uint32_t runs);
 
-/// Camera, shadow and random rays of a scene, `side` squared of each (shadow rays: as many as camera rays hit); and for
-/// `closed`, a scene of one closed mesh around the origin, as many from inside at its edges, each of which must hit.
+/// Returns camera, shadow and random rays of a scene. Each set has `side` squared rays; there are as many shadow rays
+/// as camera rays hit. If `closed` is true, the scene is one closed mesh around the origin; another set of the same
+/// size then starts inside and aims at its edges, so that each ray must hit.
 std::vector<RaySet> make_ray_sets(Caster& caster, const world::Scene& scene, const Camera& camera, uint32_t side,
                                   bool is_closed);
 

@@ -13,7 +13,7 @@
 namespace promin::measure {
 namespace {
 
-/// As scene_of, without a copy of the mesh.
+/// Does what scene_of() does, without a copy of the mesh.
 world::Scene scene_of_mesh(Mesh mesh, const std::string& name) {
   std::vector<world::Shape> shapes;
   shapes.emplace_back(std::move(mesh));

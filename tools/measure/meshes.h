@@ -11,27 +11,28 @@
 
 namespace promin::measure {
 
-/// A scene of these shapes with one material, without camera or light.
+/// Returns a scene of these shapes with one material, without camera or light.
 world::Scene scene_of(std::vector<world::Shape> shapes, const std::string& name = "shapes");
 
-/// A triangle of its own, of ordinary shape: about `size` across, turned as it comes.
+/// Returns a mesh of one random triangle of ordinary shape: its size is about `size`, its direction is random.
 Mesh make_triangle(const dvec3& center, Random& random, double size = 1.0);
 
-// Meshes of any size to measure with, each a scene of one object without camera or light; the same bits every time.
+// The next functions make meshes of any size to measure with. Each returns a scene of one object without camera or
+// light, with the same bits every time.
 
-/// A closed surface around the origin with waves on it, of 4 r^2 triangles for the r that comes nearest to the number
-/// asked for.
+/// Returns a closed surface around the origin with waves on it. It has 4 r^2 triangles, for the r that comes nearest to
+/// the number that is asked for.
 world::Scene make_wavy_sphere(uint32_t triangle_count);
 
-/// Long thin triangles, a fiftieth as wide as long, strewn in a ball at any angle: boxes that overlap and are mostly
-/// empty.
+/// Returns long thin triangles, a fiftieth as wide as long, that fill a ball at random angles. Their boxes overlap and
+/// are mostly empty.
 world::Scene make_needles(uint32_t triangle_count);
 
-/// What programs take for a scene: a file, or "wavy:N" and "needles:N" for a generated mesh of about N triangles, which
-/// has the word for its file. Throws InputError; UsageError for a number that is none.
+/// Opens a scene that a program's argument names: a file, or "wavy:N" and "needles:N" for a generated mesh of about N
+/// triangles. The generated scene's file name is the word. Throws InputError, and UsageError if N is not a number.
 world::Scene open_scene(const std::string& word);
 
-/// Whether open_scene has generated this scene and every ray from inside of it hits.
+/// Returns whether open_scene() has generated this scene and every ray from inside it hits.
 bool is_generated_and_closed(const world::Scene& scene);
 
 }  // namespace promin::measure

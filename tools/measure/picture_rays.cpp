@@ -22,26 +22,26 @@ bool is_black(const vec3& color) {
   return std::max({color.x, color.y, color.z}) <= 0.0F;
 }
 
-/// Of a metallic-roughness material a mirror ray of less weight is not traced (LEAST_MIRROR_WEIGHT of its shader).
+/// A metallic-roughness material does not trace a mirror ray whose weight is less (LEAST_MIRROR_WEIGHT of its shader).
 constexpr float kLeastMirrorWeight = 1.0F / 256.0F;
 
-/// What a ray has hit, and the weight of what it sees.
+/// The point that a ray has hit, and the weight of the light from it.
 struct Point {
   vec3 position{0.0F};
-  /// Where shadow rays start, before they are lifted off the surface.
+  /// Start of shadow rays, before it is lifted off the surface.
   vec3 shadow_position{0.0F};
-  /// Interpolated where the mesh has normals. Both face the ray.
+  /// The normal is interpolated if the mesh has normals. Both normals face the ray.
   vec3 normal{0.0F};
   vec3 geometric_normal{0.0F};
-  /// Of the mesh's vertices.
+  /// Color from the mesh's vertices.
   vec3 color{1.0F};
-  /// Of the ray, unit.
+  /// Direction of the ray, a unit vector.
   vec3 direction{0.0F};
   vec3 weight{0.0F};
   uint32_t material = 0;
 };
 
-/// The rules of shaders/shade/shading.glsl, lights.glsl and path.glsl as far as they decide which rays there are.
+/// The rules of shaders/shade/shading.glsl, lights.glsl and path.glsl, as far as they decide which rays are traced.
 class PictureRules {
  public:
   PictureRules(const world::Scene& scene, const View& view) : scene_(scene), view_(view) {
@@ -64,7 +64,7 @@ class PictureRules {
     return point;
   }
 
-  /// Whether the light brings anything where nothing is between.
+  /// Returns whether the light reaches the point if nothing lies between them.
   bool reaches(const Light& light, const Point& point) const {
     if (!light.is_on) return false;
     const vec3 way = has_place(light.kind) ? light.position - point.position : -direction_of(light);
@@ -98,10 +98,10 @@ class PictureRules {
   }
 
  private:
-  /// Whether the model sends the eye any of the light from a direction above the surface.
+  /// Returns whether the model reflects any light from a direction above the surface to the eye.
   static bool does_reflect(const Phong& phong, const Light& light, const Point& point, const vec3& to_light) {
     if (!is_black(phong.diffuse * point.color * light.diffuse)) return true;
-    // A narrow highlight is 0 in fp32 but for directions near its own.
+    // A narrow highlight is 0 in fp32 except for directions near its own.
     const float highlight =
         glm::dot(2.0F * glm::dot(point.normal, to_light) * point.normal - to_light, -point.direction);
     return phong.shininess > 0.0F && highlight > 0.0F &&
@@ -128,7 +128,8 @@ class PictureRules {
     return light.kind == LightKind::kHeadlight ? view_.camera.look : light.direction;
   }
 
-  /// What the mesh's vertices tell of the point. Hits have weights of the corners as the file winds them.
+  /// Computes the values at the point from the mesh's vertices. A hit's weights belong to the corners in the file's
+  /// order.
   static void interpolate(const Mesh& mesh, bool is_rewound, const Hit& hit, float side, Point& point) {
     const uvec3& corners = mesh.triangles[static_cast<size_t>(hit.primitive)];
     const vec3 weights(1.0F - hit.u - hit.v, is_rewound ? hit.v : hit.u, is_rewound ? hit.u : hit.v);
@@ -141,7 +142,7 @@ class PictureRules {
     for (int i = 0; i < 3; ++i) sum += weights[i] * side * mesh.normals[corners[i]];
     if (!(glm::length(sum) > 0.0F)) return;
     point.normal = glm::normalize(sum);
-    // As lift_to_curve of shaders/shade/shading.glsl.
+    // This is lift_to_curve() of shaders/shade/shading.glsl.
     vec3 lifted(0.0F);
     for (int i = 0; i < 3; ++i) {
       const vec3 normal = side * mesh.normals[corners[i]];

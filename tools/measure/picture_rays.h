@@ -10,15 +10,15 @@
 
 namespace promin::measure {
 
-/// The rays that a picture takes, by kind and bounce: "camera", "shadow 0", then of each bounce "mirror 1", "shadow 1".
-/// Those of one set are in the order of pixels, shadow rays source by source. They are found by the picture's rules
-/// from hits of `cast`, of one sample a pixel. Nearly all are the picture's: secondary rays start at a fixed distance
-/// off their surface instead of its bound, so where they graze they may meet something else. The figures of reports say
-/// how many the picture has traced.
+/// The rays that a picture traces, by kind and bounce: "camera", "shadow 0", then "mirror 1" and "shadow 1" of the
+/// first bounce, and so on. The rays of a set are in the order of pixels, and shadow rays then in the order of light
+/// sources. They are made by the picture's rules from hits of `cast`, with one sample a pixel. Nearly all are the rays
+/// of the picture. Secondary rays start at a fixed distance off their surface, not at its error bound; a grazing ray
+/// may therefore meet something else. The figures of reports say how many rays the picture has traced.
 struct PictureRays {
-  /// Camera rays and the shadow rays of what they hit.
+  /// The camera rays, and the shadow rays of the points that they hit.
   std::vector<RaySet> camera_stage;
-  /// All others; no set is empty.
+  /// All other rays; no set is empty.
   std::vector<RaySet> mirror_stage;
 };
 

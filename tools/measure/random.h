@@ -9,19 +9,19 @@
 
 namespace promin::measure {
 
-/// The same numbers on every platform, unlike the standard distributions: of std::mt19937_64, whose sequence the
-/// standard fixes, the upper 53 bits.
+/// Random numbers that are the same on every platform, unlike those of the standard distributions. They are the upper
+/// 53 bits of std::mt19937_64, whose sequence the standard fixes.
 class Random {
  public:
   explicit Random(uint64_t seed) : generator_(seed) {}
-  /// [0, 1).
+  /// Returns a number in [0, 1).
   double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
   double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
-  /// A unit vector, all directions alike.
+  /// Returns a unit vector; all directions are equally likely.
   dvec3 direction();
-  /// A unit vector perpendicular to a unit vector.
+  /// Returns a random unit vector that is perpendicular to the given unit vector.
   dvec3 perpendicular(const dvec3& axis);
-  /// In the triangle, all places alike.
+  /// Returns a point in the triangle; all points are equally likely.
   dvec3 inside(const dvec3& a, const dvec3& b, const dvec3& c);
 
  private:

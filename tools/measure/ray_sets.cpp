@@ -11,7 +11,7 @@ namespace promin::measure {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Of the scene's size: how far off its surface a shadow ray starts.
+/// Distance of a shadow ray's start from its surface, as a fraction of the scene's size.
 constexpr float kShadowOffset = 1e-4F;
 
 float size_of(const world::Scene& scene) {
@@ -77,7 +77,7 @@ RaySet make_random_rays(const world::Scene& scene, size_t count) {
   const Bounds bounds = bounds_of(scene);
   const dvec3 center(bounds.is_empty() ? vec3(0.0F) : bounds.center());
   const double radius = 0.5 * static_cast<double>(size_of(scene));
-  // By rejection: square roots are the same everywhere, sines are not.
+  // Points are drawn by rejection, because square roots are the same on every platform and sines are not.
   const auto point = [&] {
     dvec3 v;
     double square = 0.0;

@@ -13,7 +13,7 @@
 
 namespace promin::measure {
 
-/// Quartiles of some measurements, interpolated linearly between two of them. For tables of programs;
+/// Quartiles of some measurements, interpolated linearly between two of them. Programs print them in tables;
 /// tools/lab/stats.py computes the statistics of documents and pages.
 struct Quartiles {
   double lower = 0.0;
@@ -21,7 +21,7 @@ struct Quartiles {
   double upper = 0.0;
 };
 
-/// Of one value or more.
+/// Returns the quartiles of one value or more.
 inline Quartiles quartiles_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto at = [&](double fraction) {
@@ -33,10 +33,10 @@ inline Quartiles quartiles_of(std::vector<double> values) {
   return {at(0.25), at(0.5), at(0.75)};
 }
 
-/// The protocol of everything that is timed: each contestant once as a warm-up, whose time is thrown away, then all of
-/// them in turns, so that what else the machine does falls on all alike; each turn in another order, as what ran just
-/// before has caches full of its own: with one order for all, a depth of 16 seemed 4 % faster than 5. A contestant
-/// returns its milliseconds; the result has those of each contestant, `runs` of them.
+/// Times contestants, in the same way for every measurement. Each contestant first runs once as a warm-up, whose time
+/// is dropped. Then all run in turns, so that other work of the machine affects all alike. Each turn has another order,
+/// because the caches are full of the last contestant's data: with one order for all, a depth of 16 seemed 4 % faster
+/// than 5. A contestant returns its milliseconds. The function returns `runs` times for each contestant.
 inline std::vector<std::vector<double>> time_in_turns(std::span<const std::function<double()>> contestants,
                                                       uint32_t runs) {
   for (const std::function<double()>& contestant : contestants) contestant();
@@ -51,7 +51,7 @@ inline std::vector<std::vector<double>> time_in_turns(std::span<const std::funct
   return times_ms;
 }
 
-/// Of each turn, one contestant's time over another's: what falls on both alike is no longer in it.
+/// Returns for each turn the ratio of one contestant's time to another's. What slows both alike cancels out.
 inline std::vector<double> ratios_of(std::span<const double> times, std::span<const double> others) {
   std::vector<double> ratios;
   for (size_t i = 0; i < times.size(); ++i) ratios.push_back(times[i] / others[i]);

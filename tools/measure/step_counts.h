@@ -15,7 +15,7 @@ class DeviceScene;
 
 namespace measure {
 
-/// What a set of rays takes in all.
+/// The total numbers of steps of a set of rays.
 struct StepCounts {
   uint64_t rays = 0;
   uint64_t hits = 0;
@@ -25,12 +25,12 @@ struct StepCounts {
   bool operator==(const StepCounts&) const = default;
 };
 
-/// Counts node steps and primitive tests of rays, each traced alone and in its order (`promin cast` does so on GPUs; on
-/// lavapipe it traces packets). Counts are whole and the device's arithmetic is exact to the bit, so they do not
-/// depend on the driver.
+/// Counts node steps and primitive tests of rays. Each ray is traced alone and in its order (as `promin cast` does on
+/// GPUs; on lavapipe it traces packets). Counts are integers and the device's arithmetic is exact to the bit, so they
+/// do not depend on the driver.
 class StepCounter {
  public:
-  /// Throws UsageError for an unknown builder, RunError.
+  /// Throws UsageError if the builder is unknown, and RunError.
   StepCounter(const gpu::Device& device, const world::Scene& scene, std::string_view builder);
 
   StepCounts count(const RaySet& set) const;

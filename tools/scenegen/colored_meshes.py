@@ -1,18 +1,19 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes in formats of meshes: a PLY with colours of faces and two pictures, an STL with colours of facets."""
+"""Writes scenes in formats of meshes: a PLY with colours of faces and two pictures, an STL with colours of facets."""
 
 import itertools
 import struct
 
 from .gltf import png
 
-# The corners of a square of texture coordinates, anticlockwise, and the cube's faces anticlockwise from outside.
+# These are the corners of a square of texture coordinates, anticlockwise, and the cube's faces, anticlockwise from
+# outside.
 _SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
 _CUBE = [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), (-1, 2, 1), (1, 2, 1), (1, 2, -1), (-1, 2, -1)]
 _GROUND = [(-3, 0, 2.5), (3, 0, 2.5), (3, 0, -2.5), (-3, 0, -2.5)]
 _WHITE = (255, 255, 255)
-# Corners, texture (-1 for none), how often it repeats, and the colour.
+# Each face has its corners, its texture (-1 for none), the number of times the texture repeats, and the colour.
 _FACES = [
     ((0, 1, 5, 4), 0, 1, _WHITE),
     ((1, 2, 6, 5), 0, 2, (255, 160, 60)),
@@ -24,7 +25,7 @@ _FACES = [
 
 
 def _arrow_row(y, size=16):
-    """A row of a picture of an arrow that points up, so that no turn or mirror of it is itself."""
+    """Returns a row of a picture of an arrow that points up. No turned or mirrored arrow looks the same."""
     inside = [abs(x - 8) <= (y - 2) // 2 if y < 9 else 5 <= x < 9 for x in range(size)]
     return bytes(itertools.chain.from_iterable((230, 60, 40) if i and y >= 2 else (240, 225, 170) for i in inside))
 
@@ -52,13 +53,14 @@ def _write_ply(folder):
 
 
 def _facet(corners, color):
-    """`color` has 5 bits of red, green and blue, as Magics has them, or is None for that of the header."""
+    """Returns a facet. `color` has 5 bits of red, green and blue, as Magics has them; None means the header's
+    colour."""
     code = 0x8000 if color is None else color[0] | color[1] << 5 | color[2] << 10
     return struct.pack("<12fH", 0, 0, 0, *itertools.chain.from_iterable(corners), code)
 
 
 def _write_stl(folder):
-    """An octahedron, a colour a facet, over a square of the header's colour."""
+    """Writes an octahedron, with a colour for each facet, over a square of the header's colour."""
     facets = []
     for sx, sy, sz in itertools.product((1, -1), repeat=3):
         corners = [(1.5 * sx, 1.5, 0), (0, 1.5 + 1.5 * sy, 0), (0, 1.5, 1.5 * sz)]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""One small scene for each feature: a function each, named as its file."""
+"""Makes one small scene for each feature. Each function is named after its file."""
 
 import math
 
@@ -8,7 +8,7 @@ from . import meshes
 from .gltf import TRIANGLE_FAN, TRIANGLE_STRIP, Gltf
 from .vectors import axis_rotation, normalize, quaternion_about
 
-# Linear RGB.
+# Colours are linear RGB.
 CREAM = (0.75, 0.68, 0.56)
 CORAL = (0.8, 0.2, 0.13)
 AMBER = (0.85, 0.45, 0.08)
@@ -85,7 +85,7 @@ def cone():
     g.node("frustum", mesh=frustum, translation=(0.25, 0.5, -0.6))
     small = g.cone("small", 0.9, 0.4, _glossy(g, "small", AMBER))
     g.node("standing on its apex", mesh=small, translation=(0.25, 1.45, -0.6), rotation=(1.0, 0.0, 0.0, 0.0))
-    # A cone lies on its side when its axis dips by half its opening angle.
+    # A cone lies on its side if its axis dips by half its opening angle.
     dip = math.atan2(0.4, 0.9)
     for name, x, z, yaw_deg in (("lying", 1.75, 0.5, 20.0), ("shows its base", -0.3, 1.3, 125.0)):
         yaw = math.radians(yaw_deg)
@@ -215,7 +215,7 @@ def light_point():
     _lit_subjects(g)
     g.point_light("lamp", (0.0, 1.5, 0.5), color=(1.0, 0.92, 0.8), intensity=0.9)
     bulb = g.sphere("bulb", 0.06, g.material("bulb", (0.0, 0.0, 0.0), emissive=(1.0, 0.92, 0.8)))
-    # Above the source, so that it does not swallow it.
+    # The bulb is above the source, so that the source is not inside it.
     g.node("bulb", mesh=bulb, translation=(0.0, 1.57, 0.5))
     g.camera("camera", (0.0, 2.6, 5.2), (0.0, 0.6, 0.0))
     return g
@@ -266,7 +266,7 @@ def ambient_and_background():
         height = 0.6 + 0.5 * (i % 3)
         post = g.cylinder(name, height, 0.35, g.material(name, color))
         g.node(name, mesh=post, translation=(-2.25 + 0.9 * i, height / 2.0, 0.0))
-    # Switched off: a scene without any source would get a headlight.
+    # This source is switched off: a scene without any source would get a headlight.
     g.directional_light("off", (0.0, -1.0, 0.0), intensity=0.0)
     g.camera("camera", (0.0, 1.6, 5.6), (0.0, 0.7, 0.0))
     return g
@@ -380,7 +380,7 @@ def glass():
     g.node("floor", mesh=g.plane("floor", g.metallic_roughness("floor", CREAM, 0.0, 0.9)))
     g.directional_light("sun", (0.55, -1.0, -0.5), intensity=2.0, classic=False)
     for column, (name, color) in enumerate(PALETTE.items()):
-        # Things to see through it.
+        # These objects are seen through the glass.
         bar = g.box(name, (0.5, 1.6, 0.3), g.metallic_roughness(name, color, 0.0, 0.6))
         g.node(name, mesh=bar, translation=(-2.6 + 1.04 * column, 0.8, -2.4))
     clear = g.glass("clear", absorbed=((0.98, 0.99, 0.98), 2.0))
@@ -403,7 +403,7 @@ def glass():
 
 
 def _leaf(length, width, sag):
-    """A leaf along x from the origin, folded along its rib, of triangles on either side."""
+    """Returns a leaf along x from the origin, folded along its rib, with triangles on both sides."""
     places = [i / 8 for i in range(9)]
     positions = []
     for t in places:
@@ -419,7 +419,7 @@ def _leaf(length, width, sag):
 
 
 def _lid(radius, height, rings, columns):
-    """A dome that rises from its rim to its middle, smooth, with u around it and v outwards."""
+    """Returns a smooth dome that rises from its rim to its middle; u runs around it and v outwards."""
     positions, normals, uvs, indices = [], [], [], []
     for ring in range(rings + 1):
         r = radius * (0.02 + 0.98 * ring / rings)

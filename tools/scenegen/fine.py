@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of more detail than pixels: what pictures of a known error are held against (docs/performance.md).
+"""Makes scenes with more detail than pixels, which serve to check pictures with a known error (docs/performance.md).
 
-They are made when they are wanted and are none of scenes/, which each show a feature.
+These scenes are made on demand. They are not in scenes/, where each scene shows a feature.
 """
 
 import math
@@ -14,14 +14,15 @@ from .gltf import Gltf
 from .vectors import axis_rotation
 
 WIRES = 48
-# Half of what the camera sees from top to bottom, and the rows of a picture in which the wires are as wide as said.
+# _HALF_HEIGHT is half the height of what the camera sees; _ROWS is the number of picture rows at which the wires have
+# the stated width.
 _HALF_HEIGHT = 1.0
 _ROWS = 360
 _TEXTURE_SIZE = 256
 
 
 def wires():
-    """Wires of 1/8 to 1 pixel before a dark wall, at 360 rows; each has a direction of its own."""
+    """Makes wires of 1/8 to 1 pixel before a dark wall, at 360 rows. Each wire has a direction of its own."""
     g = Gltf()
     g.sky(SKY, (0.3,) * 3)
     g.directional_light("sun", (0.4, -0.6, -1.0), intensity=0.8)
@@ -40,7 +41,7 @@ def wires():
 
 
 def _texels(color_of, seed):
-    """Rows of RGB bytes, codes of sRGB, with noise of +-24 codes."""
+    """Returns rows of RGB bytes, codes of sRGB, with noise of +-24 codes."""
     noise = random.Random(seed)
     rows = []
     for y in range(_TEXTURE_SIZE):
@@ -63,7 +64,7 @@ def _brick(x, y):
 
 
 def textures():
-    """A floor of chequers that goes to the horizon, and a box of bricks; the textures are noisy to the texel."""
+    """Makes a floor of chequers that goes to the horizon, and a box of bricks. Each texel has its own noise."""
     g = Gltf()
     g.sky(SKY, (0.3,) * 3)
     g.directional_light("sun", (0.5, -1.0, -0.6), intensity=3.0, classic=False)

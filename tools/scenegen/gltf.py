@@ -22,7 +22,7 @@ def to_float32(x):
 
 
 def shortest(x):
-    """The number with the fewest digits that is the same fp32 number; whole numbers become int."""
+    """Returns the number with the fewest digits that rounds to the same fp32 number; integers become int."""
     wanted = to_float32(x)
     if wanted == int(wanted) and abs(wanted) < 1e6:
         return int(wanted)
@@ -30,7 +30,7 @@ def shortest(x):
 
 
 def png(rows):
-    """A PNG file of rows of RGB bytes."""
+    """Returns a PNG file of rows of RGB bytes."""
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -46,7 +46,7 @@ def _numbers(values):
 
 
 class Gltf:
-    """One scene. Every method that adds something returns its index in the file."""
+    """Holds one scene. Every method that adds something returns its index in the file."""
 
     def __init__(self):
         self._root = {"asset": {"version": "2.0", "generator": "promin tools/make_scenes.py"}}
@@ -101,7 +101,7 @@ class Gltf:
         return primitive
 
     def material(self, name, diffuse, specular=0.0, shininess=0.0, reflection=0.0, ambient=None, emissive=None):
-        """A classic Phong material. Factors are linear RGB; one number means grey."""
+        """Adds a classic Phong material. Factors are linear RGB; one number means grey."""
         self._extensions.add("PROMIN_materials_phong")
         phong = {}
         for key, factor in (("ambientFactor", ambient), ("specularFactor", specular), ("reflectionFactor", reflection)):
@@ -110,7 +110,7 @@ class Gltf:
                 phong[key] = _numbers(rgb)
         if shininess:
             phong["shininess"] = shortest(shininess)
-        # The base colour is Phong's diffuse factor and what a viewer that does not know Phong shows.
+        # The base colour is Phong's diffuse factor; viewers that do not know Phong show it.
         pbr = {"baseColorFactor": _numbers((*diffuse, 1.0)), "metallicFactor": 0}
         material = {"name": name, "pbrMetallicRoughness": pbr, "extensions": {"PROMIN_materials_phong": phong}}
         if emissive:
@@ -123,7 +123,7 @@ class Gltf:
         return self._append("materials", {"name": name, "pbrMetallicRoughness": pbr})
 
     def textured(self, name, rows, roughness=1.0):
-        """No metal, in the colours of a repeated texture: rows of RGB bytes, codes of sRGB."""
+        """Adds a material without metal and with a repeated texture: rows of RGB bytes, codes of sRGB."""
         uri = "data:image/png;base64," + base64.b64encode(png(rows)).decode()
         texture = self._append("textures", {"source": self._append("images", {"name": name, "uri": uri})})
         index = self.metallic_roughness(name, (1.0, 1.0, 1.0), 0.0, roughness)
@@ -131,7 +131,8 @@ class Gltf:
         return index
 
     def glass(self, name, base_color=(1.0, 1.0, 1.0), ior=1.5, roughness=0.0, absorbed=None):
-        """A thin wall, or with `absorbed`, a colour and the length of way after which it is left, a volume."""
+        """Adds a material of glass. It is a thin wall; `absorbed` makes it a volume: a colour, and the distance after
+        which that colour is left."""
         index = self.metallic_roughness(name, base_color, 0.0, roughness)
         extensions = {
             "KHR_materials_transmission": {"transmissionFactor": 1},
@@ -151,7 +152,7 @@ class Gltf:
         return index
 
     def coat(self, index, roughness, factor=1.0):
-        """The same material under a layer of varnish."""
+        """Puts a layer of varnish on the same material."""
         parameters = {"clearcoatFactor": shortest(factor), "clearcoatRoughnessFactor": shortest(roughness)}
         return self._extend(index, "KHR_materials_clearcoat", parameters)
 
@@ -162,14 +163,14 @@ class Gltf:
         return self._extend(index, "KHR_materials_sheen", parameters)
 
     def paper(self, name, base_color, share, color):
-        """A matt wall that scatters a share of its light to the other side, in a colour of its own."""
+        """Adds a matt wall that scatters a fraction of its light to the other side, in a colour of its own."""
         index = self.metallic_roughness(name, base_color, 0.0, 0.8)
         self._root["materials"][index]["doubleSided"] = True
         parameters = {"diffuseTransmissionFactor": shortest(share), "diffuseTransmissionColorFactor": _numbers(color)}
         return self._extend(index, "KHR_materials_diffuse_transmission", parameters)
 
     def filmed(self, name, base_color, metallic, thickness, ior=1.3, roughness=0.05):
-        """Under a thin film, of a thickness in nanometres."""
+        """Adds a material under a thin film; its thickness is in nanometres."""
         index = self.metallic_roughness(name, base_color, metallic, roughness)
         parameters = {
             "iridescenceFactor": 1,
@@ -179,13 +180,13 @@ class Gltf:
         return self._extend(index, "KHR_materials_iridescence", parameters)
 
     def brushed(self, name, base_color, roughness, strength, rotation=0.0):
-        """A metal with a grain along the texture coordinates' u, or turned from it by an angle."""
+        """Adds a metal whose grain runs along the texture coordinate u, or is turned from it by an angle."""
         index = self.metallic_roughness(name, base_color, 1.0, roughness)
         parameters = {"anisotropyStrength": shortest(strength), "anisotropyRotation": shortest(rotation)}
         return self._extend(index, "KHR_materials_anisotropy", parameters)
 
     def classic_glass(self, name, transmission, reflection, ior, fresnel=False):
-        """Classic Phong, without diffuse light."""
+        """Adds classic Phong without diffuse light."""
         index = self.material(name, (0.0, 0.0, 0.0), specular=0.5, shininess=200.0, reflection=reflection)
         phong = {"transmissionFactor": _numbers((transmission,) * 3), "ior": shortest(ior)}
         if fresnel:
@@ -225,16 +226,16 @@ class Gltf:
         return self._shape(name, "box", {"size": size}, meshes.box(*size), material)
 
     def capsule(self, name, height, radius_bottom, radius_top, material):
-        """`height` is between the centres of the spheres."""
+        """Adds a capsule. `height` is the distance between the centres of the spheres."""
         parameters = {"height": height, "radiusBottom": radius_bottom, "radiusTop": radius_top}
         return self._shape(name, "capsule", parameters, meshes.capsule(height, radius_bottom, radius_top, 12), material)
 
     def plane(self, name, material, fallback_size=40.0):
-        """The infinite plane y = 0."""
+        """Adds the infinite plane y = 0."""
         return self._shape(name, "plane", {}, meshes.rectangle(fallback_size, fallback_size), material)
 
     def node(self, name, parent=None, translation=None, rotation=None, scale=None, **links):
-        """links: mesh=, camera=, light= with an index. A uniform scale may be one number."""
+        """Adds a node. links: mesh=, camera=, light= with an index. A uniform scale may be one number."""
         node = {"name": name}
         if "light" in links:
             self._extensions.add("KHR_lights_punctual")
@@ -285,7 +286,7 @@ class Gltf:
         return self._light(name, "spot", color, intensity, True, placement, spot=spot)
 
     def sky(self, background, ambient):
-        """The background's colour and the ambient brightness i_a, linear RGB."""
+        """Sets the background's colour and the ambient brightness i_a, both linear RGB."""
         sky = {"type": "plain", "plain": {"color": _numbers(background)}, "ambientLightColor": _numbers(ambient)}
         index = self._append_to_extension("OMI_environment_sky", "skies", {**sky, "ambientSkyContribution": 0})
         self._root["scenes"][0]["extensions"] = {"OMI_environment_sky": {"sky": index}}
@@ -305,7 +306,8 @@ class Gltf:
 
 
 def _format(root):
-    """One line for each entry of a top-level list: a scene that people read and compare line by line."""
+    """Returns JSON with one line for each entry of a top-level list, so that people can read and compare scenes line by
+    line."""
     lines = []
     for key, value in root.items():
         if isinstance(value, list) and value and isinstance(value[0], dict):

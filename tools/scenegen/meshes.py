@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Triangle meshes. Corners run anticlockwise seen from outside."""
+"""Makes triangle meshes. Corners run anticlockwise seen from outside."""
 
 import itertools
 import math
@@ -13,7 +13,7 @@ _GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 
 @dataclass
 class Mesh:
-    """Empty normals mean sharp triangles."""
+    """Holds a mesh. Empty normals mean flat triangles."""
 
     positions: list
     indices: list
@@ -23,7 +23,7 @@ class Mesh:
 
 
 def rectangle(width, depth):
-    """In the plane y = 0, facing +Y."""
+    """Returns a rectangle in the plane y = 0 that faces +Y."""
     x, z = width / 2.0, depth / 2.0
     return Mesh([(-x, 0.0, z), (x, 0.0, z), (x, 0.0, -z), (-x, 0.0, -z)], [0, 1, 2, 0, 2, 3])
 
@@ -36,7 +36,8 @@ def box(width, height, depth):
 
 
 def tiled(mesh, tile_size):
-    """The sharp triangles of a mesh, each with texture coordinates along the two axes that it faces least."""
+    """Returns the flat triangles of a mesh. The texture coordinates of each run along the two axes that it faces
+    least."""
     positions, uvs = [], []
     for corners in zip(*[iter(mesh.indices)] * 3):
         a, b, c = (mesh.positions[i] for i in corners)
@@ -48,7 +49,7 @@ def tiled(mesh, tile_size):
 
 
 def frustum(height, radius_bottom, radius_top, sides):
-    """Stands along Y, centred, closed; a radius of 0 gives a cone."""
+    """Returns a closed frustum that stands along Y and is centred; a radius of 0 gives a cone."""
     positions, rings = [], []
     for y, radius in ((-height / 2.0, radius_bottom), (height / 2.0, radius_top)):
         corners = sides if radius > 0.0 else 1
@@ -69,7 +70,7 @@ def frustum(height, radius_bottom, radius_top, sides):
 
 
 def capsule(height, radius_bottom, radius_top, sides):
-    """The hull of two spheres around -+height / 2 along Y, in rings of corners between two poles."""
+    """Returns the hull of two spheres around -+height / 2 along Y, as rings of corners between two poles."""
     sine = (radius_bottom - radius_top) / height
     touching = math.asin(sine)
     steps = sides // 4
@@ -99,7 +100,7 @@ def capsule(height, radius_bottom, radius_top, sides):
 
 
 def _convex_hull(points):
-    """The triangles of a small convex polyhedron; brute force over all triples of corners."""
+    """Returns the triangles of a small convex polyhedron. The search tries all triples of corners."""
     indices = []
     for a, b, c in itertools.permutations(range(len(points)), 3):
         if a < b and a < c:
@@ -137,7 +138,7 @@ def stellated(mesh, height):
 
 
 def icosphere(radius, subdivisions):
-    """A subdivided icosahedron without normals."""
+    """Returns a subdivided icosahedron without normals."""
     mesh = icosahedron(1.0)
     positions, indices = mesh.positions, mesh.indices
     for _ in range(subdivisions):
@@ -159,7 +160,7 @@ def icosphere(radius, subdivisions):
 
 
 def smooth(mesh):
-    """The same mesh with vertex normals: the mean of the triangles' normals, weighted by area."""
+    """Returns the same mesh with vertex normals: the mean of the triangles' normals, weighted by area."""
     sums = [(0.0, 0.0, 0.0)] * len(mesh.positions)
     for i in range(0, len(mesh.indices), 3):
         corners = mesh.indices[i : i + 3]
@@ -171,7 +172,7 @@ def smooth(mesh):
 
 
 def torus_grid(rows, columns, surface):
-    """A closed grid surface(u, v), u and v in [0, 1), periodic in both, with smooth normals.
+    """Returns a closed grid of the points surface(u, v), with smooth normals. u and v are in [0, 1) and periodic.
 
     du x dv must point outward.
     """
@@ -193,9 +194,10 @@ def torus(major, minor, rows, columns):
 
 
 def torus_knot(p, q, major, minor, tube, flutes, twists, depth, rows, columns):
-    """A (p, q) torus knot about the Y axis: a tube of fluted, twisting section.
+    """Returns a (p, q) torus knot about the Y axis: a tube with a fluted, twisting section.
 
-    p turns about the axis, q through the hole. `flutes` grooves of relative `depth` make `twists` turns on the way.
+    The knot goes p times about the axis and q times through the hole. The tube has `flutes` grooves of relative
+    `depth`, which make `twists` turns on the way.
     """
 
     def surface(u, v):
@@ -209,7 +211,8 @@ def torus_knot(p, q, major, minor, tube, flutes, twists, depth, rows, columns):
                 ring_slope * math.sin(around) + ring * p * math.cos(around),
             )
         )
-        # The frame follows the torus: one side points away from the middle of its tube, so it closes by itself.
+        # The frame follows the torus: one axis points away from the middle of the torus' tube, so that the frame
+        # closes.
         outward = sub(here, (major * math.cos(around), 0.0, major * math.sin(around)))
         side = normalize(sub(outward, scale(tangent, dot(outward, tangent))))
         other = cross(tangent, side)

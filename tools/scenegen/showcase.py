@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The picture that opens the README: every primitive, mirrors, and hard shadows of coloured sources."""
+"""Makes the picture at the top of the README: every primitive, mirrors, and hard shadows of coloured sources."""
 
 import math
 
@@ -32,8 +32,8 @@ def _polished(g, name, color, specular=0.45, shininess=60.0, reflection=0.08):
 
 
 def _floor_and_light(g):
-    # Far away the floor sees the point sources at a grazing angle and only the directional one adds to it: these
-    # factors make it fade into the background at the horizon.
+    # Far away, the point sources shine on the floor at a grazing angle and only the directional source adds light. With
+    # these factors the floor fades into the background at the horizon.
     reflection = 0.18
     sun = 0.22
     elevation = math.cos(math.radians(40.0))
@@ -96,7 +96,7 @@ def _solids(g):
 
 
 def _pearls(g):
-    """A row of small spheres curves around the pedestal."""
+    """Adds a row of small spheres that curves around the pedestal."""
     colors = (
         (0.8, 0.2, 0.1),
         (0.85, 0.48, 0.08),

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The sphereflake, "balls" of Eric Haines' Standard Procedural Databases (IEEE CG&A 7(11), 1987).
+"""Makes the sphereflake, "balls" of Eric Haines' Standard Procedural Databases (IEEE CG&A 7(11), 1987).
 
-Every sphere carries nine of a third of its radius: six around its equator and three above, where the corners of a
-cuboctahedron lie; 1 + 9 + ... + 9^level spheres. Camera, sources and colours are the database's, turned to Y up.
+Every sphere carries nine spheres of a third of its radius: six around its equator and three above, at the corners of a
+cuboctahedron. There are 1 + 9 + ... + 9^level spheres. Camera, sources and colours are the database's, turned to Y up.
 """
 
 import math
@@ -28,7 +28,7 @@ def _rotate(quaternion, vector):
 
 
 def spheres(level, center=(0.0, 0.0, 0.0), radius=0.5, axis=(0.0, 1.0, 0.0)):
-    """Yields (center, radius), parents first."""
+    """Yields (center, radius) of each sphere, parents before their children."""
     yield center, radius
     if level == 0:
         return
@@ -43,7 +43,7 @@ def _y_up(x, y, z):
 
 
 def sphereflake(level, has_endless_ground=False):
-    """On the database's square, or on an endless plane in its place."""
+    """Returns a sphereflake on the database's square, or on an endless plane in its place."""
     g = Gltf()
     g.sky((0.078, 0.361, 0.753), (0.0, 0.0, 0.0))
     ground = g.material("ground", (0.8, 0.6, 0.264))

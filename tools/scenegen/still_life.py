@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A still life on a table: wood, velvet, glazed china, fruit, glass, gold, brushed steel and a lantern of paper."""
+"""Makes a still life on a table: wood, velvet, glazed china, fruit, glass, gold, brushed steel and a lantern of
+paper."""
 
 import itertools
 import math
@@ -10,7 +11,7 @@ from . import meshes
 from .gltf import Gltf
 from .vectors import quaternion_about
 
-# A lamp with a surface is a grid of point sources. Together they make the soft edges of its shadows.
+# A lamp with a surface is a grid of point sources, so that its shadows have soft edges.
 _LAMP_SIDE = 3
 
 
@@ -30,7 +31,8 @@ def still_life():
 
 
 def _spline(points, steps):
-    """A smooth line through points of any dimension (Catmull and Rom), `steps` to a piece."""
+    """Returns a smooth line through points of any dimension (Catmull and Rom), with `steps` steps between two
+    points."""
     padded = [points[0], *points, points[-1]]
     line = []
     for a, b, c, d in zip(padded, padded[1:], padded[2:], padded[3:]):
@@ -47,8 +49,8 @@ def _spline(points, steps):
 
 
 def _turned(profile, columns, flutes=0, depth=0.0):
-    """A closed surface about the Y axis. The profile of (radius, height) begins and ends on the axis; what lies to its
-    left, as one follows it, is inside. `flutes` grooves of a relative `depth` run along it."""
+    """Returns a closed surface about the Y axis. The profile of (radius, height) begins and ends on the axis; the
+    inside is to the left of the profile's direction. `flutes` grooves of a relative `depth` run along it."""
     rows = len(profile)
     positions, places = [], []
     for radius, y in profile:
@@ -65,7 +67,7 @@ def _turned(profile, columns, flutes=0, depth=0.0):
         if profile[i + 1][0] > 0.0:
             indices += [lower[j], upper[j + 1], upper[j]]
     closed = meshes.smooth(meshes.Mesh(positions, indices))
-    # The first and the last column are one place, with different texture coordinates.
+    # The first and the last column are at the same place, with different texture coordinates.
     seam = [k for row in places for k in row]
     stride = columns + 1
     first_of = {k: at for at, k in reversed(list(enumerate(seam)))}
@@ -79,7 +81,7 @@ def _turned(profile, columns, flutes=0, depth=0.0):
 
 
 def _noise(seed, size):
-    """A smooth function of two numbers with the period `size`, -1 to 1."""
+    """Returns a smooth function of two numbers with the period `size` and values from -1 to 1."""
     values = random.Random(seed)
     grid = [[values.uniform(-1.0, 1.0) for _ in range(size)] for _ in range(size)]
 
@@ -94,7 +96,8 @@ def _noise(seed, size):
 
 
 def _picture(width, height, color_of):
-    """Rows of RGB bytes; `color_of` gives codes of sRGB, 0 to 255, in steps of 4, which compress well."""
+    """Returns rows of RGB bytes. `color_of` returns codes of sRGB, 0 to 255, rounded to steps of 4, which compress
+    well."""
 
     def code(value):
         return 4 * min(63, max(0, round(value / 4.0)))
@@ -127,7 +130,7 @@ def _table(g):
 
 
 def _runner(g):
-    """A cloth across the table, with folds."""
+    """Adds a cloth across the table, with folds."""
     columns, rows = 110, 64
     folds = _noise(5, 32)
 
@@ -150,7 +153,8 @@ def _runner(g):
 
 
 def _glaze(x, y):
-    """White with blue bands and a frieze of leaves: the texture of the bowl. Its rim is in the middle."""
+    """Returns the texture of the bowl: white with blue bands and a frieze of leaves. The bowl's rim is in the
+    middle."""
     white, blue = (236.0, 236.0, 230.0), (30.0, 58.0, 150.0)
     v, phase = y / 256.0, math.tau * x / 512.0 * 16.0
     stem = 0.62 + 0.012 * math.sin(phase)
@@ -167,7 +171,7 @@ def _bowl_of_fruit(g):
     bowl = _turned(_spline(outside + inside, 5), 96)
     where = (0.1, 0.08, 0.1)
     g.node("bowl", mesh=g.mesh("bowl", bowl, china), translation=where)
-    # An apple: a dimple above and below.
+    # The profile of an apple has a dimple above and below.
     lower = [(0.0, -0.33), (0.1, -0.37), (0.27, -0.36), (0.42, -0.2), (0.47, 0.06)]
     upper = [(0.42, 0.27), (0.28, 0.4), (0.12, 0.4), (0.05, 0.33), (0.0, 0.27)]
     apple = _turned(_spline(lower + upper, 5), 56, flutes=5, depth=0.012)
@@ -203,7 +207,7 @@ def _bowl_of_fruit(g):
 
 
 def _bottle(g):
-    """Its glass has some thickness; a stopper closes it."""
+    """Adds a bottle of glass with some thickness; a stopper closes it."""
     outer = [(0.0, 0.0), (0.5, 0.0), (0.64, 0.07), (0.7, 0.4), (0.68, 0.95), (0.5, 1.4), (0.22, 1.72), (0.17, 2.05)]
     rim = [(0.2, 2.2), (0.26, 2.26), (0.2, 2.3), (0.14, 2.26)]
     inner = [(0.11, 2.0), (0.15, 1.72), (0.42, 1.37), (0.6, 0.95), (0.62, 0.42), (0.55, 0.17), (0.4, 0.11), (0.0, 0.14)]
@@ -240,7 +244,7 @@ def _armillary(g):
 
 
 def _globe(radius, rows, columns):
-    """Positions, indices, normals, no colours, texture coordinates."""
+    """Returns positions, indices, normals, no colours, and texture coordinates."""
     profile = [(math.sin(math.pi * i / rows), -math.cos(math.pi * i / rows)) for i in range(rows + 1)]
     profile[0], profile[-1] = (0.0, -1.0), (0.0, 1.0)
     sphere = _turned(profile, columns)
@@ -250,7 +254,7 @@ def _globe(radius, rows, columns):
 
 
 def _lantern(g):
-    """A fluted shade of paper, which scatters the light of a lamp inside it to the outside."""
+    """Adds a fluted shade of paper, which scatters the light of a lamp inside it to the outside."""
     paper = g.paper("paper", (0.86, 0.8, 0.68), 0.6, (1.0, 0.86, 0.6))
     outline = [(0.34, 0.12), (0.62, 0.42), (0.72, 0.95), (0.62, 1.48), (0.34, 1.78)]
     rows, columns, flutes = 32, 160, 16
@@ -294,7 +298,7 @@ def _small_things(g):
 
 
 def _lamp(g, name, center, side, color, candela):
-    """A square of point sources that faces the middle of the table."""
+    """Adds a square of point sources that faces the middle of the table."""
     toward = meshes.normalize(tuple(-c for c in center))
     right = meshes.normalize((toward[2], 0.0, -toward[0]))
     up = (

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Vectors as tuples, quaternions as glTF has them (x, y, z, w)."""
+"""Vectors are tuples; quaternions are (x, y, z, w) as in glTF."""
 
 import math
 
@@ -18,7 +18,7 @@ def scale(a, s):
 
 
 def dot(a, b):
-    # Not sum(): Python 3.12 changed how that rounds, and the scenes must not depend on the version.
+    # The loop replaces sum(), because Python 3.12 changed its rounding and the scenes must not depend on the version.
     total = 0.0
     for x, y in zip(a, b):
         total += x * y
@@ -38,20 +38,20 @@ def normalize(a):
 
 
 def quaternion_about(axis, angle_deg):
-    """The rotation about an axis (any length), anticlockwise seen from its tip."""
+    """Returns the rotation about an axis (any length), anticlockwise seen from its tip."""
     half = math.radians(angle_deg) / 2.0
     return scale(normalize(axis), math.sin(half)) + (math.cos(half),)
 
 
 def multiply(p, q):
-    """The quaternion that rotates by q first, then by p."""
+    """Returns the quaternion that rotates by q first, then by p."""
     pv, qv = p[:3], q[:3]
     vector = add(add(scale(qv, p[3]), scale(pv, q[3])), cross(pv, qv))
     return vector + (p[3] * q[3] - dot(pv, qv),)
 
 
 def quaternion_from_basis(right, up, back):
-    """The rotation that takes +X, +Y, +Z to these orthonormal vectors."""
+    """Returns the rotation that takes +X, +Y, +Z to these orthonormal vectors."""
     m = list(zip(right, up, back))
     trace = m[0][0] + m[1][1] + m[2][2]
     if trace > 0.0:
@@ -66,7 +66,7 @@ def quaternion_from_basis(right, up, back):
 
 
 def look_rotation(direction, up=(0.0, 1.0, 0.0)):
-    """The rotation of a camera or light that looks along `direction` (glTF: they look along -Z)."""
+    """Returns the rotation of a camera or light that looks along `direction` (in glTF they look along -Z)."""
     back = normalize(scale(direction, -1.0))
     if abs(dot(back, normalize(up))) > 0.999999:
         up = (0.0, 0.0, -1.0)
@@ -75,7 +75,7 @@ def look_rotation(direction, up=(0.0, 1.0, 0.0)):
 
 
 def axis_rotation(axis):
-    """The shortest rotation that takes +Y to `axis`."""
+    """Returns the shortest rotation that takes +Y to `axis`."""
     x, y, z = normalize(axis)
     if y < -0.999999:
         return (1.0, 0.0, 0.0, 0.0)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The OBJ scenes: faces of any number of corners, concave ones too, with several materials in an MTL file; and maps of
-heights."""
+"""Makes the OBJ scenes: faces with any number of corners, also concave ones, with several materials in an MTL file; and
+height maps."""
 
 import math
 
@@ -30,7 +30,7 @@ class _Obj:
         self.count = 0
 
     def prism(self, name, outline, bottom, top, side_material, cap_material):
-        """Stands on `outline`, (x, z) anticlockwise seen from above; each cap is one face."""
+        """Adds a prism on `outline`, (x, z) anticlockwise seen from above; each cap is one face."""
         n = len(outline)
         self.lines.append(f"o {name}")
         for y in (bottom, top):
@@ -49,12 +49,12 @@ class _Obj:
     def quad(self, name, corners, material):
         self.lines.append(f"o {name}")
         self.lines += [f"v {x:.5g} {y:.5g} {z:.5g}" for x, y, z in corners]
-        # Counted from the end, as OBJ allows.
+        # These indices count from the end, as OBJ allows.
         self.lines += [f"usemtl {material}", "f -4 -3 -2 -1"]
         self.count += 4
 
     def tile(self, name, x, material):
-        """A square with texture coordinates, seen from +z."""
+        """Adds a square with texture coordinates, seen from +z."""
         self.lines.append(f"o {name}")
         self.lines += [f"v {x + u:.5g} {v} 0\nvt {u} {v}" for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))]
         self.lines += [f"usemtl {material}", "f -4/-4 -3/-3 -2/-2 -1/-1"]
@@ -66,7 +66,7 @@ class _Obj:
 
 
 def _regular(corners, radius, x, z, inner_radius=None):
-    """A regular outline around (x, z); with an inner radius a star of twice the corners."""
+    """Returns a regular outline around (x, z); an inner radius makes it a star with twice the corners."""
     radii = [radius] if inner_radius is None else [radius, inner_radius]
     count = corners * len(radii)
     outline = []
@@ -88,7 +88,7 @@ def _write_materials(folder):
 
 
 def _dome_row(y, size=16):
-    """A row of a picture of one dome, in whole numbers."""
+    """Returns a row of a picture of one dome, in integers."""
     heights = [max(0, 255 - ((2 * x + 1 - size) ** 2 + (2 * y + 1 - size) ** 2) * 255 // (size * size)) for x in range(size)]
     return bytes(channel for height in heights for channel in (height, height, height))
 

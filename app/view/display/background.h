@@ -13,16 +13,16 @@ namespace promin::app {
 template <typename Result>
 class Background {
  public:
-  /// Must not be called while busy.
+  /// Starts work; must not be called while busy.
   template <typename Work>
   void start(Work work) {
     result_ = std::async(std::launch::async, std::move(work));
   }
 
-  /// True until the result is taken.
+  /// Returns whether work was started whose result has not been taken.
   bool is_busy() const { return result_.valid(); }
   bool is_ready() const { return is_busy() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
-  /// Returns the result when it is ready. Throws what the work threw.
+  /// Returns the result when it is ready. Throws the exception of the work.
   std::optional<Result> take() { return is_ready() ? std::optional<Result>(result_.get()) : std::nullopt; }
   void wait() const {
     if (is_busy()) result_.wait();

@@ -24,7 +24,7 @@ DeviceWork::~DeviceWork() {
     const vk::Result result = device_->handle().waitForFences({*fence_}, VK_TRUE, std::numeric_limits<uint64_t>::max());
     static_cast<void>(result);
   } catch (const vk::SystemError&) {
-    // The device was lost; an earlier exception has reported it.
+    // If the device was lost, an earlier exception has reported it.
   }
 }
 

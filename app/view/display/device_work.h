@@ -17,9 +17,9 @@ class DeviceWork {
   DeviceWork(const DeviceWork&) = delete;
   DeviceWork& operator=(const DeviceWork&) = delete;
 
-  /// Begins to record; must not be called while busy.
+  /// Begins to record commands; must not be called while busy.
   const vk::raii::CommandBuffer& begin();
-  /// Records a timestamp at this point of the commands; at most kMostMarks.
+  /// Records a timestamp at this point of the commands; at most kMostMarks times.
   void mark();
   /// Submits the recorded commands. They wait for a semaphore and signal one, if these are not null.
   void submit(vk::Semaphore wait = {}, vk::Semaphore signal = {});
@@ -27,10 +27,10 @@ class DeviceWork {
   void drop() { commands_.end(); }
 
   bool is_busy() const { return is_busy_; }
-  /// Returns whether the submitted commands have finished; true only once.
+  /// Returns whether the submitted commands have finished. It returns true only once for each submission.
   bool take_finished();
-  /// Returns the milliseconds between a mark and the next, for the commands that finished last; 0 if the device has no
-  /// timestamps.
+  /// Returns the milliseconds between a mark and the next mark in the commands that finished last; 0 if the device has
+  /// no timestamps.
   double ms_after(uint32_t mark) const;
 
   static constexpr uint32_t kMostMarks = 4;

@@ -6,27 +6,27 @@
 
 namespace promin::app {
 
-/// Device time of a frame's stages, in milliseconds; 0 where the queue has no timestamps.
+/// Device times of a frame's stages, in milliseconds; 0 if the queue has no timestamps.
 struct StageTimes {
   double trace = 0.0;
-  /// Encoding for the display.
+  /// Time for encoding the picture for the display.
   double display = 0.0;
 };
 
-/// The data of a frame of tracing after the device has finished it.
+/// The data of a traced frame after the device has finished it.
 struct FinishedFrame {
   StageTimes stages;
   RayCounts rays;
-  /// Whether the driver has cut loops (trace/film/film.h), so that pixels are wrong.
+  /// True if the driver has cut loops (trace/film/film.h), so that pixels are wrong.
   bool has_cut_loops = false;
-  /// The units of tracing (ProgressivePicture::record).
+  /// The amount of tracing, in units (ProgressivePicture::record).
   double units = 0.0;
-  /// Whether they are samples of refinement (ProgressivePicture::has_recorded_list).
+  /// True if the frame traced samples of refinement (ProgressivePicture::has_recorded_list).
   bool has_list = false;
-  /// Whether it shows the next camera of a flight.
+  /// True if the frame shows the next camera of a flight.
   bool is_of_flight = false;
-  /// The time to its end from its first request, or from the end of the previous frame if that was later. Idle time
-  /// does not count.
+  /// Milliseconds from the frame's first request, or from the end of the previous frame if that was later, to the
+  /// frame's end. Idle time does not count.
   double time_ms = 0.0;
 };
 

@@ -30,7 +30,7 @@ void FrameQueue::poll() {
 void FrameQueue::finish() {
   device_->wait_idle();
   poll();
-  // The image that was presented last belongs to the queue until the device is idle again.
+  // The queue may use the image that was presented last until the device is idle again.
   device_->wait_idle();
 }
 

@@ -13,14 +13,14 @@ class FrameQueue {
   FrameQueue(std::shared_ptr<const gpu::Device> device, Swapchain& swapchain);
 
   bool is_idle() const { return !work_.is_busy(); }
-  /// Begins drawing to the next image of the swapchain; null if none is free now.
+  /// Begins to draw to the next image of the swapchain. Returns null if no image is free now.
   const vk::raii::CommandBuffer* begin();
   uint32_t image() const { return image_; }
   /// Submits the recorded commands.
   void submit();
   /// Presents a finished image, if the device presents late (DeviceProfile).
   void poll();
-  /// Waits until the device is idle, then polls.
+  /// Waits until the device is idle, then calls poll().
   void finish();
 
  private:

@@ -31,7 +31,7 @@ vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
 
 void upload_fonts([[maybe_unused]] const gpu::Device& device) {
 #if IMGUI_VERSION_NUM >= 19000
-  // This version submits to the queue by itself.
+  // This version of ImGui submits to the queue itself.
   device.use_queue([](const vk::raii::Queue&) { ImGui_ImplVulkan_CreateFontsTexture(); });
 #else
   device.run([](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
@@ -62,7 +62,7 @@ ImguiRenderer::ImguiRenderer(const gpu::Device& device, Window& window, const Sw
 }
 
 void ImguiRenderer::set_scale(const OverlayScale& scale) {
-  // Every version makes ImGui's textures, and the fonts in them, when the backend starts.
+  // Every version of ImGui creates its textures, including the fonts, when the backend starts.
   ImGui_ImplVulkan_Shutdown();
   scale_ = scale;
   start_backend();
@@ -100,8 +100,8 @@ ImguiRenderer::~ImguiRenderer() {
 
 void ImguiRenderer::begin_frame() {
   ImGui_ImplVulkan_NewFrame();
-  // ImGui_ImplGlfw_NewFrame() asks the display for what the window knows, and waits for each answer: on a busy machine
-  // for tens of milliseconds.
+  // Shortest time between frames in seconds. ImGui_ImplGlfw_NewFrame() is not used, because it queries the display for
+  // what the window already knows and waits for each answer, which takes tens of milliseconds on a busy machine.
   constexpr double kLeastTime = 1e-5;
   ImGuiIO& io = ImGui::GetIO();
   const auto ratio = static_cast<float>(window_->pixel_ratio());
@@ -111,7 +111,7 @@ void ImguiRenderer::begin_frame() {
   const double now = Window::now();
   io.DeltaTime = static_cast<float>(std::max(now - std::exchange(last_frame_s_, now), kLeastTime));
 #if IMGUI_VERSION_NUM < 18700
-  // Later versions have it from the callbacks that they have set.
+  // Later versions receive this position from the callbacks that they have set.
   constexpr float kNowhere = std::numeric_limits<float>::max();
   const std::optional<dvec2> pointer = window_->pointer();
   io.MousePos =

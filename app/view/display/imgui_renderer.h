@@ -7,13 +7,13 @@
 
 namespace promin::app {
 
-/// Whether Escape goes down in this frame of ImGui.
+/// Returns whether the Escape key goes down in this frame of ImGui.
 bool is_escape_pressed();
 
-/// Dear ImGui for a window: its context and its backends of GLFW and Vulkan. The one place that knows its versions.
+/// Dear ImGui for a window: its context and its backends for GLFW and Vulkan. No other code depends on ImGui's version.
 class ImguiRenderer {
  public:
-  /// Throws vk::SystemError.
+  /// Creates ImGui's context and backends. Throws vk::SystemError.
   ImguiRenderer(const gpu::Device& device, Window& window, const Swapchain& swapchain);
   ~ImguiRenderer();
   ImguiRenderer(const ImguiRenderer&) = delete;
@@ -23,10 +23,10 @@ class ImguiRenderer {
   void set_scale(const OverlayScale& scale);
   const OverlayScale& scale() const { return scale_; }
 
-  /// Call functions of ImGui between these two.
+  /// begin_frame() and end_frame() enclose all calls of ImGui in a frame.
   void begin_frame();
   void end_frame();
-  /// Records drawing ImGui's content within a render pass of the swapchain.
+  /// Records the drawing of ImGui's content within a render pass of the swapchain.
   void record(const vk::raii::CommandBuffer& commands) const;
 
   bool wants_keys() const;

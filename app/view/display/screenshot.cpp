@@ -29,7 +29,7 @@ size_t area_of(const View& view) {
   return static_cast<size_t>(view.size.x) * view.size.y;
 }
 
-/// Of Aovs::unlit, summed over samples; none of none.
+/// Returns the channels of Aovs::unlit, computed from sums over samples; empty if there are no sums.
 std::vector<Channel> list_unlit_channels(std::span<const uvec4> sums, uint32_t samples) {
   Aovs aovs;
   for (const uvec4& sum : sums) aovs.unlit.push_back(std::bit_cast<vec4>(sum) / static_cast<float>(samples));

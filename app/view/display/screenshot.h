@@ -14,23 +14,23 @@
 
 namespace promin::app {
 
-/// Writes pictures of the window to files: a given one, or promin-NNNN.exr and .png with the next number that is free
-/// in the working folder. It writes one at a time, and the window does not wait.
+/// Writes pictures of the window to files: to a given file, or to promin-NNNN.exr and .png in the working folder, with
+/// the next free number. It writes one picture at a time, and the window does not wait.
 class Screenshot {
  public:
   bool is_busy() const { return copy_.has_value() || written_.valid(); }
-  /// Records copying a film that holds all of the picture; `has_unlit` as ProgressivePicture::has_unlit. Must not be
-  /// called while busy.
+  /// Records a copy of a film that contains the whole picture. `has_unlit` is the result of
+  /// ProgressivePicture::has_unlit(). Must not be called while busy.
   void record_copy(std::shared_ptr<const gpu::Device> device, const vk::raii::CommandBuffer& commands,
                    const gpu::Buffer& film, const View& view, bool has_unlit);
-  /// Is called when the device has done that; writes on a thread of its own.
+  /// Writes the picture on a separate thread. To be called after the device has finished the copy.
   void write(const Metadata& metadata, const DisplayTransform& display,
              const std::optional<std::filesystem::path>& file);
-  /// Is called instead of writing, where the copy is not wanted after all.
+  /// Discards the copy. To be called in place of write() if the copy is not needed.
   void drop() { copy_.reset(); }
-  /// Waits until the picture is written; the device must have finished.
+  /// Waits until the picture is written. The device must have finished the copy.
   void wait() const;
-  /// A sentence about what was written, once it is. Throws RunError.
+  /// Returns a sentence about the written files after they are written. Throws RunError.
   std::optional<std::string> take();
 
  private:
@@ -40,8 +40,8 @@ class Screenshot {
   std::future<std::string> written_;
 };
 
-/// promin-NNNN, with the first number for which neither an .exr nor a .png is in the folder. Throws RunError when all
-/// are taken.
+/// Returns the name promin-NNNN with the first number for which the folder contains neither an .exr nor a .png. Throws
+/// RunError if all numbers are used.
 std::string find_free_name(const std::filesystem::path& folder);
 
 }  // namespace promin::app

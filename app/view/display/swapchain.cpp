@@ -16,8 +16,8 @@ bool is_srgb(vk::Format format) {
   return format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eR8G8B8A8Srgb;
 }
 
-/// Chooses a format of eight bits and sRGB colours. A format that takes encoded values is preferred to one that
-/// encodes, because the overlay's colours are meant for the former.
+/// Chooses a format of eight bits and sRGB colours. A format that receives encoded values is preferred to one that
+/// encodes linear values, because the overlay's colours are encoded values.
 vk::SurfaceFormatKHR choose_format(const std::vector<vk::SurfaceFormatKHR>& formats) {
   const std::array wanted{vk::Format::eB8G8R8A8Unorm, vk::Format::eR8G8B8A8Unorm, vk::Format::eB8G8R8A8Srgb,
                           vk::Format::eR8G8B8A8Srgb};
@@ -36,7 +36,7 @@ vk::raii::RenderPass make_render_pass(const gpu::Device& device, vk::Format form
                                         vk::ImageLayout::ePresentSrcKHR);
   const vk::AttachmentReference reference(0, vk::ImageLayout::eColorAttachmentOptimal);
   const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, {}, reference);
-  // The image's layout changes only once it has been acquired.
+  // The layout of the image may change only after the image has been acquired.
   using Stage = vk::PipelineStageFlagBits;
   const vk::SubpassDependency acquired(VK_SUBPASS_EXTERNAL, 0, Stage::eColorAttachmentOutput,
                                        Stage::eColorAttachmentOutput, {}, vk::AccessFlagBits::eColorAttachmentWrite);
@@ -66,7 +66,7 @@ std::string_view Swapchain::present_mode() const {
 
 bool Swapchain::recreate(const uvec2& size) {
   const vk::SurfaceCapabilitiesKHR limits = device_->physical().getSurfaceCapabilitiesKHR(*device_->surface());
-  // A window manager may say the size; otherwise it is the window's own.
+  // If the window manager does not specify the size, it is the window's own size.
   const bool is_told = limits.currentExtent.width != 0xFFFFFFFF;
   const vk::Extent2D extent =
       is_told ? limits.currentExtent
@@ -127,7 +127,7 @@ void Swapchain::present(uint32_t image) {
 
 void Swapchain::begin_drawing(const vk::raii::CommandBuffer& commands, uint32_t image) const {
   const vk::Rect2D whole({0, 0}, {size_.x, size_.y});
-  // About the backdrop that most scenes are shown before: the first picture is no flash.
+  // A grey similar to the backdrop of most scenes, so that the first picture does not look like a flash.
   constexpr float kGrey = 0.8F;
   const vk::ClearValue grey(vk::ClearColorValue(std::array{kGrey, kGrey, kGrey, 1.0F}));
   commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffers_[image], whole, grey),

@@ -16,14 +16,14 @@ namespace {
 using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
-/// Constants and bindings of shaders/window/encode_film.comp.
+/// Numbers of constants and bindings of shaders/window/encode_film.comp.
 constexpr uint32_t kToneMapping = 0;
 constexpr uint32_t kDithers = 2;
 constexpr uint32_t kHasUnlit = 3;
 constexpr uint32_t kEncodedBinding = 0;
 constexpr uint32_t kExposureBinding = 1;
 
-/// Most workgroups that encode a film: enough for any device, each takes its share.
+/// Largest number of workgroups that encode a film. It is enough for any device; the workgroups share the pixels.
 constexpr uint32_t kMostEncodingGroups = 1024;
 
 gpu::Buffer make_exposure_buffer(const gpu::Device& device) {
@@ -78,7 +78,7 @@ void TracedPicture::resize(const uvec2& size) {
 
 void TracedPicture::warm_up() {
   picture_.warm_up();
-  // It encodes the pixel that has just been traced.
+  // The commands encode the pixel that has just been traced.
   scene_.device->run([&](const vk::raii::CommandBuffer& commands) { encoders_[0]->dispatch(commands, uvec2(1)); });
 }
 
@@ -103,7 +103,7 @@ void TracedPicture::begin_frame(bool is_of_flight, double time_s,
   if (!traces && !awaits_encoding() && !record_more) return;
   const vk::raii::CommandBuffer& commands = work_.begin();
   work_.mark();
-  // The frame before may have copied a screenshot from the film that is traced now.
+  // The previous frame may have copied a screenshot from the film that is traced now.
   commands.pipelineBarrier(Stage::eTransfer, Stage::eComputeShader, {}, {}, {}, {});
   frame_ = {};
   frame_.is_of_flight = is_of_flight;
@@ -131,7 +131,7 @@ void TracedPicture::begin_refining(double time_s) {
   refined_frame_ = {};
   refined_frame_.units = picture_.record(commands);
   refined_frame_.has_list = picture_.has_recorded_list();
-  // Then a picture is complete, or there is nothing to do.
+  // If nothing was recorded, a picture is complete or there is no work.
   if (refined_frame_.units == 0.0) return refining_->drop();
   picture_.record_take_counts(commands, *refining_counters_);
   refining_->mark();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/display/window.h"
 
-// Vulkan comes before GLFW, which then declares its Vulkan part.
+// Vulkan's header comes before GLFW's, which then declares its functions for Vulkan.
 #include <vulkan/vulkan.h>
 
 #include <GLFW/glfw3.h>
@@ -18,7 +18,7 @@
 namespace promin::app {
 namespace {
 
-/// A click that wanders further, in screen coordinates, is a drag.
+/// Largest movement of the pointer during a click, in screen coordinates. A larger movement is a drag.
 constexpr double kClickSlack = 3.0;
 /// The longest time between two clicks of a double click, in seconds.
 constexpr double kDoubleClickTime = 0.3;
@@ -30,7 +30,7 @@ constexpr double kDoubleClickTime = 0.3;
                      "use promin render, which needs no window"});
 }
 
-/// The monitor that most of the window is on; null where there is none.
+/// Returns the monitor that shows most of the window; null if there is none.
 GLFWmonitor* find_monitor(GLFWwindow* window) {
   if (GLFWmonitor* full_screen = glfwGetWindowMonitor(window); full_screen != nullptr) return full_screen;
   ScreenArea place;
@@ -58,7 +58,7 @@ double work_seconds() {
 }
 
 #ifdef GLFW_PLATFORM
-/// Returns whether environment variables name a Wayland compositor. If they do not, libwayland would print a message.
+/// Returns whether environment variables name a Wayland compositor. If none did, libwayland would print a message.
 bool could_have_wayland() {
   const auto is_path = [](const char* name) {
     const char* value = std::getenv(name);
@@ -68,7 +68,7 @@ bool could_have_wayland() {
 }
 #endif
 
-/// GLFW from 3.4 on asks for a Wayland compositor first, wherever it might be.
+/// Chooses the platform, because GLFW from 3.4 on first tries to connect to a Wayland compositor.
 void choose_platform() {
 #ifdef GLFW_PLATFORM
   if (!could_have_wayland() && glfwPlatformSupported(GLFW_PLATFORM_X11) == GLFW_TRUE) {
@@ -79,7 +79,7 @@ void choose_platform() {
 
 }  // namespace
 
-/// GLFW's C callbacks, which hand on to the window.
+/// GLFW's C callbacks, which call functions of the window.
 struct Window::Callbacks {
   static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
@@ -248,7 +248,7 @@ void Window::set_overlay_wants(bool keys, bool pointer) {
   wants_keys_ = keys;
   wants_pointer_ = pointer;
   if (std::exchange(is_press_judged_, true) || !pointer) return;
-  // It was on the overlay, which did not know the pointer there yet.
+  // The click was on the overlay, which did not know the pointer's position yet.
   drag_ = Drag::kNone;
   click_.reset();
 }
@@ -258,7 +258,7 @@ void Window::on_key(int key, int action) {
   if (action == GLFW_PRESS) ++key_count_;
   for (const KeyBinding& binding : key_bindings()) {
     if (binding.key != key) continue;
-    // A key that was down when the overlay took them over still comes up.
+    // A key that was pressed before the overlay took the keys must still be released.
     if (binding.hold && (action == GLFW_RELEASE || !wants_keys_)) {
       motion_.set(*binding.hold, action != GLFW_RELEASE, now());
     }
@@ -311,7 +311,7 @@ void Window::on_wheel(double steps) {
 void Window::on_pointer(const dvec2& place) {
   is_active_ = true;
   dvec2 way = place - std::exchange(pointer_, place);
-  // A drag takes hold of the scene, the captured pointer of the camera.
+  // A drag moves the scene with the pointer; a captured pointer turns the camera.
   if (is_captured_) return motion_.turn(-pixel_ratio() * way);
   if (drag_ == Drag::kNone) return;
   if (is_click_) {

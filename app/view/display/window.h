@@ -19,13 +19,13 @@ namespace promin::app {
 /// A window of the desktop and its keyboard and pointer input. Only one may exist, on the main thread.
 class Window {
  public:
-  /// `size` is in screen coordinates. Throws DeviceError if there is no display.
+  /// Opens a window. `size` is in screen coordinates. Throws DeviceError if there is no display.
   Window(const uvec2& size, const std::string& title);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Returns the surface that a device needs to present here; valid as long as the window.
+  /// Returns the data with which a device creates the window's surface. It is valid as long as the window exists.
   gpu::Presentation presentation() const;
   GLFWwindow* handle() const { return window_; }
 
@@ -37,21 +37,21 @@ class Window {
   const OverlayScale& overlay_scale() const { return overlay_scale_; }
   /// Returns the refresh interval, in milliseconds, of the display that shows most of the window.
   double refresh_interval_ms() const;
-  /// The time in seconds, by a clock of the window.
+  /// Returns the time in seconds, by the window's clock.
   static double now();
 
   /// Handles events, and waits for one for at most this number of seconds.
   void wait(double seconds);
-  /// Returns the longest time from one wait() to the next, in milliseconds; no event has waited longer.
+  /// Returns the longest time from one wait() to the next, in milliseconds. No event has waited longer.
   double longest_turn_ms() const { return 1e3 * longest_turn_s_; }
-  /// Returns the largest CPU time from one wait() to the next, in milliseconds: the longest turn on an otherwise idle
-  /// machine.
+  /// Returns the largest CPU time from one wait() to the next, in milliseconds. On an otherwise idle machine it is the
+  /// longest turn.
   double longest_work_ms() const { return 1e3 * longest_work_s_; }
   /// Returns the number of key presses.
   uint64_t key_count() const { return key_count_; }
 
   bool should_close() const;
-  /// Whether the window was asked to close, or the key to quit is among the presses that are to be taken.
+  /// Returns whether the window was asked to close, or the key to quit is among the presses that were not taken yet.
   bool wants_to_close() const;
   void set_title(const std::string& title);
   /// Sets the size in screen coordinates, unless the user has changed it.
@@ -63,7 +63,7 @@ class Window {
   /// Hides the window immediately.
   void hide();
 
-  // These return the events since their last call.
+  // The following functions return the events since their last call.
   Motion take_motion() { return motion_.take(now()); }
   std::vector<Press> take_presses();
   /// Returns positions of single clicks without dragging, in pixels, after a delay in which a second click could
@@ -71,11 +71,11 @@ class Window {
   std::vector<dvec2> take_clicks();
   /// Returns positions of double clicks.
   std::vector<dvec2> take_double_clicks() { return std::exchange(double_clicks_, {}); }
-  /// Returns files that were dropped.
+  /// Returns files that were dropped on the window.
   std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
-  /// Returns whether the window may have moved to another display; true at first.
+  /// Returns whether the window may have moved to another display. The first call returns true.
   bool take_change_of_place() { return std::exchange(may_have_moved_, false); }
-  /// Returns whether anything happened.
+  /// Returns whether there was any event.
   bool take_activity();
 
   /// Returns whether a key that moves the camera is down.
@@ -85,11 +85,11 @@ class Window {
 
   /// Returns the pointer's position in screen coordinates; empty while it turns the camera without a button.
   std::optional<dvec2> pointer() const { return is_captured_ ? std::nullopt : std::optional(pointer_); }
-  /// The state of the first buttons: whether each is down or went down since the last call.
+  /// The state of the first three buttons: whether each is down or went down since the last call.
   using Buttons = std::array<bool, 3>;
   Buttons take_buttons();
 
-  /// Whether the overlay wants keys and pointer for itself; to be called after each of its frames.
+  /// Sets whether the overlay uses keys and pointer itself. To be called after each of its frames.
   void set_overlay_wants(bool keys, bool pointer);
 
  private:
@@ -101,7 +101,7 @@ class Window {
   void on_click();
   void on_pointer(const dvec2& place);
   void change_place();
-  /// Queries the display for values that depend on the window's position, which takes some time.
+  /// Queries the display for values that depend on the window's position. This takes some time.
   void ask_display();
   void release();
   void capture_pointer(bool is_captured);
@@ -112,7 +112,7 @@ class Window {
   std::vector<Press> presses_;
   std::vector<dvec2> clicks_;
   std::vector<dvec2> double_clicks_;
-  /// A click that may be the first of two, and when it was.
+  /// A click that may be the first of a double click, and its time.
   std::optional<dvec2> click_;
   double click_time_s_ = 0.0;
   std::vector<std::string> dropped_;
@@ -128,12 +128,12 @@ class Window {
   uint64_t key_count_ = 0;
   bool wants_keys_ = false;
   bool wants_pointer_ = false;
-  /// The effect of the pointer while a button is down.
+  /// The effect of moving the pointer while a button is down.
   enum class Drag { kNone, kOrbit, kPan, kLight };
   Drag drag_ = Drag::kNone;
-  /// Whether the pointer has not moved since the button went down.
+  /// True if the pointer has not moved since the button went down.
   bool is_click_ = false;
-  /// Whether the overlay has had a frame since a button went down.
+  /// True if the overlay has drawn a frame since a button went down.
   bool is_press_judged_ = true;
   bool is_captured_ = false;
   dvec2 pointer_{0.0};

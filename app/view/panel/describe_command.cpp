@@ -11,7 +11,7 @@ std::string words_of(const vec3& v) {
   return fmt::format("{} {} {}", v.x, v.y, v.z);
 }
 
-/// A place in the scene as one in the world.
+/// Returns a place in the scene in world coordinates.
 std::string words_of(const vec3& place, const dvec3& center) {
   if (center == dvec3(0.0)) return words_of(place);
   const dvec3 world = center + dvec3(place);
@@ -45,7 +45,7 @@ std::string word_of(const BackgroundChoice& background) {
   return background.is_linear ? fmt::format("linear:{},{},{}", color.x, color.y, color.z) : words_of(color);
 }
 
-/// The options of a look; the framing is not among them, because the command has a pose.
+/// Returns the options of a look. The framing is not among them, because the command has a pose.
 std::string options_of(const LookOptions& look) {
   std::string options;
   if (look.light != LightChoice::kAuto) {
@@ -101,11 +101,11 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   command += fmt::format(" --eye {} --direction {} --up {}", words_of(camera.eye, scene.center), words_of(camera.look),
                          words_of(camera.up));
   if (camera.projection == Projection::kPerspective) {
-    // Nine digits of an angle in degrees are within half of a float's last place.
+    // Nine digits of an angle in degrees are accurate to half of a float's last place.
     command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));
   }
   command += fmt::format(" --near {}", camera.near);
-  // No other picture depends on the tree.
+  // Only the picture of steps depends on the tree.
   if (view.mode.debug_view != DebugView::kSteps) return command;
   return command + (scene.bvh ? " --bvh " + quote(scene.bvh->string()) : " --builder " + scene.builder);
 }

@@ -13,11 +13,11 @@
 
 namespace promin::app {
 
-/// The settings of a scene for a command: its file, lights, display, and the camera that determines the size of an
-/// orthographic view.
+/// The settings of a scene that a command needs: its file, lights and display, and the camera that determines the size
+/// of an orthographic view.
 struct DescribedScene {
   std::filesystem::path file;
-  /// The picture's file; without one the command gets a default name.
+  /// The picture's file. If empty, the command uses a default name.
   std::optional<std::filesystem::path> output = std::nullopt;
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
@@ -25,23 +25,23 @@ struct DescribedScene {
   EnvironmentOptions environment = {};
   std::string variant = {};
   std::filesystem::path root = {};
-  /// Scene::center.
+  /// The center of the scene, Scene::center.
   dvec3 center = dvec3(0.0);
-  /// The scene's camera that has the view's half height.
+  /// Index of the scene's camera that has the same half height as the view.
   std::optional<size_t> camera_index = std::nullopt;
   /// The builder of the tree, which affects the step counts that a picture may show.
   std::string builder = "sah";
   std::optional<std::filesystem::path> bvh = std::nullopt;
 };
 
-/// Returns the scene's camera with an orthographic camera's half height, which no option can set.
+/// Returns the index of the scene's camera with the half height of an orthographic camera, which no option can set.
 std::optional<size_t> find_half_height(const Scene& scene, const Camera& camera);
 
-/// Returns whether there is such a command. There is none for an orthographic view whose half height no camera of the
-/// scene has.
+/// Returns whether a command can describe the view. It cannot if the view is orthographic and no camera of the scene
+/// has its half height.
 bool can_describe(const DescribedScene& scene, const View& view);
 
-/// Returns the `promin render` command, for a shell, that gives the picture of a view bit for bit.
+/// Returns the `promin render` command, for a shell, that renders the picture of a view with the same bits.
 std::string describe_command(const DescribedScene& scene, const View& view);
 
 }  // namespace promin::app

@@ -19,7 +19,7 @@ namespace promin::app {
 namespace {
 
 const ImVec4 kFailureColor(1.0F, 0.45F, 0.35F, 1.0F);
-// These lengths are for an ordinary display.
+// Lengths in pixels of an ordinary display.
 constexpr float kFontSize = 14.0F;
 constexpr float kMargin = 10.0F;
 constexpr float kPanelWidth = 290.0F;
@@ -28,7 +28,7 @@ constexpr float kEffectColumn = 100.0F;
 constexpr float kBarHeight = 4.0F;
 constexpr float kRounding = 4.0F;
 
-/// Converts such a length to this display.
+/// Converts a length to pixels of this display.
 float scaled(float length) {
   return length * ImGui::GetFontSize() / kFontSize;
 }
@@ -73,7 +73,7 @@ void show_state(const OverlayContent& content) {
   } else if (content.picture != nullptr) {
     show_text("{}", describe_picture(*content.picture));
   }
-  // What is awaited has no share that is done.
+  // Work that is awaited has no known fraction.
   const bool has_share = content.picture != nullptr && content.awaited.empty();
   const double done = has_share ? content.picture->fraction_done() : 0.0;
   ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0F, scaled(kBarHeight)), "");
@@ -214,7 +214,7 @@ void show_files(const OverlayContent& content, OverlayAnswer& answer) {
   answer.gives_up = !answer.has_typed && ImGui::IsItemDeactivated() && is_escape_pressed();
 }
 
-/// Calls `use` with what keys and pointer are called, and with what they do.
+/// Calls `use` with the names of keys and pointer actions, and with their effects.
 template <typename Use>
 void for_each_help(const Use& use) {
   for (const PointerBinding& binding : pointer_bindings()) use(binding.name, binding.effect);

@@ -16,16 +16,16 @@
 
 namespace promin::app {
 
-/// The recent cost of frames, as means in which about the last tenth of a second has the largest weight.
+/// The recent cost of frames. The values are means, in which about the last tenth of a second has the largest weight.
 class FrameStatistics {
  public:
   void add(const FinishedFrame& frame);
 
   double frame_ms() const { return frame_ms_; }
   const StageTimes& stages() const { return stages_; }
-  /// Returns the rates of primary, shadow and reflection rays, in 1e6 per second of tracing.
+  /// Returns the rates of primary, shadow and reflection rays, in millions per second of tracing.
   const dvec3& mrays_per_s() const { return mrays_per_s_; }
-  /// Returns the part of a frame's work that is not tracing.
+  /// Returns the milliseconds of a frame's work that are not tracing.
   double overhead_ms() const { return stages_.display; }
 
  private:
@@ -35,7 +35,7 @@ class FrameStatistics {
   dvec3 mrays_per_s_{0.0};
 };
 
-/// The user's choices, in the overlay or otherwise.
+/// The choices that the user made, in the overlay or otherwise.
 struct Switches {
   SceneChoice scene;
   Surroundings surroundings;
@@ -43,75 +43,76 @@ struct Switches {
   bool has_mirrors = true;
   bool has_shadows = true;
   DebugView debug_view = DebugView::kNone;
-  /// The exposure; the scene's own if the user has chosen none.
+  /// The exposure in stops; empty if the user has not chosen one, and the scene's own is used.
   std::optional<float> exposure_ev;
-  /// The scale, as ProgressivePicture::fix_scale takes it.
+  /// The scale, in the form that ProgressivePicture::fix_scale() takes.
   std::optional<double> scale;
   bool is_paused = false;
 
   uint32_t effective_depth() const { return has_mirrors ? max_depth : 0; }
 };
 
-/// A path that the user types if the desktop has no dialog.
+/// A file path that the user types if the desktop has no dialog.
 struct PathEntry {
   FileUse use = FileUse::kOpen;
   std::array<char, 4096> text{};
-  /// Whether it has not been shown yet. Then keys go to it.
+  /// True if the entry has not been shown yet. It then gets the keyboard focus.
   bool is_new = true;
 };
 
-/// Further content of the overlay.
+/// Further data that the overlay shows.
 struct OverlayContent {
   const FrameStatistics* statistics = nullptr;
-  /// Null before the first.
+  /// The current picture; null before the first one.
   const ProgressivePicture* picture = nullptr;
-  /// Null before it is read.
+  /// The current scene; null before it is read.
   const Scene* scene = nullptr;
   std::string device;
   double speed = 0.0;
-  /// Exposure of the scene.
+  /// Exposure of the scene in stops.
   float exposure_ev = 0.0F;
-  /// The colour of its background, sRGB.
+  /// The colour of the scene's background, sRGB.
   vec3 background{0.0F};
-  /// The work in progress beside the picture; empty if there is none.
+  /// A description of the work in progress in addition to the picture; empty if there is none.
   std::string awaited;
-  /// The last message; failures are highlighted.
+  /// The last message. Failures are highlighted.
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
-  /// Null if no path is being typed.
+  /// The path that the user is typing; null if there is none.
   PathEntry* entry = nullptr;
 };
 
 /// Returns the distance between a new panel and the window's edges, in the interface's units.
 float overlay_margin();
 
-/// Creates ImGui's fonts and sizes again; not within a frame.
+/// Creates ImGui's fonts and sizes again. Must not be called within a frame.
 void scale_overlay(const OverlayScale& scale);
 
-/// The user's actions in the overlay other than switches.
+/// The user's actions in the overlay, except switches.
 struct OverlayAnswer {
-  /// The camera that was picked from the lists.
+  /// The camera that the user chose from the lists.
   std::optional<Camera> camera;
-  /// The speed to fly with.
+  /// The new speed of flying.
   std::optional<double> speed;
-  /// The purpose of a requested file.
+  /// The purpose for which the user requests a file.
   std::optional<FileUse> asked;
-  /// Whether the typed path is complete.
+  /// True if the typed path is complete.
   bool has_typed = false;
-  /// Whether the user has cancelled the typed path.
+  /// True if the user has cancelled the entry of the path.
   bool gives_up = false;
-  /// The area of the panel.
+  /// The area of the overlay's panel.
   WindowArea area;
-  /// The height of the panel's text, in the interface's units. The panel takes it in the next frame.
+  /// The height of the panel's text, in the interface's units. The panel gets this height in the next frame.
   float height = 0.0F;
 };
 
-/// Shows the overlay between ImguiRenderer's begin_frame and end_frame, and lets the user change the switches.
+/// Shows the overlay, and lets the user change the switches. To be called between ImguiRenderer's begin_frame() and
+/// end_frame().
 OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches);
 
 /// Shows the actions of keys and pointer, at the right edge.
 void show_help();
-/// Returns whether the help leaves room for the panel at the left edge.
+/// Returns whether there is space for the help beside the panel at the left edge.
 bool has_room_beside_help();
 }  // namespace promin::app

@@ -4,7 +4,7 @@
 
 namespace promin::app {
 
-/// The scale of the overlay on a display of high resolution.
+/// The scale of the overlay, which is larger on displays with a high resolution.
 struct OverlayScale {
   /// The number of pixels that correspond to one pixel of an ordinary display.
   double content = 1.0;

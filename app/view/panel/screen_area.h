@@ -15,7 +15,7 @@ struct ScreenArea {
   int height = 0;
 };
 
-/// The display that most of the window is on; the first one where it is on none.
+/// Returns the display that shows most of the window; the first display if no display shows it.
 inline size_t find_display(std::span<const ScreenArea> displays, const ScreenArea& window) {
   const auto shared = [&](const ScreenArea& display) {
     const int right = std::min(display.x + display.width, window.x + window.width);

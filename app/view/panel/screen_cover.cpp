@@ -11,10 +11,10 @@ namespace promin::app {
 namespace {
 
 const dvec2 kCells(ScreenCover::kColumns, ScreenCover::kRows);
-/// A facet is looked at in at most so many steps along a side.
+/// The largest number of steps along a side in which a facet is sampled.
 constexpr int kMostSteps = 2 * ScreenCover::kColumns;
 
-/// Calls `use` with points of a triangle, so many steps apart along its sides.
+/// Calls `use` with points of a triangle. `steps` is the number of steps along each side.
 template <class Vector, class Use>
 void sample_triangle(const std::array<Vector, 3>& corners, int steps, const Use& use) {
   for (int i = 0; i <= steps; ++i) {
@@ -26,13 +26,13 @@ void sample_triangle(const std::array<Vector, 3>& corners, int steps, const Use&
   }
 }
 
-/// The steps from place to place that miss no cell.
+/// Returns the number of steps between two places for which no cell is missed.
 int count_steps(const dvec2& lo, const dvec2& hi) {
   const dvec2 cells = (hi - lo) * kCells;
   return 1 + static_cast<int>(std::min(std::max(cells.x, cells.y), kMostSteps - 1.0));
 }
 
-/// Calls `use` with the column and the row of each cell whose middle lies in an area.
+/// Calls `use` with the column and row of each cell whose middle lies in an area.
 template <class Use>
 void for_each_cell(const WindowArea& area, const Use& use) {
   for (size_t y = 0; y < ScreenCover::kRows; ++y) {
@@ -51,7 +51,7 @@ void raise_facet(ScreenCover& cover, const std::array<dvec3, 3>& facet, const Fr
   }
   if (count == facet.size()) return cover.raise_triangle(places, 1.0F);
   if (count == 0) return;
-  // It reaches behind the camera.
+  // The facet reaches behind the camera.
   sample_triangle(facet, kMostSteps, [&](const dvec3& point) {
     if (const auto place = project(point, camera, aspect_ratio)) cover.raise(*place, 1.0F);
   });

@@ -16,12 +16,12 @@
 namespace promin::app {
 namespace {
 
-/// The share of the window's width that the panel takes at most.
+/// The largest fraction of the window's width that the panel uses.
 constexpr double kPanelShare = 0.4;
 constexpr ImU32 kPixelColor = IM_COL32(255, 255, 255, 220);
-/// Rays that bring less than this share of what they see are closed at first.
+/// Rays whose weight is below this fraction are collapsed at first.
 constexpr float kLeastOpenWeight = 0.05F;
-/// How far a ray that hits nothing is drawn, in the way of the camera's ray.
+/// Length at which a ray that hits nothing is drawn, relative to the camera ray.
 constexpr float kMissShare = 0.5F;
 
 dvec2 to_glm(const ImVec2& v) {
@@ -52,7 +52,7 @@ class ExplanationTree {
   }
 
  private:
-  /// A line with a swatch of its color.
+  /// Shows a line with a swatch of its colour.
   void show_row(const std::string& text, const vec3& color) const {
     ImGui::PushID(&color);
     const float side = ImGui::GetTextLineHeight();
@@ -107,10 +107,10 @@ class ExplanationTree {
   const DisplayTransform& display_;
 };
 
-/// Calls `use` with the ends and the color of each ray but the camera's, as it is drawn.
+/// Calls `use` with the ends and the colour of each ray that is drawn. The camera ray is not drawn.
 template <class Use>
 void for_each_line(const ExplainedPixel& explained, const Use& use) {
-  // By the kind of the ray: from the camera, mirrored, refracted, the same from behind a surface.
+  // Colours by the kind of ray: camera ray, mirror ray, refracted ray, and continuation behind a surface.
   static constexpr std::array<ImU32, 4> kColors = {kPixelColor, IM_COL32(90, 200, 255, 220),
                                                    IM_COL32(120, 255, 140, 220), IM_COL32(255, 255, 255, 120)};
   constexpr ImU32 kSeen = IM_COL32(255, 220, 90, 200);
@@ -131,7 +131,7 @@ void for_each_line(const ExplainedPixel& explained, const Use& use) {
   }
 }
 
-/// Calls `use` with the place of each point that the camera sees in the pixel.
+/// Calls `use` with the place of each point of the pixel's rays that the camera sees.
 template <class Use>
 void for_each_seen_place(const ExplainedPixel& explained, const FreeCamera& camera, double aspect_ratio,
                          const Use& use) {
@@ -157,7 +157,7 @@ void draw_rays(const ExplainedPixel& explained, const FreeCamera& camera, const 
   });
 }
 
-/// What the panel is not to hide.
+/// Returns the costs of hiding parts of the picture behind the panel.
 ScreenCover find_costs(const ExplainedPixel& explained, const FreeCamera& camera, double aspect_ratio,
                        const std::optional<WindowArea>& other_panel) {
   constexpr float kRayCost = 3.0F;
@@ -175,7 +175,7 @@ ScreenCover find_costs(const ExplainedPixel& explained, const FreeCamera& camera
   return cover;
 }
 
-/// Shows the tree in the current panel. Returns the size of a panel that it fits into.
+/// Shows the tree in the current panel. Returns the size of a panel in which the tree fits.
 dvec2 show_tree(const ExplainedPixel& explained, const DisplayTransform& display) {
   ImGui::BeginGroup();
   ExplanationTree(explained, display).show();
@@ -184,7 +184,7 @@ dvec2 show_tree(const ExplainedPixel& explained, const DisplayTransform& display
   return to_glm(ImGui::GetItemRectSize()) + 2.0 * padding + dvec2(0.0, ImGui::GetFrameHeight());
 }
 
-/// Moves the current panel up where a branch that was opened takes it over the lower edge.
+/// Moves the current panel upwards if an opened branch extends it beyond the lower edge.
 void stay_within(const ImVec2& window) {
   const float margin = overlay_margin();
   const float lowest = std::max(window.y - margin - ImGui::GetWindowHeight(), margin);

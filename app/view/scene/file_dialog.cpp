@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kScenes = "*.gltf *.glb *.obj *.ply *.stl *.nff";
 
-/// Starts a program that writes to a pipe. Returns 0 if there is no such program.
+/// Starts a program that writes to a pipe. Returns 0 if the program does not exist.
 pid_t start(const std::vector<std::string>& command, int output) {
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
@@ -49,7 +49,7 @@ std::vector<std::string> dialog_command(const std::string& program, FileUse use,
 
 void FileDialog::close() {
   if (!is_open()) return;
-  // It may have inherited blocked signals.
+  // SIGKILL is used, because the process may have inherited blocked signals.
   kill(process_, SIGKILL);
   ::close(pipe_);
   waitpid(process_, nullptr, 0);
@@ -79,7 +79,7 @@ std::optional<std::string> FileDialog::take() {
   while ((count = read(pipe_, bytes.data(), bytes.size())) > 0)
     answer_.append(bytes.data(), static_cast<size_t>(count));
   int status = 0;
-  // It has written all before it ends.
+  // The program has written everything before it ends.
   if (count < 0 || waitpid(process_, &status, WNOHANG) != process_) return std::nullopt;
   ::close(pipe_);
   process_ = 0;

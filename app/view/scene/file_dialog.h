@@ -10,10 +10,10 @@
 
 namespace promin::app {
 
-/// The purpose of choosing a file.
+/// The purpose for which the user chooses a file.
 enum class FileUse { kOpen, kSave };
 
-/// The desktop's file dialog, zenity or kdialog, as a separate process. Nothing waits for it.
+/// The desktop's file dialog, zenity or kdialog, as a separate process. The window does not wait for it.
 class FileDialog {
  public:
   FileDialog() = default;
@@ -21,13 +21,13 @@ class FileDialog {
   FileDialog(const FileDialog&) = delete;
   FileDialog& operator=(const FileDialog&) = delete;
 
-  /// Opens the dialog unless one is open. `name` is the initial name. Returns false if no such program is on PATH.
+  /// Opens the dialog unless one is open. `name` is the initial file name. Returns false if no such program is on PATH.
   bool ask(FileUse use, const std::string& name);
   bool is_open() const { return process_ > 0; }
-  /// Closes a dialog that is open.
+  /// Closes the dialog if it is open.
   void close();
   FileUse use() const { return use_; }
-  /// Returns the file after the user has chosen one. The dialog is then closed, as it is when the user cancels.
+  /// Returns the file after the user has chosen one. The dialog is then closed. It is also closed if the user cancels.
   std::optional<std::string> take();
 
  private:

@@ -18,14 +18,14 @@
 
 namespace promin::app {
 
-/// A scene opened for a window: read, lit, and with a camera.
+/// A scene that was opened for a window: it is read, lit, and has a camera.
 struct OpenedScene {
   std::filesystem::path file;
   LoadOptions load;
   EnvironmentChoice environment;
   std::shared_ptr<const Scene> scene;
   Bounds bounds;
-  /// The files that it was read from.
+  /// The files from which the scene was read.
   std::vector<SourceFile> sources;
   View view;
   /// The flight to play.
@@ -33,7 +33,7 @@ struct OpenedScene {
   RunStats stats;
 };
 
-/// Opens the scene of a file. Throws Error.
+/// A function that opens the scene of a file. Throws Error.
 using OpenScene = std::function<OpenedScene(const std::filesystem::path& file)>;
 
 }  // namespace promin::app

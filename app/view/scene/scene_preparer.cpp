@@ -16,19 +16,19 @@
 namespace promin::app {
 namespace {
 
-/// The seconds between two looks at the scene's files.
+/// The interval in seconds at which the scene's files are checked.
 constexpr double kLookInterval = 0.1;
 
-/// The longest side of the picture that an average exposure goes by, in pixels.
+/// The longest side, in pixels, of the picture from which an average exposure is computed.
 constexpr float kMeteredSide = 320.0F;
 
-/// Keeps the lights that a scene has.
+/// Returns the indices of lights that the scene has.
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
   std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
   return lights;
 }
 
-/// Leaves out features that compile slowly, with as little visible effect as possible.
+/// Returns the features without those that compile slowly, with as little visible effect as possible.
 FeatureMask without_slow_parts(FeatureMask features) {
   return features.without(layout::FEATURE_SHADOWS)
       .without(layout::FEATURE_MIRRORS)
@@ -43,7 +43,7 @@ std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device) {
 }
 
 bool sets_apart(const gpu::Device& device) {
-  // Devices that present late have one queue for everything, including compiling.
+  // Devices that present late have a single queue for all work, including compiling.
   return device.profile().presents_late;
 }
 
@@ -96,7 +96,7 @@ void ShownScene::put() const {
 }
 
 SceneOn ShownScene::set_apart() const {
-  // A few copies of it need little memory.
+  // Some copies of a scene of this size in bytes need little memory.
   constexpr uint64_t kMostBytes = 256U << 20;
   if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
   SceneOn apart{open_same_device(*first.device), nullptr};
@@ -153,7 +153,7 @@ bool ScenePreparer::update(const std::shared_ptr<ShownScene>& shown, const Pictu
 }
 
 std::optional<ReadyPicture> ScenePreparer::take() {
-  // Only reading returns files; other work does not change the watched files.
+  // Only reading returns files. Other work does not change the set of watched files.
   if (is_ready() && !sources_.empty()) watch_.follow(std::exchange(sources_, {}));
   return work_.take();
 }
@@ -200,7 +200,7 @@ std::string ScenePreparer::describe() const {
 }
 
 void ScenePreparer::enter(Step step) {
-  // The owner is gone, so nobody would take the picture.
+  // The owner no longer exists, so the picture is not needed.
   if (is_given_up_)
     throw RunError({"window.scene.closed",
                     "the scene was not opened, because the window closed while a picture was made", "",
@@ -282,7 +282,7 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, 
     }
     if (request.is_draft) features = without_slow_parts(features);
     FilmOptions film_options;
-    // A draft is replaced too soon for longer compilation to pay.
+    // A draft is replaced so soon that longer compilation is not worthwhile.
     if (request.is_draft) film_options.expected_samples = 0;
     const bool is_light = request.mode.debug_view == DebugView::kNone;
     picture = std::make_unique<TracedPicture>(

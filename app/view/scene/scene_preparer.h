@@ -21,22 +21,22 @@
 
 namespace promin::app {
 
-/// The builder of a scene's tree, and which of its lights are on.
+/// The user's choice of the builder of a scene's tree, and of the lights that are on.
 struct SceneChoice {
   std::string builder;
   std::optional<std::filesystem::path> bvh;
-  /// Indices of the scene's lights, in their order; those that a scene does not have are ignored.
+  /// Indices of the scene's lights that are off, in order. Indices that a scene does not have are ignored.
   std::vector<uint32_t> lights_off;
 
   bool operator==(const SceneChoice&) const = default;
 };
 
-/// The user's changes of a scene's environment in the window. They need another kernel only if the kind of the
+/// The changes of a scene's environment that the user made in the window. They need another kernel only if the kind of
 /// background changes.
 struct Surroundings {
-  /// As in EnvironmentOptions; the scene itself is not rotated.
+  /// Rotation of the light, like EnvironmentOptions::light_rotation_deg. The scene itself is not rotated.
   double light_rotation_deg = 0.0;
-  /// A displayed colour, sRGB.
+  /// The background as a displayed colour, sRGB.
   std::optional<vec3> background = std::nullopt;
 
   bool operator==(const Surroundings&) const = default;
@@ -49,12 +49,12 @@ struct HostScene {
   std::shared_ptr<const GlassSolids> glass_solids;
 };
 
-/// Opens the same physical device again, with a separate queue and without a window.
+/// Returns the same physical device, opened again with a separate queue and without a window.
 std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device);
-/// Returns whether scenes are set apart on such a device.
+/// Returns whether scenes are copied to a separate device if they are on such a device.
 bool sets_apart(const gpu::Device& device);
 
-/// The copies of a scene on separate devices, as long as they are in use.
+/// The copies of a scene on separate devices. Each exists as long as it is in use.
 class SceneCopies {
  public:
   void add(const SceneOn& copy);
@@ -71,79 +71,82 @@ class SceneCopies {
 
 /// A scene in device memory.
 struct ShownScene {
-  /// The lit scene of the file, regardless of which lights are on.
+  /// The lit scene of the file. It contains all lights, whether they are on or off.
   std::shared_ptr<const Scene> scene;
-  /// The tree and the lights that are on the device.
+  /// The tree, and the lights that are on, as on the device.
   SceneChoice choice;
   Surroundings surroundings = {};
-  /// How the scene's light is mapped to the display.
+  /// The display transform of the scene.
   DisplayTransform display;
-  /// The first device that it was copied to.
+  /// The first device that has the scene.
   SceneOn first;
   std::shared_ptr<SceneOnDevice> on_device;
   SetupStats setup_stats;
-  /// The data that was copied there.
+  /// The data that was copied to the device.
   std::shared_ptr<const HostScene> host;
   /// The copies that set_apart() has made.
   std::shared_ptr<SceneCopies> copies = std::make_shared<SceneCopies>();
 
-  /// Returns the scene with its lights on a separate device, for CPU devices and scenes that are not large: such a
-  /// driver compiles in its queue, and on a separate device that blocks no other work. Else returns the first device.
-  /// Throws DeviceError, RunError.
+  /// Returns the scene with its lights on a separate device, if the device is a CPU and the scene is not large. The
+  /// driver of a CPU device compiles in its queue; on a separate device this blocks no other work. Otherwise returns
+  /// the scene on the first device. Throws DeviceError, RunError.
   SceneOn set_apart() const;
 
-  // Returns the lights as they are on the devices.
+  // Returns the lights as the devices have them.
   std::vector<Light> lights() const;
   Environment environment() const;
-  /// Returns whether another environment needs no other kernel.
+  /// Returns whether the scene can have another environment without another kernel.
   bool takes(const Surroundings& other) const;
-  /// Copies lights and environment to all devices with the scene, while nothing is traced there. It may take some time.
-  /// Call ProgressivePicture::take_scene_change() afterwards.
+  /// Copies lights and environment to all devices that have the scene. Nothing may be traced there meanwhile. It may
+  /// take some time. Call ProgressivePicture::take_scene_change() afterwards.
   void put() const;
 };
 
 /// A picture that can be traced immediately.
 struct ReadyPicture {
-  /// Its lights may differ from those on the device, so call take_lights() before tracing.
+  /// The scene of the picture. Its lights may differ from those on the device, so take_lights() must be called before
+  /// tracing.
   std::shared_ptr<ShownScene> scene;
   RenderMode mode;
   bool is_draft = false;
   std::unique_ptr<TracedPicture> picture;
 
-  /// Copies the lights that are on to the devices, while nothing is traced there.
+  /// Copies the lights that are on to the devices. Nothing may be traced there meanwhile.
   void take_lights();
 };
 
-/// The request for a picture: a scene and how to show it.
+/// A request for a picture: a scene, and how to show it.
 struct PictureRequest {
   SceneChoice choice;
   Surroundings surroundings;
   RenderMode mode;
-  /// The size of the window, for which room is made.
+  /// The size of the window for which memory is allocated.
   uvec2 size{1};
-  /// Whether it only bridges the time until a better one is compiled, and leaves out features that compile slowly.
+  /// True if the picture is a draft, which is shown until a better one is compiled. It leaves out features that compile
+  /// slowly.
   bool is_draft = false;
 };
 
-/// Prepares pictures on a separate thread, one at a time: reads, packs, builds, uploads and compiles while another
+/// Prepares pictures on a separate thread, one at a time. It reads, packs, builds, uploads and compiles while another
 /// picture is shown. If the driver compiles in its queue, it uses a separate device, so that compiling blocks no
 /// picture.
 class ScenePreparer {
  public:
-  /// Takes a device of which it opens others, a scene's file and how it is read, the files that it was read from, how
-  /// it is lit and shown, what is changed about its surroundings, and the view by which an average exposure goes.
+  /// Creates a preparer. The arguments are: a device, which is opened again; a scene's file and the options for reading
+  /// it; the files from which it was read; the options for lighting and showing it; the changes of its environment; and
+  /// the view from which an average exposure is computed.
   ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
                 LoadOptions load, std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
                 View first_view);
-  /// Abandons the current work without waiting for a tree that is being built.
+  /// Abandons the current work. It does not wait for a tree that is being built.
   ~ScenePreparer();
 
   /// Prepares the first picture of a scene that is read and lit.
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
-  /// Starts to prepare another picture if the request differs from the last one or files of the scene have changed.
-  /// Returns whether it has started. Failed work is not repeated.
+  /// Starts to prepare another picture if the request differs from the last one, or if files of the scene have changed.
+  /// Returns whether it has started. Work that failed is not repeated.
   bool update(const std::shared_ptr<ShownScene>& shown, const PictureRequest& request, double time_s);
-  /// Returns whether a picture in that mode, which is not shown yet, is being prepared.
+  /// Returns whether a picture in this mode is being prepared and not shown yet.
   bool will_show(const RenderMode& mode) const { return is_busy() || asked_.mode != mode; }
   /// Abandons the current work as soon as possible, without waiting.
   void give_up() { is_given_up_ = true; }
@@ -158,19 +161,19 @@ class ScenePreparer {
  private:
   enum class Step { kReading, kBuilding, kUploading, kCompiling };
 
-  // These start the work; they must not be called while busy.
+  // The following functions start the work. They must not be called while busy.
   void read();
   void pack(std::shared_ptr<const Scene> scene);
   /// Prepares a picture with other lights or another mode of a scene that is on the device.
   void compile(std::shared_ptr<ShownScene> scene);
 
-  // Parts of the work.
+  // The following functions are parts of the work.
   void enter(Step step);
   std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
-  /// Computes the average exposure for the first view.
+  /// Returns the average exposure, computed for the first view.
   float meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const;
   ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request);
-  /// Creates the picture, which is traced on the device `on`.
+  /// Returns the picture, which is traced on the device `on`.
   ReadyPicture make(std::shared_ptr<ShownScene> scene, SceneOn on, const PictureRequest& request);
 
   std::shared_ptr<const gpu::Device> device_;
@@ -188,7 +191,7 @@ class ScenePreparer {
   std::atomic<bool> is_given_up_ = false;
   /// The files that were read last, even if reading failed.
   std::vector<SourceFile> sources_;
-  /// This is the last member, because its thread uses the others.
+  /// The thread of this member uses the other members, so it is the last one.
   Background<ReadyPicture> work_;
 };
 

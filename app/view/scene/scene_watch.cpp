@@ -16,7 +16,7 @@ bool SceneWatch::has_changed() {
   bool is_changed = false;
   for (const SourceFile& source : sources_) {
     stamps.push_back(stamp_of(source.file));
-    // Editors replace files: one that is gone for now is no change.
+    // Editors replace files, so a file that does not exist for a moment is no change.
     is_changed = is_changed || (stamps.back() && stamps.back() != source.stamp);
   }
   const bool are_left_alone = stamps == std::exchange(last_, stamps);

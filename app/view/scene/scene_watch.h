@@ -12,14 +12,14 @@
 
 namespace promin::app {
 
-/// Watches the files that a scene is read from.
+/// Watches the files from which a scene was read.
 class SceneWatch {
  public:
   explicit SceneWatch(std::vector<SourceFile> sources) { follow(std::move(sources)); }
 
-  /// Watches these files from now on, as they were when they were read.
+  /// Watches these files from now on. Their stamps are those at the time of reading.
   void follow(std::vector<SourceFile> sources);
-  /// Whether a file has been written, or has appeared, since it was read, and all have been left alone since the last
+  /// Returns whether a file has been written or has appeared since it was read, and no file has changed since the last
   /// call. Returns true once for each change.
   bool has_changed();
 
@@ -27,7 +27,7 @@ class SceneWatch {
   using Stamps = std::vector<std::optional<FileStamp>>;
 
   std::vector<SourceFile> sources_;
-  /// The stamps at the last call.
+  /// The stamps of the files at the last call.
   Stamps last_;
 };
 

@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-/// Reads `count` elements of `components` numbers each, `stride` bytes apart.
+/// A source of `count` elements with `components` numbers each. Elements are `stride` bytes apart.
 struct Source {
   const std::byte* data;
   size_t stride;

@@ -9,12 +9,12 @@
 
 namespace promin {
 
-/// Returns the elements of an accessor as fp32, component after component. Normalized integers are mapped to [0, 1] or
-/// [-1, 1] (glTF 2.0, section 3.11), sparse elements are applied, and an accessor without a buffer view is all zeros.
-/// Adds a problem for a sparse index out of range.
+/// Returns the elements of an accessor as fp32, component after component. The function maps normalized integers to [0,
+/// 1] or [-1, 1] (glTF 2.0, section 3.11) and applies sparse elements. An accessor without a buffer view contains
+/// zeros. Adds a problem for a sparse index out of range.
 std::vector<float> read_floats(const GltfDocument& document, int accessor, LoadReport& report);
 
-/// The elements of an unsigned integer accessor.
+/// Returns the elements of an accessor of unsigned integers.
 std::vector<uint32_t> read_indices(const GltfDocument& document, int accessor, LoadReport& report);
 
 }  // namespace promin

@@ -26,7 +26,7 @@ constexpr std::array<int8_t, 256> make_base64_values() {
   for (size_t i = 0; i < kAlphabet.size(); ++i) {
     values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int8_t>(i);
   }
-  // The letters of RFC 4648, section 5, too.
+  // The letters of RFC 4648, section 5, are accepted too.
   values['-'] = values['+'];
   values['_'] = values['/'];
   return values;
@@ -39,7 +39,7 @@ int hex_value(char c) {
   return -1;
 }
 
-/// Whether a text ends so, whatever the case of its letters.
+/// Returns whether a text has this ending; upper and lower case are equal.
 bool has_ending(std::string_view text, std::string_view ending) {
   if (text.size() < ending.size()) return false;
   return std::ranges::equal(text.substr(text.size() - ending.size()), ending, [](char a, char b) {
@@ -47,7 +47,7 @@ bool has_ending(std::string_view text, std::string_view ending) {
   });
 }
 
-// The readers below return nullopt once the report holds the reason.
+// The following functions return nullopt after they have added the reason to the report.
 
 std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& place, LoadReport& report,
                                    uint64_t most_bytes = std::numeric_limits<uint64_t>::max()) {
@@ -64,7 +64,7 @@ std::optional<Bytes> read_data_uri(const std::string& uri, const std::string& pl
     if (unescaped) std::erase_if(*unescaped, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
     text = unescaped ? std::string_view(*unescaped) : "*";
   }
-  // Four letters are three bytes.
+  // Four letters encode three bytes.
   if (most_bytes / 3 < text.size() / 4) text = text.substr(0, (most_bytes / 3 + 1) * 4);
   std::optional<Bytes> bytes = decode_base64(text);
   if (!bytes) report.refuse("gltf.uri.broken", "the data: URI contains invalid base64", place, "export the file again");
@@ -84,7 +84,7 @@ std::optional<std::filesystem::path> find_file(const std::string& uri, const std
   return std::nullopt;
 }
 
-/// The number of bytes that a URI names; 0 where they cannot be read.
+/// Returns the number of bytes to which a URI refers; 0 if they cannot be read.
 uint64_t size_of_uri(const std::string& uri, const std::string& place, const LoadReport& report) {
   LoadReport attempt = report.make_attempt();
   if (is_data(uri)) return read_data_uri(uri, place, attempt).value_or(Bytes{}).size();
@@ -99,7 +99,7 @@ std::string say_too_short(uint64_t size, uint64_t length) {
   return "has " + std::to_string(size) + " bytes, fewer than its byteLength of " + std::to_string(length);
 }
 
-/// The buffer that the bytes of a view lie in, compressed or not, and the byte where they end.
+/// The buffer that contains the bytes of a view, compressed or not, and the offset of their end.
 struct Extent {
   size_t buffer = 0;
   uint64_t end = 0;
@@ -113,7 +113,7 @@ Extent extent_of(const GltfDocument& document, size_t index) {
           compressed->value("byteOffset", uint64_t{0}) + (*compressed)["byteLength"].get<uint64_t>()};
 }
 
-/// The number of bytes of each buffer that the needed views cover.
+/// Returns for each buffer the number of bytes that the needed views cover.
 std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_images) {
   std::vector<uint64_t> needed(elements_of(document.json, "buffers").size(), 0);
   const std::vector<bool> is_needed_view = find_needed_views(document, with_images);
@@ -125,7 +125,7 @@ std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_
   return needed;
 }
 
-/// Returns whether the buffer only represents the content of compressed views, and needs no bytes.
+/// Returns whether the buffer only stands for the decompressed content of views, and needs no bytes.
 bool is_fallback(const json& buffer) {
   const json* extension = find_meshopt(buffer);
   if (extension == nullptr) return false;
@@ -133,7 +133,7 @@ bool is_fallback(const json& buffer) {
   return fallback != extension->end() && *fallback == true;
 }
 
-/// Finds the views that readers of a document need.
+/// Finds the views whose bytes the readers of a document need.
 class NeededViews {
  public:
   NeededViews(const GltfDocument& document, bool with_images)
@@ -199,7 +199,7 @@ class NeededViews {
   std::vector<bool> is_needed_;
 };
 
-/// Exporters count bytes of padding that they do not write.
+/// Some exporters count bytes of padding that they do not write.
 constexpr uint64_t kMostPadding = 3;
 
 /// Reads the buffers of one document.
@@ -216,7 +216,7 @@ class BufferReader {
     for (const json& source : elements_of(document_.json, "buffers")) {
       const size_t index = buffers_.bytes.size();
       buffers_.bytes.emplace_back();
-      // One that cannot be used is null (check_gltf_schema).
+      // A buffer that cannot be used is null (check_gltf_schema).
       if (source.is_null()) continue;
       if (source["byteLength"] == 0) {
         report_.repair({"gltf.buffer.empty", "a buffer has no bytes", "", place_of(index), "remove it",
@@ -235,7 +235,7 @@ class BufferReader {
  private:
   static std::string place_of(size_t index) { return "buffers[" + std::to_string(index) + "]"; }
 
-  /// The binary chunk belongs to the first buffer alone.
+  /// Only the first buffer can be the binary chunk.
   bool is_chunk(const json& source, size_t index) const {
     return !source.contains("uri") && index == 0 && glb_binary_.has_value();
   }
@@ -265,8 +265,8 @@ class BufferReader {
     if (bytes.size() < source["byteLength"].get<uint64_t>()) repair_length(source["byteLength"], index);
   }
 
-  /// Accepts a buffer that is shorter than declared if its views need none of the missing bytes. Up to three missing
-  /// bytes that they need are padding, and become 0.
+  /// Accepts a buffer that is shorter than declared if its views need none of the missing bytes. If the views need up
+  /// to three of the missing bytes, these are padding and become 0.
   void repair_length(uint64_t length, size_t index) {
     std::span<const std::byte>& bytes = buffers_.bytes[index];
     const uint64_t needed = needed_by_meshes_[index];
@@ -284,7 +284,7 @@ class BufferReader {
     bytes = own;
   }
 
-  /// Reads a buffer that contains only images; they are left out if it cannot be read.
+  /// Reads a buffer that contains only images. If it cannot be read, its images are left out.
   void try_buffer(const json& source, size_t index) {
     LoadReport attempt = report_.make_attempt();
     try {

@@ -13,14 +13,15 @@ namespace {
 
 using nlohmann::json;
 
-/// An accessor that contains only zeros needs no bytes in the file, so the file's size does not limit it.
+/// The largest number of elements of an accessor that contains only zeros. Such an accessor needs no bytes in the file,
+/// so the file's size does not limit it.
 constexpr uint64_t kMaxZeroElements = 1 << 24;
 
 struct Format {
   std::string_view attribute;
   std::string_view type;
   int component_type;
-  /// Whether the accessor must be, must not be, or (nullopt) may be normalized.
+  /// Whether the accessor must be normalized (true), must not be (false), or may be (nullopt).
   std::optional<bool> normalized;
 };
 
@@ -74,14 +75,14 @@ std::string at(const char* array, size_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
 }
 
-/// Columns of matrices are padded to 4 bytes.
+/// Returns the number of bytes of an element. Columns of matrices are padded to 4 bytes.
 uint64_t element_bytes(const std::string& type, int component_type) {
   if (!type.starts_with("MAT")) return component_count(type) * component_bytes(component_type);
   const auto rows = static_cast<uint64_t>(type[3] - '0');
   return rows * ((rows * component_bytes(component_type) + 3) / 4 * 4);
 }
 
-/// The same without the padding of the last column, which a view need not have.
+/// Returns the number of bytes of an element without the padding of the last column, which a view need not contain.
 uint64_t needed_bytes(const std::string& type, int component_type) {
   const uint64_t bytes = element_bytes(type, component_type);
   if (!type.starts_with("MAT")) return bytes;
@@ -89,14 +90,14 @@ uint64_t needed_bytes(const std::string& type, int component_type) {
   return bytes - ((column + 3) / 4 * 4 - column);
 }
 
-/// All sets of joints and weights are read, and have the formats of the first.
+/// Returns the first name of a series: all sets of joints and weights are read, and have the formats of the first set.
 std::string_view first_of_sets(std::string_view attribute) {
   if (attribute.starts_with("JOINTS_")) return "JOINTS_0";
   return attribute.starts_with("WEIGHTS_") ? "WEIGHTS_0" : attribute;
 }
 
-/// Refuses `count` elements that do not fit into a buffer view. In 64 bits nothing wraps: the schema keeps offsets
-/// below 2^53, counts and strides below 2^31.
+/// Refuses `count` elements that do not fit into a buffer view. The computation does not overflow in 64 bits: the
+/// schema keeps offsets below 2^53, counts and strides below 2^31.
 void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t stride, uint64_t size,
                const std::string& place, LoadReport& report) {
   const auto available = view["byteLength"].get<uint64_t>();
@@ -108,7 +109,7 @@ void check_fit(const json& view, uint64_t offset, uint64_t count, uint64_t strid
                 place, "correct the count, the offset or the buffer view");
 }
 
-/// A stride of 0 stands for packed elements.
+/// Returns the stride of a view. A stride of 0 stands for packed elements.
 uint64_t stride_of(const json& view, uint64_t element) {
   const uint64_t stride = view.value("byteStride", element);
   return stride == 0 ? element : stride;
@@ -174,7 +175,7 @@ void check_format(const json& accessor, std::string_view attribute, const std::s
                 place, "export it as the glTF specification requires");
 }
 
-/// Checks the attributes of instances against each other.
+/// Checks that the attributes of instances agree with each other.
 void check_attributes(const json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   uint64_t first_count = 0;
   for (const auto& [name, index] : attributes.items()) {
@@ -191,7 +192,8 @@ void check_attributes(const json& attributes, const json& accessors, const std::
   }
 }
 
-/// Returns whether an attribute that only affects shading does not match the others, after reporting why.
+/// Returns whether an attribute that only affects shading does not match the other attributes. If so, adds the reason
+/// to the report.
 bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_count, const std::string& place,
                  LoadReport& report) {
   const auto count = accessor["count"].get<uint64_t>();
@@ -207,8 +209,8 @@ bool is_left_out(std::string_view name, const json& accessor, uint64_t vertex_co
   return has_wrong_format || count != vertex_count;
 }
 
-/// Checks the attributes of vertices against each other. Invalid attributes other than the position are removed;
-/// without joints a mesh is not posed.
+/// Checks that the attributes of vertices agree with each other. Invalid attributes other than the position are
+/// removed. A mesh without valid joints is not posed.
 void check_vertices(json& attributes, const json& accessors, const std::string& place, LoadReport& report) {
   const auto positions = attributes.find("POSITION");
   if (positions == attributes.end()) return;
@@ -226,7 +228,7 @@ void check_vertices(json& attributes, const json& accessors, const std::string& 
   }
 }
 
-/// Instances need bytes in the file, so that its size bounds their number.
+/// Instances must have bytes in the file, so that the file's size limits their number.
 void check_instances(const json& node, const json& accessors, const std::string& place, LoadReport& report) {
   const json* extension = find_extension(node, "EXT_mesh_gpu_instancing");
   if (extension == nullptr) return;
@@ -251,7 +253,7 @@ void check_primitive(json& primitive, const json& accessors, const std::string& 
   }
 }
 
-/// Marks the buffer views that accessors or compressed meshes use; those that only images use stay unmarked.
+/// Marks the buffer views that accessors or compressed meshes use. Views that only images use are not marked.
 std::vector<bool> find_structural_views(const json& document) {
   std::vector<bool> is_structural(elements_of(document, "bufferViews").size(), false);
   const auto mark = [&](const json& holder) {
@@ -291,7 +293,7 @@ void check_view(const json& view, uint64_t available, const std::string& place, 
   }
 }
 
-/// Images lose a view that is no part of its buffer.
+/// Removes views from images if they do not lie within their buffer.
 void check_images(json& document, LoadReport& report) {
   if (!document.contains("images")) return;
   size_t i = 0;
@@ -309,7 +311,8 @@ void check_images(json& document, LoadReport& report) {
   }
 }
 
-/// Returns the accessors whose elements mesh primitives read directly; those of others are in a Draco stream.
+/// Returns which accessors contain elements that mesh primitives read directly. The elements of the other accessors are
+/// in a Draco stream.
 std::vector<bool> find_plain_accessors(const json& document) {
   std::vector<bool> is_plain(elements_of(document, "accessors").size(), true);
   const auto visit = [&](bool is_compressed) {

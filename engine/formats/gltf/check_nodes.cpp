@@ -17,7 +17,7 @@ std::string node_place(size_t node) {
   return "nodes[" + std::to_string(node) + "]";
 }
 
-/// Removes the elements that `is_extra` finds from an array of indices.
+/// Removes the elements for which `is_extra` returns true from an array of indices.
 template <class IsExtra>
 void take_out(json& indices, const IsExtra& is_extra) {
   json kept = json::array();
@@ -27,10 +27,10 @@ void take_out(json& indices, const IsExtra& is_extra) {
   if (kept.size() < indices.size()) indices = std::move(kept);
 }
 
-/// The number of parents of each node, each of which has it as a child once.
+/// Returns the number of parents of each node. Each parent has the node once as a child.
 std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
   std::vector<uint32_t> parent_counts(nodes.size(), 0);
-  // The last parent that was seen of each node.
+  // For each node, the last parent that was found.
   std::vector<size_t> parents(nodes.size(), nodes.size());
   for (size_t i = 0; i < nodes.size(); ++i) {
     if (!nodes[i].contains("children")) continue;
@@ -52,7 +52,7 @@ std::vector<uint32_t> count_parents(json& nodes, LoadReport& report) {
   return parent_counts;
 }
 
-/// A node that is not reached after all of its parents lies on a cycle or below one.
+/// Refuses cycles. A node that is not reached after all of its parents is on a cycle or below one.
 void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadReport& report) {
   std::vector<size_t> reached;
   size_t reached_count = 0;
@@ -74,7 +74,7 @@ void refuse_cycles(const json& nodes, std::vector<uint32_t> parent_counts, LoadR
                 "remove the child that closes the cycle");
 }
 
-/// Makes the last row of a matrix 0 0 0 1.
+/// Sets the last row of a matrix to 0 0 0 1.
 void make_affine(json& matrix, const std::string& place, bool is_strict, LoadReport& report) {
   for (const size_t i : {3, 7, 11, 15}) {
     const double wanted = i == 15 ? 1.0 : 0.0;
@@ -118,7 +118,7 @@ void mark_below(const json& nodes, size_t node, std::vector<bool>& is_below) {
   }
 }
 
-/// Keeps those nodes in a scene's list that are shown because of it.
+/// Removes a node from a scene's list if the list has it twice or if it is below another listed node.
 void check_scene(json& listed, const json& nodes, const std::vector<uint32_t>& parent_counts, const std::string& place,
                  LoadReport& report) {
   std::vector<bool> is_listed(nodes.size(), false);

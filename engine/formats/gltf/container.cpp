@@ -33,7 +33,7 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   throw InputError({code, what, place, kExportAgain});
 }
 
-/// Compares the length in the header with the end of the chunks.
+/// Checks that the length in the header equals the end of the chunks.
 void check_length(size_t length, size_t end, size_t size, LoadReport& report) {
   if (length != end) {
     report.repair({"glb.length", "the length in the GLB header differs from the length of the chunks",
@@ -58,7 +58,8 @@ uint32_t read_length(std::span<const std::byte> bytes, LoadReport& report) {
   return read_u32(bytes, 8);
 }
 
-/// The bytes of the chunk whose header ends at `offset`. Some exporters count bytes of padding that they do not write.
+/// Returns the bytes of the chunk whose header ends at `offset`. Some exporters count bytes of padding that they do not
+/// write.
 std::span<const std::byte> take_chunk(std::span<const std::byte> bytes, size_t offset, size_t length,
                                       const std::string& place, LoadReport& report) {
   const size_t left = bytes.size() - offset;
@@ -77,7 +78,7 @@ GltfContainer split_glb(std::span<const std::byte> bytes, LoadReport& report) {
   GltfContainer container;
   bool is_first = true;
   size_t offset = kHeaderBytes;
-  // The header's length gives the end of the chunks; each chunk has its own length.
+  // The header's length is the end of the chunks. Each chunk has its own length.
   while (offset < end) {
     const std::string place = "byte " + std::to_string(offset);
     if (end - offset < kChunkHeaderBytes) {

@@ -24,7 +24,7 @@ int index_of(const json& object, const char* name) {
   return object.value(name, -1);
 }
 
-// What nothing uses is null (check_gltf_schema), and its view is empty.
+// An element that nothing uses is null (check_gltf_schema), and its typed view is empty.
 
 GltfBufferView view_of(const json& source) {
   if (source.is_null()) return {};
@@ -86,7 +86,7 @@ void fill_views(GltfDocument& document) {
   document.scene = source.value("scene", size_t{0});
 }
 
-/// Renames an extension's draft, which has the same form.
+/// Renames the draft of an extension to its final name; both have the same form.
 void rename_extension(json& element, const char* draft, const char* name) {
   const auto extensions = element.find("extensions");
   if (extensions == element.end() || !extensions->is_object() || extensions->contains(name)) return;
@@ -96,7 +96,7 @@ void rename_extension(json& element, const char* draft, const char* name) {
   extensions->erase(draft);
 }
 
-/// KHR_lights is the name of KHR_lights_punctual before ratification.
+/// Renames KHR_lights, which was the name of KHR_lights_punctual before its ratification.
 void rename_lights(json& document) {
   rename_extension(document, "KHR_lights", "KHR_lights_punctual");
   const auto nodes = document.find("nodes");
@@ -150,7 +150,7 @@ GltfDocument read_gltf_document(const LoadOptions& options, LoadReport& report) 
   decode_gltf_draco(document, report);
   report.throw_if_refused();
 
-  // Moving the bytes leaves them where they are: the views into them stay valid.
+  // Moving the vector does not move its bytes, so the views of them stay valid.
   if (container.binary) document.glb = std::move(bytes);
   return document;
 }

@@ -26,12 +26,12 @@ constexpr uint8_t kSequential = 0;
 constexpr uint8_t kEdgebreaker = 1;
 constexpr uint16_t kHasMetadata = 0x8000;
 
-/// The largest plausible number of triangles or vertices per byte: a regular grid of 14 bits in the tightest coding has
-/// 8 triangles per byte. The decoder allocates about 24 bytes per triangle at once.
+/// The largest plausible number of triangles or vertices per byte: a regular grid with 14 bits in the tightest coding
+/// has 8 triangles per byte. The decoder allocates about 24 bytes per triangle in advance.
 constexpr uint64_t kSmallMesh = uint64_t{1} << 19;
 constexpr uint64_t kMostPerByte = 16;
 
-/// Why a stream cannot be used.
+/// Thrown if a stream cannot be used; the message is the reason.
 struct DracoError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -39,7 +39,7 @@ struct DracoError : std::runtime_error {
 /// The numbers that a stream's header declares.
 struct Promise {
   uint64_t faces = 0;
-  /// Of the vertices at least so many.
+  /// The smallest number of vertices.
   uint64_t vertices = 0;
 };
 
@@ -85,7 +85,7 @@ Promise read_promise(std::span<const std::byte> stream) {
     promise.faces = read_count(buffer);
     promise.vertices = read_count(buffer);
   } else if (method == kEdgebreaker) {
-    read<uint8_t>(buffer);  // How triangles are traversed.
+    read<uint8_t>(buffer);  // The method of traversing triangles; not needed here.
     promise.vertices = read_count(buffer);
     promise.faces = read_count(buffer);
   } else {
@@ -100,7 +100,7 @@ struct Task {
   size_t primitive = 0;
   const json* extension = nullptr;
   std::string problem;
-  /// The triangles, and the attributes by their names, as their accessors have them.
+  /// The indices of the triangles, and the attributes by name, each in the format of its accessor.
   Bytes indices;
   std::vector<std::pair<std::string, Bytes>> attributes;
 };
@@ -109,7 +109,7 @@ std::string say(uint64_t count, const char* noun) {
   return std::to_string(count) + " " + noun;
 }
 
-/// Decodes one stream into the formats of the accessors.
+/// Decodes one stream to the formats of the primitive's accessors.
 class PrimitiveDecoder {
  public:
   PrimitiveDecoder(const GltfDocument& document, Task& task)
@@ -216,7 +216,7 @@ class PrimitiveDecoder {
   std::unique_ptr<draco::Mesh> mesh_;
 };
 
-/// Adds an accessor like `like` over bytes of its own; its index.
+/// Adds an accessor with the format of `like` and its own bytes. Returns its index.
 int add_accessor(GltfDocument& document, const GltfAccessor& like, Bytes bytes) {
   GltfBufferView view;
   view.buffer = static_cast<int>(document.buffers.bytes.size());

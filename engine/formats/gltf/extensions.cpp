@@ -60,15 +60,15 @@ struct Extension {
 
   std::string name;
   bool is_known;
-  /// Its place in extensionsRequired, or -1.
+  /// Index of the extension in extensionsRequired; -1 if it is not there.
   int required = -1;
   size_t material_count = 0;
   size_t texture_count = 0;
-  /// The first part of the geometry that carries it; empty where none does.
+  /// The place of the first part of the geometry that has the extension; empty if no part has it.
   std::string geometry_place;
 };
 
-/// The names below all members "extensions" of an element.
+/// Collects the names in all members "extensions" inside an element.
 void collect_names(const json& element, std::set<std::string>& names) {
   if (!element.is_structured()) return;
   for (const auto& [key, value] : element.items()) {
@@ -116,7 +116,7 @@ class ExtensionCensus {
     for (const std::string& name : names) ++entry(name).material_count;
   }
 
-  /// Only listed extensions are searched for; others are not reported.
+  /// Finds the places of listed extensions. Unlisted extensions are not reported, so they are not searched for.
   void find_places(const json& parent, const char* array, const std::string& prefix) {
     const json& elements = elements_of(parent, array);
     for (size_t i = 0; i < elements.size(); ++i) {
@@ -136,7 +136,7 @@ class ExtensionCensus {
   std::map<std::string, size_t> places_;
 };
 
-/// "3 materials use".
+/// Returns words such as "3 materials use".
 std::string say_users(size_t count, const std::string& noun) {
   return count_of(count, noun).append(" ").append(verb_of(count, "uses", "use")).append(" ");
 }

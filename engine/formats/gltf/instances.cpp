@@ -78,7 +78,7 @@ class InstanceReader {
 
 std::optional<uint64_t> count_gltf_instances(const GltfDocument& document, const PlacedNode& placed) {
   const json* attributes = attributes_of(document, placed);
-  // All attributes have one count (checks.h).
+  // All attributes of instances have the same count (checks.h).
   if (attributes == nullptr || attributes->empty()) return std::nullopt;
   return document.accessors[attributes->begin()->get<size_t>()].count;
 }

@@ -11,10 +11,10 @@ namespace promin {
 
 // Access functions for a glTF document that follows the schema (schema.h).
 
-/// The array `name` of an object; an empty one if there is none.
+/// Returns the array `name` of an object; an empty array if there is none.
 const nlohmann::json& elements_of(const nlohmann::json& object, const char* name);
 
-/// The extension `name` of an element, or null.
+/// Returns the extension `name` of an element, or null.
 const nlohmann::json* find_extension(const nlohmann::json& element, const char* name);
 
 dvec3 vec3_of(const nlohmann::json& object, const char* name, const dvec3& otherwise);

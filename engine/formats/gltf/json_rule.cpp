@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Every integer up to here is a double.
+/// Every integer up to this one can be stored exactly in a double.
 constexpr double kLargestExact = 0x1p53;
 
 std::string written(double x) {
@@ -23,7 +23,7 @@ std::string written(double x) {
   return text;
 }
 
-/// Length of the array at a path without wildcards; 0 where there is none.
+/// Returns the length of the array at a path without wildcards; 0 if there is no such array.
 size_t size_of_array(const json& document, std::string_view path) {
   const json* value = &document;
   while (!path.empty()) {
@@ -37,7 +37,7 @@ size_t size_of_array(const json& document, std::string_view path) {
   return value->is_array() ? value->size() : 0;
 }
 
-/// The last name of a path: "normalTexture", "cameras[]".
+/// Returns the last name of a path: "normalTexture", "cameras[]".
 std::string_view last_name(std::string_view path) {
   return path.substr(path.find_last_of('.') + 1);
 }
@@ -69,7 +69,7 @@ std::string say_left_out(const JsonRule& rule) {
   return "promin ignores the object that contains it";
 }
 
-/// The place of a value in a document, which becomes a text only if a message needs it.
+/// The place of a value in a document. It is converted to text only if a message needs it.
 struct Place {
   static constexpr size_t kNoIndex = std::numeric_limits<size_t>::max();
 
@@ -84,7 +84,7 @@ struct Place {
     return (prefix.empty() ? "" : prefix + ".") + std::string(name);
   }
 
-  /// Whether it is a member of the document itself, of this name.
+  /// Returns whether this is the member of the document itself that has this name.
   bool is_part(std::string_view part) const { return outer != nullptr && outer->outer == nullptr && name == part; }
 };
 
@@ -111,7 +111,7 @@ class RuleCheck {
     return visit_member(value, place, path);
   }
 
-  /// The elements that indices point to.
+  /// Returns for each element whether a checked index refers to it.
   const std::vector<bool>& used() const { return used_; }
 
  private:
@@ -155,7 +155,7 @@ class RuleCheck {
     return level;
   }
 
-  /// The checks return whether the value may stay.
+  /// The following functions check a value, and return whether it may stay.
   bool check_value(json& value, const Place& place) {
     switch (rule_.kind) {
       case JsonKind::kObject:
@@ -180,7 +180,7 @@ class RuleCheck {
     return true;
   }
 
-  /// Repairs or refuses what is wrong with a value: `shown` is the value, `subject` names its kind.
+  /// Repairs or refuses a value. `shown` is the value in messages; `subject` names its kind.
   bool fail(ProblemCode code, const std::string& subject, const std::string& shown, const std::string& predicate,
             const Place& place, const std::string& cure) {
     const std::string where = place.outer == nullptr ? "the top level" : place.text();
@@ -199,7 +199,8 @@ class RuleCheck {
                 "write " + wanted);
   }
 
-  /// JSON has one kind of number: 3.0 is a valid index, and 1e99 an integer out of range.
+  /// Converts a number to an integer. JSON has one kind of number: 3.0 is a valid index, and 1e99 is an integer out of
+  /// range.
   static bool make_integer(json& value) {
     if (value.is_number_integer()) return true;
     if (!value.is_number_float()) return false;
@@ -218,7 +219,8 @@ class RuleCheck {
     if (number >= rule_.lo && number <= rule_.hi) return true;
     const std::string range = written(rule_.lo) + " to " + written(rule_.hi);
     const std::string cure = "use a number from " + range;
-    // Without clamping, a rounding error relative to a small limit is not small.
+    // A value that is not clamped must lie within a small tolerance of its limit, so the tolerance is relative to the
+    // limit.
     const double lo_rounding = rule_.is_clamped ? kMostRounding : kMostRounding * rule_.lo;
     const bool is_rounded = number >= rule_.lo - lo_rounding && number <= rule_.hi + kMostRounding;
     const bool is_kept = rule_.is_clamped || (is_rounded && !is_strict_);
@@ -272,19 +274,19 @@ class RuleCheck {
                 "use one of them");
   }
 
-  /// "5126", a string, is not the number 5126.
+  /// Checks the type of a choice: the string "5126" is not the number 5126.
   bool check_choice_type(const json& value, const Place& place) {
     const bool is_number_wanted = rule_.target.front() >= '0' && rule_.target.front() <= '9';
     return expect(is_number_wanted == value.is_number(), value, place, is_number_wanted ? "a number" : "a string");
   }
 
   const JsonRule& rule_;
-  /// The array in which only used elements are visited, unless empty.
+  /// The path of the array in which only used elements are checked; empty if all elements are checked.
   std::string_view skipped_in_;
   const std::vector<bool>& kept_;
   bool is_strict_;
   LoadReport& report_;
-  /// What visit() returns where the rule is broken.
+  /// The value that visit() returns if the rule is broken.
   int level_;
   std::vector<bool> used_;
 };

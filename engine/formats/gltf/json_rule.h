@@ -14,31 +14,34 @@ namespace promin {
 
 enum class JsonKind { kObject, kArray, kText, kBoolean, kInteger, kNumber, kNumbers, kIndex, kChoice };
 
-/// The rule for the value at a path. "[]" is every element of an array, "*" every member of an object.
+/// A rule for the value at a path. In a path, "[]" stands for every element of an array, and "*" for every member of an
+/// object.
 struct JsonRule {
   std::string_view path;
   JsonKind kind = JsonKind::kObject;
   bool is_required = false;
-  /// Range of integers and numbers, ends included.
+  /// Smallest and largest allowed value of integers and numbers.
   double lo = 0.0;
   double hi = 0.0;
-  /// Length of kNumbers.
+  /// Length of an array of kNumbers.
   size_t count = 0;
-  /// kIndex: path of the array it points into. kChoice: the values, separated by '|'.
+  /// For kIndex, the path of the array to which the index refers. For kChoice, the allowed values, separated by '|'.
   std::string_view target = {};
-  /// Whether a value that breaks the rule is removed with a warning, and not refused. If the value is required, the
-  /// object that contains it is removed.
+  /// If true, a value that breaks the rule is removed with a warning; if false, it is refused. If the value is
+  /// required, the object that contains it is removed.
   bool is_repaired = false;
-  /// Whether a repaired number out of range is clamped. There is no warning if the number is only off by rounding.
+  /// True if a repaired number out of range is clamped. There is no warning if the number is out of range only by
+  /// rounding.
   bool is_clamped = true;
-  /// The part to remove instead: a prefix of `path`; empty for the default above.
+  /// The part to remove in place of the value: a prefix of `path`. If empty, `is_repaired` describes which part is
+  /// removed.
   std::string_view part = {};
 };
 
-/// The largest distance from the range of a number that an exporter rounded.
+/// The largest distance from the allowed range of a number that an exporter has rounded.
 inline constexpr double kMostRounding = 1e-3;
 
-/// Functions for rows of tables: `index("scene", "scenes")`.
+/// Functions that make rows of tables of rules, such as `index("scene", "scenes")`.
 namespace rules {
 
 constexpr JsonRule object(std::string_view path) {
@@ -91,7 +94,8 @@ class JsonCheck {
   JsonCheck(nlohmann::json& document, bool is_strict, LoadReport& report)
       : document_(document), is_strict_(is_strict), report_(report) {}
 
-  /// Checks a rule. In the array at the path `only_used`, if given, it checks only elements that indices refer to.
+  /// Checks the document against a rule. In the array at the path `only_used`, if given, it checks only elements to
+  /// which indices refer.
   void check(const JsonRule& rule, std::string_view only_used = {});
 
   /// Returns whether a checked index refers to this element of the array at `target`.

@@ -17,10 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-/// A narrower cone has an area of the sphere that fp32 cannot represent.
+/// The smallest angle of a cone. The area of a narrower cone on the unit sphere is too small for fp32.
 constexpr float kLeastConeAngle = 1e-3F;
 
-/// Returns the kind for a type that the schema accepts. A type that only the schema knows is a bug.
+/// Returns the kind of light for a type that the schema accepts. Throws std::logic_error for any other type.
 LightKind kind_of(const std::string& type) {
   if (type == "directional") return LightKind::kDirectional;
   if (type == "point") return LightKind::kPoint;
@@ -34,7 +34,7 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   const double outer = spot.value("outerConeAngle", std::numbers::pi / 4.0);
   light.inner_cone_angle = static_cast<float>(inner);
   light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
-  // Both as they are given and as the light has them.
+  // Compares the angles both as the file gives them and after their conversion to fp32.
   if (inner < outer && light.inner_cone_angle < light.outer_cone_angle) return;
   report.repair({"gltf.light.cone", "a spot's inner cone angle is not less than its outer cone angle", "",
                  place + ".spot", "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
@@ -42,7 +42,8 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   light.inner_cone_angle = std::nextafter(light.outer_cone_angle, 0.0F);
 }
 
-/// Candela and lux are powers as they stand; a directional light has no distance to fall off with.
+/// Reads the power. Candela and lux are used without conversion; a directional light has no attenuation, because it has
+/// no distance.
 void read_power(const json& source, const std::string& title, Light& light, LoadReport& report) {
   const dvec3 power = source.value("intensity", 1.0) * vec3_of(source, "color", dvec3(1.0));
   light.diffuse = light.specular = vec3(power);
@@ -64,7 +65,8 @@ void read_power(const json& source, const std::string& title, Light& light, Load
   }
 }
 
-/// Returns the unit direction of a light: along -Z of its node or, if that has no length, of the rotations alone.
+/// Returns the unit direction of a light: along -Z of its node. If that vector has no length, only the node's rotations
+/// determine the direction.
 std::optional<dvec3> direction_of(const PlacedNode& placed) {
   const dvec3 direction(-placed.world_from_object[2]);
   const double length = glm::length(direction);
@@ -83,7 +85,7 @@ GradientSky gradient_of(const json& source) {
   return sky;
 }
 
-/// Returns the member if it exists and has the right type.
+/// Returns the member of this name if it exists and has the right type.
 template <typename T>
 std::optional<T> value_of(const json& object, const char* name) {
   if (!object.is_object()) return std::nullopt;
@@ -94,7 +96,7 @@ std::optional<T> value_of(const json& object, const char* name) {
   return member->get<T>();
 }
 
-/// The picture of a panorama. On nullopt the report holds the reason.
+/// Reads the picture of a panorama. If this fails, adds the reason to the report and returns nullopt.
 std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const json& source, LoadReport& report) {
   if (source.contains("cubemap") && !source.contains("equirectangular")) {
     report.warn("the sky is a cube map, but promin draws only equirectangular panoramas; the scene has no sky");
@@ -126,7 +128,7 @@ std::optional<Panorama> read_panorama_sky(const GltfDocument& document, const js
   }
 }
 
-/// Warns of features of a directional sky that are not modelled.
+/// Warns of features of a directional sky that promin does not model.
 void warn_about_sky(const json& sky, LoadReport& report) {
   if (sky.value("ambientSkyContribution", 1.0) < 1.0) {
     report.warn("ambientSkyContribution is ignored; all ambient light comes from the sky");
@@ -146,7 +148,7 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   const auto& extension = document.json["extensions"]["KHR_lights_punctual"];
   const size_t index = (*link)["light"];
   const auto& source = extension["lights"][index];
-  // One that cannot be used is null (JsonCheck).
+  // A light that cannot be used is null (JsonCheck).
   if (source.is_null()) return std::nullopt;
   const std::string place = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "]";
   const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
@@ -198,7 +200,7 @@ void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& repor
     if (std::optional<Panorama> panorama = read_panorama_sky(document, sky[type], report)) {
       scene.environment.sky = std::move(*panorama);
       scene.environment.shows_sky = true;
-      // Its middle is +Z here.
+      // In the extension, the middle of the picture is +Z.
       scene.environment.rotation = std::numbers::pi_v<float>;
       warn_about_sky(sky, report);
       return;

@@ -10,9 +10,9 @@
 
 namespace promin {
 
-/// Returns the light of a node, if it has one (KHR_lights_punctual; PROMIN_lights_phong makes it a classic light). The
-/// node's scale is ignored, and the light travels along its -Z. A light without a direction, or too far away, is left
-/// out with a warning.
+/// Returns the light of a node, if it has one (KHR_lights_punctual). The extension PROMIN_lights_phong makes it a
+/// classic light. The node's scale is ignored, and the light travels along the node's -Z. A light without a direction,
+/// or too far away, is left out with a warning.
 std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
 /// Sets the scene's environment from OMI_environment_sky: background and ambient light for a plain sky, or the sky for

@@ -26,12 +26,13 @@ namespace {
 
 using nlohmann::json;
 
-/// Nodes may show one mesh many times, so the size of the file does not limit the scene's.
+/// The largest number of triangles of a scene. Nodes may show one mesh many times, so the file's size does not limit
+/// it.
 constexpr uint64_t kMaxTriangles = uint64_t{1} << 28;
-/// Objects are numbered in 32 bits, of which the last two numbers mean none.
+/// The largest number of objects. Objects are numbered in 32 bits, and the last two numbers mean "no object".
 constexpr uint64_t kMaxObjects = (uint64_t{1} << 32) - 2;
 
-/// Turns the nodes of a document into a scene.
+/// Converts the nodes of a document to a scene.
 class SceneReader {
  public:
   SceneReader(const GltfDocument& document, bool decodes_images, LoadReport& report)
@@ -77,7 +78,7 @@ class SceneReader {
 
   bool is_skinned(const GltfNode& node) const { return node.skin >= 0 && skins_->has_joints(node.skin); }
 
-  /// The node that shows a skinned mesh does not place it (glTF 2.0, section 3.7.3.3).
+  /// Reads a skinned mesh. The node that shows it does not determine its place (glTF 2.0, section 3.7.3.3).
   void read_skinned_mesh(const PlacedNode& placed) {
     if (count_gltf_instances(document_, placed)) {
       report_.warn({"gltf.skin.instances", "a skinned mesh has instances", "",
@@ -91,13 +92,13 @@ class SceneReader {
     read_mesh(posed);
   }
 
-  /// Returns whether a node's instances fit, before any of them is added.
+  /// Returns whether there is space for a node's instances, before any of them is added.
   bool has_room_for(uint64_t instance_count, const PlacedNode& placed) {
     const auto mesh = static_cast<size_t>(document_.nodes[static_cast<size_t>(placed.node)].mesh);
     const uint64_t primitive_count = document_.meshes[mesh].primitives.size();
     uint64_t triangle_count = 0;
     for (size_t i = 0; i < primitive_count; ++i) triangle_count += count_gltf_triangles(document_, mesh, i);
-    // Divided, because products may not fit into 64 bits.
+    // The code divides, because products may not fit into 64 bits.
     const uint64_t triangle_room = kMaxTriangles - std::min(triangle_count_, kMaxTriangles);
     const bool has_room = triangle_count <= triangle_room / instance_count &&
                           primitive_count <= (kMaxObjects - scene_.objects.size()) / instance_count;
@@ -117,7 +118,7 @@ class SceneReader {
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
-      // A scale of 0 is another way to hide a node.
+      // Some files hide a node with a scale of 0.
       const bool is_shown = placed.is_visible && !has_no_area(placed.world_from_object);
       if (is_shown) read_geometry(placed, mesh, primitive, object);
       if (object.geometry == Object::kNoGeometry) {
@@ -153,8 +154,8 @@ class SceneReader {
     return static_cast<uint32_t>(scene_.geometries.size() - 1);
   }
 
-  /// Returns the geometry of a primitive of a node's mesh, which is read once for all nodes with the same morph weights
-  /// and the same skin; kNoGeometry if nothing is drawn.
+  /// Returns the geometry of a primitive of a node's mesh; kNoGeometry if nothing is drawn. The geometry is read once
+  /// for all nodes with the same morph weights and the same skin.
   uint32_t find_mesh(int node, size_t primitive) {
     const GltfNode& shown = document_.nodes[static_cast<size_t>(node)];
     const auto mesh = static_cast<size_t>(shown.mesh);

@@ -7,7 +7,7 @@
 
 namespace promin {
 
-/// Reads a glTF 2.0 file, text or GLB. The contract is that of load_scene.
+/// Reads a glTF 2.0 file, text or GLB. Arguments, result and errors are as for load_scene().
 Scene load_gltf(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

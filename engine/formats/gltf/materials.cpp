@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The base colour of a glTF material, whatever its model.
+/// Returns the base colour of a glTF material of any model.
 dvec3 base_color_of(const json& source) {
   const auto pbr = source.find("pbrMetallicRoughness");
   return pbr == source.end() ? dvec3(1.0) : dvec3(vec4_of(*pbr, "baseColorFactor", dvec4(1.0)));
@@ -145,8 +145,8 @@ MetallicRoughness metallic_roughness_of(const json& source, const std::string& t
   return material;
 }
 
-/// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is its specular colour, as an index of
-/// refraction of 0 gives it.
+/// Converts KHR_materials_pbrSpecularGlossiness to a dielectric whose reflectance is the specular colour. An index of
+/// refraction of 0 causes this.
 MetallicRoughness specular_glossiness_of(const json& source, const json& extension, GltfTextures& textures) {
   const float glossiness = extension.value("glossinessFactor", 1.0F);
   MetallicRoughness material;
@@ -158,7 +158,7 @@ MetallicRoughness specular_glossiness_of(const json& source, const json& extensi
   material.base_color_texture = textures.read_slot(extension, "diffuseTexture", ImageUse::kColor);
   material.metallic_roughness_texture =
       textures.read_glossiness_slot(extension, "specularGlossinessTexture", glossiness);
-  // The texture has the factor in it.
+  // The texture's values already contain the factor.
   material.roughness = material.metallic_roughness_texture.exists() ? 1.0F : 1.0F - glossiness;
   read_shared_textures(source, textures, material);
   return material;

@@ -10,10 +10,10 @@
 
 namespace promin {
 
-/// Returns the materials of a document in file order, with their textures and alpha: PROMIN_materials_phong,
-/// KHR_materials_unlit or metallic-roughness; KHR_materials_pbrSpecularGlossiness is converted to the equivalent
-/// metallic-roughness. Warns with the material's name if a Phong material has textures or an alphaMode, which are
-/// ignored. extensions.h warns of unknown extensions.
+/// Returns the materials of a document in file order, with their textures and alpha. The models are
+/// PROMIN_materials_phong, KHR_materials_unlit and metallic-roughness. KHR_materials_pbrSpecularGlossiness is converted
+/// to an equivalent metallic-roughness material. Warns with the material's name if a Phong material has textures or an
+/// alphaMode, which are ignored. extensions.h warns of unknown extensions.
 std::vector<Material> read_gltf_materials(const GltfDocument& document, GltfTextures& textures, LoadReport& report);
 
 /// Returns the specification's default material, for primitives without a material.

@@ -22,7 +22,8 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
-/// Transforms of a smaller determinant are practically singular, or overflow, and normals may vanish.
+/// The smallest determinant of a transform. With a smaller one, the transform is almost singular or overflows, and
+/// normals may vanish.
 constexpr double kLeastDeterminant = 1e-100;
 
 /// Returns whether all vertices are in range in the world. Usually the corners of their box decide; otherwise each
@@ -51,17 +52,17 @@ void warn_of_normals(const std::string& place, LoadReport& report) {
                "promin uses flat shading for it"});
 }
 
-/// Returns a valid component of a vertex colour: not negative, and 1, which has no effect, for a NaN.
+/// Returns a valid component of a vertex colour: a negative value becomes 0, and a NaN becomes 1, which has no effect.
 float drawable(float component) {
   return std::isfinite(component) ? std::max(component, 0.0F) : 1.0F;
 }
 
 bool is_coordinate(float uv) {
-  // Written so that NaN fails.
+  // The comparison is written so that NaN fails.
   return std::abs(uv) <= kMaxCoordinate;
 }
 
-/// One mesh primitive.
+/// Reads one mesh primitive.
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
@@ -99,7 +100,7 @@ class PrimitiveReader {
     if (const int normals = accessor_of("NORMAL"); normals >= 0) read_normals(normals, mesh);
     if (const int colors = accessor_of("COLOR_0"); colors >= 0) read_colors(colors, mesh);
     read_uvs(mesh);
-    // Without normals the specification ignores tangents.
+    // The specification ignores tangents if there are no normals.
     if (const int tangents = accessor_of("TANGENT"); tangents >= 0 && !mesh.normals.empty() && !mesh.uvs.empty()) {
       read_tangents(tangents, mesh);
     }
@@ -129,7 +130,7 @@ class PrimitiveReader {
     return {};
   }
 
-  /// Triangles in file order, wound as the specification says.
+  /// Returns the triangles in file order, with the winding that the specification requires.
   std::vector<uvec3> assemble(const std::vector<uint32_t>& corners) {
     std::vector<uvec3> triangles;
     const size_t count = corners.size();
@@ -150,7 +151,8 @@ class PrimitiveReader {
     return triangles;
   }
 
-  /// Several primitives may share one large accessor: each keeps its own vertices, in the accessor's order.
+  /// Keeps only the vertices that the triangles use, in the accessor's order. Several primitives may share one large
+  /// accessor, and each then has its own vertices.
   void keep_used_vertices(std::vector<uvec3>& triangles) {
     std::vector<uint32_t> new_index(vertex_count_, kUnused);
     for (const uvec3& triangle : triangles) {
@@ -170,7 +172,7 @@ class PrimitiveReader {
     return place_ + ".attributes." + attribute + ", element " + std::to_string(vertex);
   }
 
-  /// Adds what the morph targets have of an attribute of three components, times their weights.
+  /// Adds the weighted values of the morph targets to an attribute of three components.
   void add_targets(const char* attribute, std::vector<float>& values) {
     for (size_t target = 0; target < std::min(weights_.size(), primitive_.targets.size()); ++target) {
       const auto found = primitive_.targets[target].find(attribute);
@@ -200,7 +202,8 @@ class PrimitiveReader {
                        element_place("POSITION", vertex), "export the mesh again, in a larger unit of length");
         return;
       }
-      // -0 becomes 0, as under a transform, so that no morph target and one without effect give the same result.
+      // The addition turns -0 into 0, as a transform does. A mesh without morph targets and one whose targets have no
+      // effect then have the same bits.
       mesh.positions.emplace_back(p[0] + 0.0F, p[1] + 0.0F, p[2] + 0.0F);
     }
   }
@@ -226,7 +229,7 @@ class PrimitiveReader {
     mesh.colors.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* c = &values[components * vertex];
-      // Alpha has a meaning in 0...1 alone (glTF 2.0, section 3.7.2.1).
+      // Alpha has a meaning only in 0...1 (glTF 2.0, section 3.7.2.1).
       const vec4 given(c[0], c[1], c[2], components == 4 ? c[3] : 1.0F);
       const vec4 color(drawable(given.r), drawable(given.g), drawable(given.b), std::min(drawable(given.a), 1.0F));
       if (const int wrong = find_wrong_component(given, color); wrong >= 0) {
@@ -238,11 +241,11 @@ class PrimitiveReader {
     }
   }
 
-  /// The component of a vertex colour that was repaired by more than rounding; -1 where none was.
+  /// Returns the component of a vertex colour whose repair changed it by more than rounding; -1 if there is none.
   static int find_wrong_component(const vec4& given, const vec4& color) {
     for (int i = 0; i < 4; ++i) {
       const bool is_alpha_too_large = i == 3 && given[i] > 1.0F && std::isfinite(given[i]);
-      // Written so that NaN fails.
+      // The comparison is written so that NaN fails.
       if (!is_alpha_too_large && !(std::abs(given[i] - color[i]) <= static_cast<float>(kMostRounding))) return i;
     }
     return -1;
@@ -287,7 +290,7 @@ class PrimitiveReader {
     mesh.tangents = std::move(tangents);
   }
 
-  /// Moves the mesh by its joints.
+  /// Moves the mesh with its joints.
   void pose(Mesh& mesh) {
     std::optional<SkinInfluences> influences = read_influences();
     if (!influences) return;
@@ -298,7 +301,7 @@ class PrimitiveReader {
     mesh.tangents.clear();
   }
 
-  /// Returns nullopt if there is nothing to pose, or after reporting the reason.
+  /// Returns nullopt if there is nothing to pose, or if the data is wrong; the report then has the reason.
   std::optional<SkinInfluences> read_influences() {
     SkinInfluences influences;
     for (int set = 0; accessor_of(("JOINTS_" + std::to_string(set)).c_str()) >= 0; ++set)
@@ -315,7 +318,7 @@ class PrimitiveReader {
     return influences;
   }
 
-  /// Adds a set of four joints to each vertex, after its other sets.
+  /// Adds four joints and their weights to each vertex, after its earlier sets.
   void add_influences(int set, SkinInfluences& influences) {
     const std::string number = std::to_string(set);
     const int weights = accessor_of(("WEIGHTS_" + number).c_str());
@@ -343,7 +346,7 @@ class PrimitiveReader {
         std::span(influences.weights).subspan(vertex * influences.per_vertex, influences.per_vertex);
     double sum = 0.0;
     for (const float weight : weights) sum += static_cast<double>(weight);
-    // Written so that NaN fails.
+    // The comparisons are written so that NaN fails.
     if (std::abs(sum) >= 1e-6 && std::abs(sum) <= kMaxCoordinate) return;
     report_.repair({"gltf.skin.weights", "a vertex of a skinned mesh has no weights, or weights that are not numbers",
                     "", element_place("WEIGHTS_0", used_vertices_[vertex]), "export the mesh again",
@@ -352,7 +355,7 @@ class PrimitiveReader {
     weights[0] = 1.0F;
   }
 
-  /// A joint with weight 0 may have any index.
+  /// Returns whether the joints of a vertex exist. A joint with weight 0 may have any index.
   bool has_valid_joints(size_t vertex, const SkinInfluences& influences) {
     for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
       if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;

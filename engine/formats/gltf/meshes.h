@@ -10,21 +10,22 @@
 
 namespace promin {
 
-/// Returns a mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space, with only the
-/// vertices that they use, moved by the morph targets of non-zero weight. Points, lines and primitives without a
-/// triangle give an empty mesh and a warning. Bad indices and coordinates go to the report.
+/// Returns a mesh primitive's triangles (modes 4, 5, 6; glTF 2.0, section 3.7.2) in the mesh's own space. The mesh has
+/// only the vertices that the triangles use, moved by the morph targets with a weight other than 0. For points, lines
+/// and primitives without a triangle the function returns an empty mesh and adds a warning. The report receives wrong
+/// indices and coordinates.
 ///
 /// With a `pose`, joints move the vertices to the world. A vertex without weights follows the first joint that it
-/// names, and a primitive without joints is not moved; both are repairs.
+/// names. A primitive without joints is not moved. Both cases are reported as repairs.
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
                     const GltfPose* pose, LoadReport& report);
 
-/// Returns the number of these triangles, as far as it is known before data is read.
+/// Returns the number of a primitive's triangles, as far as it is known before data is read.
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive);
 
-/// Adds the object that shows a mesh at a node. Its geometry is the mesh at `geometry` or, if the node's transform is
-/// singular, a new mesh that is already flattened, without normals if they vanish. Reports a vertex beyond 1e15 in the
-/// world. `place` names the primitive.
+/// Adds the object that shows a mesh at a node. Its geometry is the mesh at `geometry`. If the node's transform is
+/// singular, it is a new mesh to which the transform is already applied, without normals if they vanish. Reports a
+/// vertex beyond 1e15 in the world. `place` names the primitive.
 void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
                      Object& object, LoadReport& report);
 

@@ -14,15 +14,16 @@ namespace {
 using nlohmann::json;
 using Bytes = std::vector<std::byte>;
 
-/// In streams of attributes of version 0 four bytes may stand for 256, in any other for less.
+/// The largest ratio of decompressed to compressed bytes. In version 0, four bytes of a stream of attributes may stand
+/// for 256 bytes; in other streams they stand for less.
 constexpr uint64_t kMaxRatio = 64;
-/// In version 1 two bits may.
+/// The largest ratio in version 1, where two bits may stand for 256 bytes.
 constexpr uint64_t kMaxRatioOfVersion1 = 1024;
 
-/// The first byte of a stream: the kind in the upper half, the version in the lower.
+/// The first byte of a stream: the upper half is the kind, the lower half the version.
 constexpr unsigned kAttributesHeader = 0xA0;
 
-/// A compressed view, checked.
+/// A compressed view whose data has been checked.
 struct Stream {
   uint64_t offset = 0;
   uint64_t length = 0;
@@ -47,7 +48,7 @@ std::string place_of(size_t view) {
   return "bufferViews[" + std::to_string(view) + "]";
 }
 
-/// Returns the fault in the shape of the elements, or null.
+/// Returns the fault in the stride of the elements, or null.
 const char* find_wrong_stride(const Stream& stream) {
   if (stream.mode != "ATTRIBUTES") {
     if (stream.stride != 2 && stream.stride != 4) return "the stride of indices is neither 2 nor 4";
@@ -78,7 +79,7 @@ void check_view(const json& document, size_t index, LoadReport& report) {
   }
   if (const char* wrong = find_wrong_stride(stream))
     report.refuse("gltf.meshopt.stride", wrong, place_of(index), "compress the file again");
-  // In 64 bits this does not wrap: the schema keeps counts below 2^31 and strides below 257.
+  // The product does not overflow in 64 bits: the schema keeps counts below 2^31 and strides below 257.
   if (const auto length = view["byteLength"].get<uint64_t>(); length != stream.decoded_bytes()) {
     report.refuse("gltf.meshopt.count",
                   "the view has " + std::to_string(length) + " bytes, but its stream has " +
@@ -137,8 +138,8 @@ class Decoder {
   }
 
  private:
-  /// Checked before memory is allocated. Files may use one stream many times, so the total is compared with the size of
-  /// the file, too.
+  /// Returns whether there is space for a stream; checked before memory is allocated. A file may use one stream many
+  /// times, so the total is also compared with the size of the file.
   bool has_room_for(const Stream& stream, bool is_later_version, size_t index) {
     const uint64_t ratio = is_later_version ? kMaxRatioOfVersion1 : kMaxRatio;
     const uint64_t wanted = stream.decoded_bytes();

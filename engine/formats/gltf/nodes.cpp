@@ -29,7 +29,7 @@ dmat4 local_transform(const nlohmann::json& node) {
   return matrix;
 }
 
-/// The rotation of a node alone, as far as it has one.
+/// Returns the rotation of a node without its ancestors; nullopt if its matrix has no rotation.
 std::optional<dmat3> local_rotation(const nlohmann::json& node) {
   if (!node.contains("matrix")) {
     const dvec4 q = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
@@ -43,14 +43,14 @@ std::optional<dmat3> local_rotation(const nlohmann::json& node) {
   return rotation;
 }
 
-/// Returns the transform that moves the file's origin relative to the scene's center.
+/// Returns the transform from the file's world to the scene's world, whose origin is the center.
 dmat4 world_around(const dvec3& center) {
   dmat4 place(1.0);
   place[3] = dvec4(dvec3(0.0) - center, 1.0);
   return place;
 }
 
-/// The nodes without parents.
+/// Returns the nodes without parents.
 std::vector<int> find_roots(const GltfDocument& document) {
   std::vector<bool> is_child(document.nodes.size(), false);
   for (const GltfNode& node : document.nodes) {
@@ -63,13 +63,14 @@ std::vector<int> find_roots(const GltfDocument& document) {
   return roots;
 }
 
-/// The roots of the scene that is shown, or every root in a file without scenes (a library of parts).
+/// Returns the roots of the scene that is shown, or all roots if the file has no scenes (a library of parts).
 std::vector<int> root_nodes(const GltfDocument& document) {
   const nlohmann::json& scenes = elements_of(document.json, "scenes");
   return scenes.empty() ? find_roots(document) : elements_of(scenes[document.scene], "nodes").get<std::vector<int>>();
 }
 
-/// Nodes with several parents may appear more often than the size of the file limits.
+/// The largest number of further places of nodes. A node with several parents appears several times, so the size of the
+/// file does not limit the number of places.
 constexpr size_t kMostFurtherPlaces = size_t{1} << 18;
 
 }  // namespace
@@ -82,7 +83,8 @@ bool has_no_area(const dmat4& world_from_object) {
 
 std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report) {
   std::vector<PlacedNode> placed;
-  // The stack is our own, last node first, because files may nest deeper than the machine's stack.
+  // The code has its own stack, with the last node first, because files may have deeper nesting than the machine's
+  // stack allows.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
@@ -134,7 +136,7 @@ std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std:
     const auto [next, world_from_parent] = pending.back();
     pending.pop_back();
     const auto node = static_cast<size_t>(next);
-    // Nodes below a node of the scene are in the scene.
+    // A node below a node of the scene already has its transform.
     if (is_placed[node]) continue;
     is_placed[node] = true;
     worlds[node] = world_from_parent * local_transform(document.json["nodes"][node]);

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Counts brackets outside of strings; the parser checks whether they match.
+/// Returns the depth of nesting. It counts brackets outside strings; the parser checks whether they match.
 int depth_of(std::string_view text) {
   int depth = 0;
   int deepest = 0;
@@ -33,8 +33,8 @@ int depth_of(std::string_view text) {
   return deepest;
 }
 
-/// Returns the text with each number beyond double, which the parser cannot read, replaced by the largest double of the
-/// same sign. Range checks find it.
+/// Returns the text with each number beyond the range of double replaced by the largest double of the same sign. The
+/// parser cannot read such numbers; range checks find the replacement.
 std::string bound_numbers(std::string_view text) {
   constexpr std::string_view kLargest = "1.7976931348623157e308";
   constexpr std::string_view kOfNumbers = "0123456789+-.eE";
@@ -59,7 +59,7 @@ std::string bound_numbers(std::string_view text) {
   return bounded;
 }
 
-/// The parser finds numbers beyond double, because very few files have them.
+/// The text is changed only if the parser reports a number beyond the range of double, because very few files have one.
 json parse_bounded(std::string_view text) {
   try {
     return json::parse(text);
@@ -83,7 +83,7 @@ json parse_json(std::string_view text, LoadReport& report, const std::string& cu
   try {
     document = parse_bounded(text);
   } catch (const json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
+    // The message is, for example, "[json.exception.parse_error.101] parse error at line 3, column 5: ...".
     std::string message = error.what();
     if (const size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
     report.refuse("json.syntax", "the JSON cannot be read: " + message, "", cure);

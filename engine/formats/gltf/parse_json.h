@@ -10,7 +10,7 @@
 
 namespace promin {
 
-/// Deeper JSON is refused before a recursive parser sees it.
+/// The largest depth of nesting. Deeper JSON is refused before the recursive parser runs.
 inline constexpr int kMaxJsonDepth = 200;
 
 /// Parses the JSON of a file; numbers beyond the range of double become the largest double. Throws InputError with the

@@ -16,21 +16,21 @@ namespace {
 using namespace rules;
 using nlohmann::json;
 
-/// The rule for a length: a size that fp32 arithmetic can square.
+/// Returns the rule for a length: fp32 must be able to store its square.
 constexpr JsonRule length(std::string_view path) {
   return number(path, kMinSize, kMaxCoordinate);
 }
 constexpr JsonRule length_or_zero(std::string_view path) {
   return number(path, 0.0, kMaxCoordinate);
 }
-/// Factors that divide light.
+/// Returns the rule for a factor that divides light: a number in 0...1.
 constexpr JsonRule share(std::string_view path) {
   return number(path, 0.0, 1.0);
 }
 constexpr JsonRule shares(std::string_view path, size_t count) {
   return numbers(path, count, 0.0, 1.0);
 }
-/// Powers and factors of light are not negative, but may exceed 1.
+/// Returns the rule for powers and factors of light, which are not negative but may exceed 1.
 constexpr JsonRule factor(std::string_view path) {
   return number(path, 0.0, kMaxCoordinate);
 }
@@ -42,7 +42,7 @@ constexpr double kMaxBytes = 0x1p53;
 constexpr double kMaxCount = 0x1p31 - 1.0;
 constexpr double kMaxScalar = 1e30;
 constexpr double kMaxFloat = 3.4028234663852886e38;
-/// Exporters that think in fp32 write pi/2 a little too large.
+/// Pi/2 as some exporters write it: their fp32 value is a little too large.
 constexpr double kHalfPi = 1.5707964;
 constexpr double kPi = 3.141592653589793;
 constexpr double kJustUnder = 1.0 - 0x1p-52;
@@ -379,7 +379,7 @@ constexpr JsonRule kBufferRules[] = {
 #undef PROMIN_MESHOPT
 #undef PROMIN_DRACO
 
-/// The parts of a document that only affect colours, cameras and lights, and not the geometry.
+/// The parts of a document that affect only colours, cameras and lights, and not the geometry.
 constexpr std::string_view kRepairedParts[] = {
     "extensionsUsed",
     "extensionsRequired",
@@ -408,7 +408,7 @@ bool is_repaired(std::string_view path) {
   });
 }
 
-/// Removes unused elements that satisfy the condition from an array.
+/// Removes the elements of an array that are unused and satisfy the condition.
 template <class IsDropped>
 void drop_unused(json& document, const char* name, const JsonCheck& check, const IsDropped& is_dropped) {
   const auto array = document.find(name);
@@ -418,7 +418,7 @@ void drop_unused(json& document, const char* name, const JsonCheck& check, const
   }
 }
 
-/// Returns whether the bytes of a buffer cannot be requested; the reader requests those of unused buffers too.
+/// Returns whether the URI of a buffer is unusable. The reader also requests the bytes of unused buffers.
 bool is_broken_buffer(const json& buffer) {
   if (!buffer.is_object()) return true;
   const auto length = buffer.find("byteLength");

@@ -49,7 +49,7 @@ class ShapeReader {
     return parameters == shape_.end() ? otherwise : parameters->value(name, otherwise);
   }
 
-  /// Returns the shape after checking its form in the world; nullopt if the transform distorts it.
+  /// Returns the shape after checking its form in the world. Returns nullopt if the node's transform distorts it.
   template <class Described>
   std::optional<Geometry> check(const Described& shape) {
     if (!place(shape, at_)) return fall_back_from_transform();

@@ -11,8 +11,9 @@
 namespace promin {
 
 /// Returns the analytic shape of KHR_implicit_shapes that a mesh primitive represents
-/// (PROMIN_mesh_primitive_implicit_shape), in its own space. Returns nullopt if there is none, or if it cannot be drawn
-/// exactly (with a warning); then the primitive's triangles are drawn. Bad sizes go to the report.
+/// (PROMIN_mesh_primitive_implicit_shape), in its own space. Returns nullopt if there is no such shape. Also returns
+/// nullopt, with a warning, if the shape cannot be drawn exactly. The primitive's triangles are then drawn. The report
+/// receives wrong sizes.
 std::optional<Geometry> read_gltf_shape(const GltfDocument& document, size_t mesh, size_t primitive,
                                         const PlacedNode& placed, LoadReport& report);
 

@@ -16,12 +16,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Sets the last row of a joint's matrix to 0 0 0 1; in a valid file it differs only by rounding.
+/// Sets the last row of a joint's matrix to 0 0 0 1. In a valid file the row differs from this only by rounding.
 void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
   for (int column = 0; column < 4; ++column) {
     const double wanted = column == 3 ? 1.0 : 0.0;
     double& number = matrix[column][3];
-    // Written so that NaN fails.
+    // The comparison is written so that NaN fails.
     if (!(std::abs(number - wanted) <= kMostRounding)) {
       report.repair({"gltf.matrix.affine", "an inverse bind matrix is not affine", std::to_string(number), place,
                      "make its last row 0 0 0 1", "its last row is read as 0 0 0 1"});
@@ -30,7 +30,7 @@ void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
   }
 }
 
-/// Returns identities for a skin without inverse bind matrices.
+/// Returns the inverse bind matrices of a skin; identities if it has none.
 std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, const json& skin, const std::string& place,
                                               LoadReport& report) {
   const size_t joint_count = elements_of(skin, "joints").size();

@@ -11,22 +11,22 @@
 
 namespace promin {
 
-/// A skin in the pose of the file's nodes.
+/// A skin, posed by the nodes of the file.
 struct GltfPose {
   /// For each joint, its transform in the world times its inverse bind matrix, times the inverse of `world_from_mesh`.
   std::vector<dmat4> joint_matrices;
-  /// The transform of objects that show posed meshes: the identity or, if all joints mirror, a reflection in x, which
-  /// reverses the winding of triangles as a mirroring node of an unskinned mesh does.
+  /// The transform of objects that show posed meshes. It is the identity, or a reflection in x if all joints mirror.
+  /// The reflection reverses the winding of triangles, as a mirroring node does for a mesh without a skin.
   dmat4 world_from_mesh{1.0};
-  /// Whether every joint reduces areas to 0; such a scale of 0 hides the mesh.
+  /// True if every joint reduces areas to 0. Such a scale of 0 hides the mesh.
   bool is_hidden = false;
 };
 
 /// The skins of a document, each posed once.
 class GltfSkins {
  public:
-  /// `placed` are the nodes of the shown scene; other joints use their own parents. The arguments must outlive this
-  /// object.
+  /// `placed` are the nodes of the visible scene; joints that are not in it use the transforms of their own parents.
+  /// The arguments must outlive this object.
   GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>& placed, LoadReport& report);
 
   bool has_joints(int skin) const;

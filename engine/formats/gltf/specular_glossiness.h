@@ -8,8 +8,8 @@
 namespace promin {
 
 /// Converts the texels of a specularGlossinessTexture (KHR_materials_pbrSpecularGlossiness: specular colour in sRGB,
-/// glossiness in alpha) to those of a metallicRoughnessTexture whose green is 1 - glossiness_factor * glossiness, a
-/// roughness that needs no further factor.
+/// glossiness in alpha) to texels of a metallicRoughnessTexture. Its green channel is the roughness 1 -
+/// glossiness_factor * glossiness, which needs no further factor.
 void take_glossiness(std::span<uint32_t> texels, double glossiness_factor);
 
 }  // namespace promin

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// Values of samplers (glTF 2.0, section 5.26), which are those of OpenGL.
+// Values of samplers (glTF 2.0, section 5.26), which are the values of OpenGL.
 constexpr int kNearest = 9728;
 constexpr int kLinear = 9729;
 constexpr int kNearestMipmapNearest = 9984;
@@ -30,7 +30,7 @@ TextureWrap wrap_of(int value) {
   return value == kMirroredRepeat ? TextureWrap::kMirroredRepeat : TextureWrap::kRepeat;
 }
 
-/// A filter that the file leaves out is linear, with levels.
+/// Sets the texture's filters. A filter that the file leaves out is linear, with levels.
 void take_sampler(const json& sampler, Texture& texture) {
   texture.wrap_u = wrap_of(sampler.value("wrapS", kRepeat));
   texture.wrap_v = wrap_of(sampler.value("wrapT", kRepeat));
@@ -42,8 +42,9 @@ void take_sampler(const json& sampler, Texture& texture) {
   texture.are_levels_linear = minified == kNearestMipmapLinear || minified == kLinearMipmapLinear;
 }
 
-/// KHR_texture_transform: the coordinates are scaled, then turned, then moved. The matrix in the text of the extension
-/// rotates in the opposite direction of its pictures and of every viewer (glTF#1563).
+/// Sets the slot's transform from KHR_texture_transform: the coordinates are scaled, then rotated, then moved. The
+/// matrix in the extension's text rotates in the opposite direction to the extension's pictures and to all viewers
+/// (glTF#1563).
 void take_transform(const json& transform, TextureSlot& slot) {
   const json offset = transform.value("offset", json::array({0.0, 0.0}));
   const json scale = transform.value("scale", json::array({1.0, 1.0}));
@@ -56,7 +57,8 @@ void take_transform(const json& transform, TextureSlot& slot) {
   slot.to_v = vec3(dvec3(-sine * s.x, cosine * s.y, o.y));
 }
 
-/// Returns the image of a texture, or -1. An image of core glTF has the same content as that of an extension.
+/// Returns the image of a texture, or -1. The image of core glTF is preferred; the image of an extension has the same
+/// content.
 int image_of(const json& texture) {
   if (texture.contains("source")) return texture["source"];
   for (const char* name : {"EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu"}) {
@@ -127,7 +129,7 @@ uint32_t GltfTextures::find_image(int index, const Purpose& purpose) {
   return known->second;
 }
 
-/// Where the image that has the factor in it is absent.
+/// Restores the roughness factor of a material if the image that contains the factor is absent.
 void GltfTextures::restore_roughness(Material& material) const {
   auto* model = std::get_if<MetallicRoughness>(&material.model);
   if (model == nullptr || !model->metallic_roughness_texture.exists()) return;

@@ -15,18 +15,18 @@
 
 namespace promin {
 
-/// Reads the textures that materials refer to, each image once for each use (glTF 2.0, section 3.8).
+/// Reads the textures to which materials refer. Each image is read once for each of its uses (glTF 2.0, section 3.8).
 class GltfTextures {
  public:
-  /// See LoadOptions::decodes_images.
+  /// `decodes_images` is LoadOptions::decodes_images.
   GltfTextures(const GltfDocument& document, bool decodes_images, LoadReport& report)
       : document_(document), decodes_images_(decodes_images), report_(report) {}
 
   /// Returns the slot for the textureInfo `name` of an object; an empty one if there is none.
   TextureSlot read_slot(const nlohmann::json& object, const char* name, ImageUse use);
 
-  /// Does the same for specularGlossinessTexture, as a slot of roughness: its image becomes one whose green is 1 -
-  /// glossiness_factor * glossiness.
+  /// Returns the slot for a specularGlossinessTexture, as a slot of roughness. The green channel of its image becomes 1
+  /// - glossiness_factor * glossiness.
   TextureSlot read_glossiness_slot(const nlohmann::json& object, const char* name, float glossiness_factor);
 
   /// Decodes all images, or reads their sizes, on all cores and stores everything in the scene. An image that cannot be
@@ -34,7 +34,7 @@ class GltfTextures {
   void finish(Scene& scene);
 
  private:
-  /// The purpose of an image: its use, and the factor of a specularGlossinessTexture.
+  /// The purpose of an image: its use, and for a specularGlossinessTexture the factor.
   using Purpose = std::pair<ImageUse, std::optional<float>>;
 
   TextureSlot read_slot_for(const nlohmann::json& object, const char* name, const Purpose& purpose);

@@ -26,7 +26,7 @@ size_t find_variant(const json& document, const std::string& name, const std::fi
   throw UsageError({"scene.variant.unknown", what, file.string(), "choose one of: " + known});
 }
 
-/// Returns the material of a mesh primitive in a variant; `otherwise` if it has no mapping.
+/// Returns the material of a mesh primitive in a variant; `otherwise` if the primitive has no mapping for the variant.
 int material_in(const json& primitive, size_t variant, int otherwise) {
   const json* extension = find_extension(primitive, kExtension);
   if (extension == nullptr) return otherwise;
@@ -44,7 +44,7 @@ std::vector<std::string> list_gltf_variants(const json& document) {
   std::vector<std::string> names;
   const json* extension = find_extension(document, kExtension);
   if (extension == nullptr) return names;
-  // One that cannot be used is null (JsonCheck), and keeps its number.
+  // A variant that cannot be used is null (JsonCheck), and keeps its number.
   for (const json& variant : elements_of(*extension, "variants")) {
     names.push_back(variant.is_object() ? variant["name"].get<std::string>() : "");
   }

@@ -26,12 +26,12 @@ Phong to_phong(const NffMaterial& nff) {
   phong.shininess = nff.shininess;
   phong.reflection = vec3(nff.specular);
   phong.transmission = vec3(nff.transmittance);
-  // Files have 0 if nothing is refracted.
+  // Files have an index of 0 if nothing is refracted.
   phong.ior = nff.ior > 0.0F ? nff.ior : 1.0F;
   return phong;
 }
 
-/// Appends polygons to a mesh. Corners are not shared: a file lists those of each polygon.
+/// Adds polygons to a mesh. Polygons share no corners, because a file lists the corners of each polygon.
 class PolygonMesh {
  public:
   PolygonMesh(const NffText& text, LoadReport& report) : text_(text), report_(report) {}
@@ -63,7 +63,7 @@ class PolygonMesh {
     return result;
   }
 
-  /// Gives flat-shaded polygons so far the normals of their triangles.
+  /// Gives the flat-shaded polygons that were added so far the normals of their triangles.
   void make_smooth() {
     for (size_t i = mesh_.normals.size(); i < mesh_.positions.size(); i += 3) add_normals(i);
   }
@@ -96,8 +96,8 @@ class PolygonMesh {
   Mesh mesh_;
 };
 
-/// Without colours each of n sources has sqrt(n) / (2 n), as in the Standard Procedural Databases: their total grows
-/// slowly with n.
+/// Adds the lights. Each of n sources without a colour has the power sqrt(n) / (2 n), as in the Standard Procedural
+/// Databases, so the total power grows slowly with n.
 void add_lights(const NffText& text, Scene& scene) {
   const auto count = static_cast<double>(text.lights.size());
   for (const NffLight& source : text.lights) {
@@ -109,7 +109,7 @@ void add_lights(const NffText& text, Scene& scene) {
   }
 }
 
-/// Adds the shapes of a group; its polygons are one mesh, in the place of the first.
+/// Adds the shapes of a group. All polygons of the group form one mesh, at the place of the first polygon.
 void add_group(const NffText& text, const NffGroup& group, Scene& scene, LoadReport& report) {
   const auto material = static_cast<uint32_t>(scene.materials.size());
   if (group.material) {

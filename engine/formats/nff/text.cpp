@@ -18,12 +18,13 @@
 namespace promin {
 namespace {
 
-/// A material's factor is a product of two of these, and fp32 and validate() allow up to 1e15.
+/// The largest factor in a file. A material's factor is the product of two such numbers, and fp32 and validate() allow
+/// up to 1e15.
 constexpr double kMostFactor = 1e7;
-/// A view this close to parallel with its up vector has no top.
+/// The smallest sine of the angle between view direction and up vector. With a smaller angle the view has no top.
 constexpr double kLeastSine = 1e-6;
 
-/// What a view is made of.
+/// The words of a view statement.
 constexpr std::string_view kViewParts[] = {"from", "at", "up", "angle", "hither", "resolution"};
 
 class NffParser {
@@ -38,10 +39,11 @@ class NffParser {
  private:
   struct Statement {
     std::string_view keyword;
-    /// The values that follow it, for messages.
+    /// The values that follow the statement, for messages.
     const char* form;
     void (NffParser::*read)();
-    /// Whether it is a shape. The next statement begins behind the words that it needs.
+    /// True if the statement is a shape. After a shape, the next statement begins behind the words that the shape
+    /// needs.
     bool is_shape = true;
   };
   static constexpr size_t kStatementCount = 8;
@@ -79,7 +81,7 @@ class NffParser {
     refuse(code, what, std::string("write ") + statement_->form);
   }
 
-  /// `what` is said of the statement.
+  /// Reports a repair of the statement. `what` is the part of the sentence about the statement.
   void repair(ProblemCode code, const std::string& what, std::string_view word, const std::string& repair) {
     report_.repair({code, quote(statement_->keyword) + " " + what, word.empty() ? "" : quote(word), words_.place(),
                     std::string("write ") + statement_->form, repair});
@@ -120,7 +122,7 @@ class NffParser {
 
   double take_coordinate() {
     const double number = take_any_number();
-    // Written so that NaN fails.
+    // The comparison is written so that NaN fails.
     if (std::abs(number) <= kMaxCoordinate) return number;
     if (is_placed_ && !is_broken_) {
       repair("nff.position.range", "has a coordinate that is not a number up to 1e15", word_, "promin omits it");
@@ -131,7 +133,7 @@ class NffParser {
   }
   float take_factor() { return static_cast<float>(take_number(0.0, kMostFactor, "from 0 to 1e7")); }
 
-  // The order of evaluation of arguments is unspecified, that of statements is not.
+  // Reads the coordinates in separate statements, because the order of evaluation of arguments is unspecified.
   dvec3 take_point() {
     dvec3 point;
     for (int i = 0; i < 3; ++i) point[i] = take_coordinate();
@@ -144,10 +146,10 @@ class NffParser {
     return color;
   }
 
-  /// Whether the statement is read, and says where it is.
+  /// Returns whether the whole statement was read without an error and has a valid position.
   bool is_good() const { return is_placed_ && !is_broken_; }
 
-  /// Reads a radius; its sign is only reported.
+  /// Reads a radius. A wrong sign only causes a report.
   double take_radius(bool may_be_zero) {
     const double radius = take_coordinate();
     const bool is_valid = std::abs(radius) >= kMinSize || (may_be_zero && radius == 0.0);
@@ -174,7 +176,7 @@ class NffParser {
     material.shininess = static_cast<float>(take_number(0.0, kMaxCoordinate, "from 0 to 1e15"));
     material.transmittance = take_factor();
     material.ior = take_factor();
-    // Only shapes make a group of it.
+    // A group with this material starts only if a shape follows.
     material_ = material;
     is_group_open_ = false;
   }
@@ -234,15 +236,15 @@ class NffParser {
     if (is_good()) leave_out("nff.corners.count", "has fewer than 3 corners");
   }
 
-  /// Returns 0 if it is not a direction.
+  /// Reads a normal. Returns 0 if the numbers are not a direction.
   vec3 take_normal() {
     dvec3 normal;
     for (int i = 0; i < 3; ++i) normal[i] = take_any_number();
-    // Written so that NaN fails.
+    // The comparison is written so that NaN fails.
     return glm::length(normal) <= kMaxCoordinate ? vec3(normal) : vec3(0.0F);
   }
 
-  /// Its parts may come in any order, and some may be absent.
+  /// Reads a view. Its parts may be in any order, and some may be absent.
   void read_view() {
     std::optional<dvec3> from;
     std::optional<dvec3> at;
@@ -261,7 +263,7 @@ class NffParser {
     }
     if (!is_good()) return;
     if (!from || !at || !up || !angle) return leave_out("nff.view.incomplete", "lacks from, at, up or angle");
-    // Written so that NaN fails.
+    // The comparison is written so that NaN fails.
     if (!(*angle >= 1e-3 && *angle <= 179.9))
       return leave_out("nff.number.range", "has an angle that is not from 0.001 to 179.9 degrees");
     camera.yfov = static_cast<float>(glm::radians(*angle));
@@ -270,7 +272,7 @@ class NffParser {
     }
     const dvec3 look = glm::normalize(*at - *from);
     const dvec3 side = glm::cross(look, glm::normalize(*up));
-    // Written so that NaN, which coinciding points give, is refused too.
+    // The comparison is written so that NaN fails too; coinciding points give NaN.
     if (!(glm::length(side) >= kLeastSine)) {
       return leave_out("nff.view.direction",
                        "has equal points from and at, or a vector up that is 0 or parallel to the view");
@@ -281,7 +283,7 @@ class NffParser {
     out_.cameras.push_back(camera);
   }
 
-  /// 0 if the file has no valid resolution.
+  /// Reads a resolution. Returns 0 if the file has no valid resolution.
   uvec2 take_resolution() {
     dvec2 size;
     for (int i = 0; i < 2; ++i) size[i] = take_any_number();
@@ -298,7 +300,7 @@ class NffParser {
   const Statement* statement_ = nullptr;
   /// The last word that was read as a number; empty if there was none.
   std::string_view word_;
-  /// Whether the position of the statement is valid as far as it has been read.
+  /// True if the position of the statement is valid in the words read so far.
   bool is_placed_ = true;
   std::optional<NffMaterial> material_;
   bool is_group_open_ = false;

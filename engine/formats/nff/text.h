@@ -30,13 +30,14 @@ struct NffMaterial {
 
 struct NffLight {
   vec3 position{0.0F};
-  /// Empty: the brightness depends on the number of lights.
+  /// Colour of the light. If empty, the brightness depends on the number of lights.
   std::optional<vec3> color = {};
 };
 
-/// A statement p or pp.
+/// A polygon: a statement p or pp.
 struct NffPolygon {
-  /// Index of its first corner in NffText::corners and, if it has normals, in NffText::normals.
+  /// Index of the polygon's first corner in NffText::corners. If the polygon has normals, it is also the index of its
+  /// first normal in NffText::normals.
   size_t first_corner = 0;
   size_t first_normal = 0;
   uint32_t corner_count = 0;
@@ -45,9 +46,9 @@ struct NffPolygon {
 
 using NffShape = std::variant<NffPolygon, Sphere, Cylinder, Cone>;
 
-/// Shapes of one material, at least one.
+/// Shapes with the same material; at least one.
 struct NffGroup {
-  /// Empty if no f statement precedes them.
+  /// The material; empty if no f statement precedes the shapes.
   std::optional<NffMaterial> material = {};
   std::vector<NffShape> shapes = {};
 };

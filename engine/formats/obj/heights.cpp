@@ -24,7 +24,7 @@ uint32_t encode(const dvec3& normal) {
   return texel;
 }
 
-/// The neighbours of the texel `at` in a row or column.
+/// The neighbours of the texel `at` in its row or column.
 struct Neighbours {
   uint32_t before;
   uint32_t after;
@@ -50,7 +50,7 @@ TextureImage make_normals(const TextureImage& picture, const HeightMap& map) {
     for (uint32_t x = 0; x < size.x; ++x) {
       const Neighbours columns(x, size.x, map.is_clamped);
       const auto at = [&](uint32_t column, uint32_t row) { return heights[uint64_t{row} * size.x + column]; };
-      // OBJ's v grows upwards, against the rows.
+      // In OBJ files v increases upwards, opposite to the order of the rows.
       const double slope_u = map.height.x * 0.5 * (at(columns.after, y) - at(columns.before, y));
       const double slope_v = map.height.y * 0.5 * (at(x, rows.before) - at(x, rows.after));
       normals.texels.push_back(encode(glm::normalize(dvec3(-slope_u, -slope_v, 1.0))));

@@ -78,8 +78,8 @@ class MeshBuilder {
     mesh_.triangles.push_back(vertices);
   }
 
-  /// The vertices at one position form a chain, the newest first. It is short, because a point has few normals and
-  /// texture coordinates.
+  /// Returns the vertex for a corner. The vertices at one position form a chain, the newest first. The chain is short,
+  /// because a point has few normals and texture coordinates.
   uint32_t find_or_add_vertex(const ObjCorner& corner) {
     const ObjCorner wanted = {corner.position, needs_uvs_ ? corner.uv : kNoObjIndex,
                               has_normals_ ? corner.normal : kNoObjIndex};
@@ -103,7 +103,7 @@ class MeshBuilder {
     return static_cast<uint32_t>(mesh_.positions.size() - 1);
   }
 
-  /// A mesh's v grows downwards, from the first row of a picture.
+  /// Returns the texture coordinates of a corner. In a mesh v increases downwards, from the first row of a picture.
   vec4 uv_of(const ObjCorner& corner) {
     if (corner.uv == kNoObjIndex) {
       report_.warn("some corners of textured faces have no texture coordinates; promin uses 0");
@@ -126,12 +126,12 @@ class MeshBuilder {
   bool needs_uvs_ = false;
   std::vector<uint32_t> newest_vertex_;
   std::vector<uint32_t> previous_vertex_;
-  /// Of those that may be shared.
+  /// The corners of the vertices that may be shared.
   std::vector<ObjCorner> corner_of_vertex_;
   std::vector<vec3> polygon_;
 };
 
-/// Appends the materials that faces use; where each usemtl name lies in Scene::materials.
+/// Adds the materials that faces use to the scene. Returns the index in Scene::materials for each usemtl name.
 std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadReport& report) {
   std::map<std::string, MtlMaterial> known = read_mtl_files(text.libraries, report);
   std::vector<MtlMaterial*> used;
@@ -157,7 +157,7 @@ std::vector<uint32_t> add_materials(const ObjText& text, Scene& scene, LoadRepor
   return indices;
 }
 
-/// The material of each triangle of a group, in the triangles' order.
+/// Returns the material of each triangle of a group, in the order of the triangles.
 std::vector<uint32_t> materials_of(const ObjText& text, const ObjGroup& group, const std::vector<uint32_t>& indices,
                                    uint32_t otherwise) {
   std::vector<uint32_t> materials;

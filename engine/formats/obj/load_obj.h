@@ -7,8 +7,8 @@
 
 namespace promin {
 
-/// Reads a Wavefront OBJ file and its MTL files. The contract is that of load_scene. A file without a face of at least
-/// 3 corners, such as a point cloud, is refused, because there is nothing to draw.
+/// Reads a Wavefront OBJ file and its MTL files. Arguments, result and errors are as for load_scene(). A file without a
+/// face of at least 3 corners, such as a point cloud, is refused, because there is nothing to draw.
 Scene load_obj(const LoadOptions& options, LoadReport& report);
 
 }  // namespace promin

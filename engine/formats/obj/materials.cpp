@@ -17,7 +17,7 @@
 namespace promin {
 namespace {
 
-/// An index of refraction.
+/// The default index of refraction of glass.
 constexpr double kGlass = 1.5;
 
 bool is_index(double number) {
@@ -28,7 +28,7 @@ double illum_of(const MtlMaterial& source) {
   return std::floor(source.find("illum", 2.0).x);
 }
 
-/// The sentence of find_beside_scene about a missing file.
+/// Returns the reason why find_beside_scene() refuses a file.
 std::string reason_against(const std::string& name, LoadReport& report) {
   LoadReport attempt = report.make_attempt();
   find_beside_scene(name, "", true, attempt);
@@ -40,8 +40,8 @@ std::string reason_against(const std::string& name, LoadReport& report) {
   return quote(name) + " does not exist";
 }
 
-/// The names of the files that a mtllib line names: the whole rest of the line, because names may hold spaces, or else
-/// each word.
+/// Returns the files that a mtllib line names: the whole rest of the line if such a file exists, because names may
+/// contain spaces, or otherwise each word.
 std::vector<std::string> find_library(const std::string& line, LoadReport& report) {
   if (auto whole = find_named_file(line, "", report)) return {*whole};
   std::vector<std::string> files;
@@ -62,7 +62,7 @@ std::vector<std::string> find_library(const std::string& line, LoadReport& repor
   return files;
 }
 
-/// Returns a colour of the file, or its default; 1 if only a map gives it.
+/// Returns a colour of the file; if the file gives none, its default, or 1 if there is a map.
 vec3 color_of(const MtlMaterial& source, const std::string& keyword, double otherwise) {
   return vec3(source.find(keyword, source.find_map("map_" + keyword) != nullptr ? 1.0 : otherwise));
 }
@@ -74,30 +74,30 @@ void warn_of_unused_maps(const MtlMaterial& source, std::initializer_list<const 
   }
 }
 
-/// If a material has both, d counts.
+/// Returns the opacity. If a material has both d and Tr, d counts.
 float opacity_of(const MtlMaterial& source) {
   const double opacity = source.numbers.contains("d") ? source.find("d", 1.0).x : 1.0 - source.find("Tr", 0.0).x;
   return static_cast<float>(std::clamp(opacity, 0.0, 1.0));
 }
 
-/// Returns whether light is transmitted and refracted: illum 6 and 7.
+/// Returns whether the material transmits and refracts light, as illum 6 and 7 do.
 bool is_refracting(const MtlMaterial& source) {
   return illum_of(source) == 6.0 || illum_of(source) == 7.0;
 }
 
 /// Returns whether the filter Tf determines the transmission: always for refracting materials, and for the glass of
-/// illum 4 and 9 if the file has one; else d determines it.
+/// illum 4 and 9 if the file has Tf. Otherwise d determines the transmission.
 bool is_filtering(const MtlMaterial& source) {
   const bool is_unbent = illum_of(source) == 4.0 || illum_of(source) == 9.0;
   return is_refracting(source) || (is_unbent && source.numbers.contains("Tf") && opacity_of(source) < 1.0F);
 }
 
-/// Of map_Kd with the alpha of map_d.
+/// Returns the slot of map_Kd, combined with the alpha of map_d.
 TextureSlot read_base_color(const MtlMaterial& source, ObjTextures& textures) {
   return textures.read_base_color(source.find_map("map_Kd"), source.find_map("map_d"));
 }
 
-/// The slot of norm, or else of the heights of bump.
+/// Returns the slot of the normals of norm, or otherwise of the heights of bump.
 TextureSlot read_normals(const MtlMaterial& source, ObjTextures& textures) {
   if (const MtlMap* normals = source.find_map("norm")) return textures.read_slot(normals, ImageUse::kNormal);
   return textures.read_heights(source.find_map("bump"));
@@ -108,12 +108,12 @@ bool is_metallic_roughness(const MtlMaterial& source) {
          source.maps.contains("map_Pm");
 }
 
-/// Returns whether opacity applies to the whole surface, and not to light through Phong's glass.
+/// Returns whether opacity applies to the whole surface, and not only to the light through Phong's glass.
 bool blends(const MtlMaterial& source) {
   return !is_filtering(source) || is_metallic_roughness(source);
 }
 
-/// There are two conventions for Tr without d. In most programs Tr is 1 - d, so a material with Tr = 1 would be
+/// Decides between two conventions for a Tr without d. In most programs Tr is 1 - d, so a material with Tr = 1 would be
 /// invisible. A file with such a material therefore follows the other convention, in which Tr is d.
 void settle_transparency(std::vector<MtlMaterial>& materials, const std::string& file, LoadReport& report) {
   const auto has_tr_alone = [](const MtlMaterial& source) {
@@ -143,7 +143,7 @@ void take_alpha(const MtlMaterial& source, Material& material, LoadReport& repor
 }
 
 MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& textures) {
-  // A map alone determines the value.
+  // If there is a map, it alone determines the value.
   const auto share = [&](const char* keyword, double otherwise) {
     const bool has_map = source.find_map(std::string("map_") + keyword) != nullptr;
     return has_map ? 1.0F : static_cast<float>(std::min(source.find(keyword, otherwise).x, 1.0));
@@ -175,7 +175,7 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& rep
   if (illum >= 3.0 && illum < 10.0) phong.reflection = phong.specular;
   if (is_filtering(source)) {
     warn_of_unused_maps(source, {"map_d"}, report);
-    // A material that refracts although its d is opaque is pure glass.
+    // A material that refracts although its d is 1 (opaque) is pure glass.
     const double through = opacity_of(source) < 1.0F ? 1.0 - static_cast<double>(opacity_of(source)) : 1.0;
     phong.transmission = vec3(through * glm::clamp(source.find("Tf", 1.0), dvec3(0.0), dvec3(kMaxCoordinate)));
   }
@@ -188,7 +188,7 @@ Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& rep
   return phong;
 }
 
-/// illum 0: the colour of Kd, to which Ke adds.
+/// Makes the material of illum 0: the colour of Kd, to which Ke is added.
 void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& material, LoadReport& report) {
   warn_of_unused_maps(source, {"map_Ks", "map_Ke", "norm", "bump"}, report);
   material.emissive = vec3(source.find("Ke", 0.0));
@@ -212,7 +212,7 @@ void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
     report.warn(title + ": its Ni is not an index of refraction; promin uses 1.5");
   }
   if (illum_of(source) == 10.0) report.warn(title + " has illum 10 (only shadows); promin draws it like illum 2");
-  // Most exporters name one file for both.
+  // Most exporters name the same file for map_Ka and map_Kd.
   const MtlMap* ambient = source.find_map("map_Ka");
   const MtlMap* diffuse = source.find_map("map_Kd");
   if (ambient != nullptr && (diffuse == nullptr || diffuse->file != ambient->file)) {
@@ -220,13 +220,13 @@ void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
   }
 }
 
-/// Returns the folder of a file relative to the scene's own, with a slash at its end if it is another.
+/// Returns the folder of a file relative to the scene's folder, with a slash at its end; empty if both are the same.
 std::string folder_of(const std::filesystem::path& file, const std::filesystem::path& scene) {
   const std::filesystem::path folder = file.lexically_relative(scene.parent_path()).parent_path();
   return folder.empty() || folder == "." ? "" : folder.string() + "/";
 }
 
-/// The materials of a file of this name beside the scene; none where it cannot be read.
+/// Returns the materials of a file of this name beside the scene; empty if the file cannot be read.
 std::vector<MtlMaterial> read_mtl_file(const std::string& name, LoadReport& report) {
   const auto file = find_beside_scene(name, "mtllib " + name, true, report);
   if (!file) return {};
@@ -255,7 +255,7 @@ std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>
       }
     }
   }
-  // If no material has the whole name, it is looked up without a comment.
+  // If no material has the whole name, the code looks for the name without a comment.
   std::map<std::string, MtlMaterial> shorter;
   for (const auto& [name, source] : materials) shorter.emplace(without_comment(name), source);
   for (auto& [name, source] : shorter) source.name = name;

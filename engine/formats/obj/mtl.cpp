@@ -15,16 +15,16 @@
 namespace promin {
 namespace {
 
-/// Statements with a colour of three numbers, and with one number.
+/// Statements that have a colour of three numbers, and statements that have one number.
 constexpr std::array<std::string_view, 5> kColors = {"Ka", "Kd", "Ks", "Ke", "Tf"};
 constexpr std::array<std::string_view, 7> kNumbers = {"Ns", "illum", "Pr", "Pm", "d", "Tr", "Ni"};
-/// Those that the materials clamp or check.
+/// Statements whose numbers may have any sign, because the materials clamp or check them.
 constexpr std::array<std::string_view, 4> kOfAnySign = {"Tf", "d", "Tr", "Ni"};
 constexpr std::array<std::string_view, 9> kMaps = {"map_Ka", "map_Kd", "map_d", "map_Ks", "map_Ke",
                                                    "map_Pr", "map_Pm", "norm",  "bump"};
 /// Other names of bump.
 constexpr std::array<std::string_view, 2> kBumps = {"map_Bump", "map_bump"};
-/// Maps of another name.
+/// Maps that are not read, with other names.
 constexpr std::array<std::string_view, 3> kOtherMaps = {"disp", "decal", "refl"};
 /// Maps of one channel.
 constexpr std::array<std::string_view, 3> kScalarMaps = {"map_d", "map_Pr", "map_Pm"};
@@ -34,7 +34,7 @@ bool is_among(const std::array<std::string_view, Count>& words, std::string_view
   return std::ranges::find(words, word) != words.end();
 }
 
-/// An option of a map, and the number of words that may follow it; there may be fewer if they are numbers.
+/// An option of a map, and the largest number of words that follow it. There may be fewer words if they are numbers.
 struct MapOption {
   std::string_view name;
   int word_count;
@@ -59,7 +59,7 @@ const MapOption* find_option(std::string_view word) {
   return found == kOptions.end() ? nullptr : &*found;
 }
 
-/// The rest of a map's line: options with their words, then the file's name, which may hold spaces.
+/// Parses the rest of a map's line: options with their words, then the file's name, which may contain spaces.
 class MapParser {
  public:
   MapParser(const std::string& keyword, std::string_view rest, LoadReport& report)
@@ -81,14 +81,14 @@ class MapParser {
 
  private:
   void take_option(const MapOption& option) {
-    // What is left out keeps its default.
+    // Numbers that are left out keep their default.
     dvec3 numbers = option.name == "-s" ? dvec3(1.0) : dvec3(0.0);
     if (option.name == "-mm") numbers.y = 1.0;
     for (int i = 0; i < option.word_count; ++i) {
       std::string_view rest = rest_;
       const std::string_view word = take_word(rest);
       const std::optional<double> number = parse_number(word);
-      // The last word is the file's name, even where it is a number.
+      // The last word is the file's name, even if it is a number.
       if (trim(rest).empty() || (option.has_numbers && !number)) break;
       rest_ = rest;
       if (option.name == "-clamp") map_.is_clamped = word == "on";
@@ -106,11 +106,11 @@ class MapParser {
     const size_t channel = std::string_view("rgbml").find(word);
     const bool is_read = word.size() == 1 && channel != std::string_view::npos;
     if (is_read) map_.channel = static_cast<int>(channel);
-    // In grey pictures red is luminance, and map_d shows alpha where there is any.
+    // In grey pictures the red channel is the luminance. For map_d the alpha channel is used if there is one.
     if (!is_read || (is_among(kScalarMaps, keyword_) && (word == "g" || word == "b"))) ignore("-imfchan");
   }
 
-  /// Heights only differ by the gain: slopes do not depend on the base.
+  /// Reads the gain. The base is ignored, because slopes do not depend on it.
   void take_gain(const dvec3& base_and_gain) {
     if (keyword_ == "bump") {
       gain_ = base_and_gain.y;
@@ -164,7 +164,7 @@ class MtlParser {
     int count = 0;
     bool is_negative = false;
     for (std::string_view word = take_word(rest); !word.empty() && count < most; word = take_word(rest)) {
-      // The opacity at grazing angles, which is used for all angles.
+      // -halo describes the opacity at grazing angles; it is used for all angles.
       if (word == "-halo") continue;
       if (count == 0 && (word == "spectral" || word == "xyz")) return ignore_color(keyword, word);
       const std::optional<double> number = parse_number(word);
@@ -184,7 +184,7 @@ class MtlParser {
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;
   }
 
-  /// Warns of a colour given as a spectral curve or as CIE XYZ, which MTL allows.
+  /// Warns of a colour that is given as a spectral curve or as CIE XYZ, which MTL allows.
   void ignore_color(const std::string& keyword, std::string_view kind) {
     report_.warn("colours given as " + std::string(kind) + " are ignored, the first is " + keyword + " in " + place());
   }
@@ -208,7 +208,7 @@ class MtlParser {
   const std::string& name_;
   const std::string& folder_;
   LoadReport& report_;
-  /// Statements before the first material belong to none, but they are checked like the rest.
+  /// The first element collects statements before the first material. They belong to no material but are checked.
   std::vector<MtlMaterial> materials_ = std::vector<MtlMaterial>(1);
   bool has_ignored_map_ = false;
 };

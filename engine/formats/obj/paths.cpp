@@ -8,7 +8,7 @@
 namespace promin {
 namespace {
 
-/// Tries to find a file by find_beside_scene; returns nullopt where that refuses the name.
+/// Returns the result of find_beside_scene() for a file; nullopt if it refuses the name.
 std::optional<std::string> try_name(std::string_view name, const std::string& folder, LoadReport& report) {
   LoadReport attempt = report.make_attempt();
   // An absolute name must not become a relative one below the folder.

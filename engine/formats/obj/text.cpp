@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kNumberCure = "write numbers up to 1e15, with a decimal point";
 constexpr const char* kVertexCure = "give it x y z, or x y z red green blue, as numbers with a decimal point";
 
-/// Statements that other programs need and that change nothing here.
+/// Statements that other programs need and that have no effect here.
 constexpr std::array<std::string_view, 1> kHarmless = {"s"};
 
 class ObjParser {
@@ -43,8 +43,8 @@ class ObjParser {
   }
 
  private:
-  /// The current line, and those that continue it after a backslash at its end. Comments are not continued, because
-  /// they may end in the path of a folder.
+  /// Returns the current line, joined with the lines that follow a backslash at its end. Comments are not continued,
+  /// because they may end with the path of a folder.
   std::string_view take_statement() {
     std::string_view line = lines_.line();
     if (!line.ends_with('\\') || line.find('#') != std::string_view::npos) return line;
@@ -90,14 +90,14 @@ class ObjParser {
     report_.repair({code, what, value.empty() ? "" : quote(value), lines_.place(), cure, repair});
   }
 
-  /// The numbers of a statement.
+  /// The numbers of a statement that were read.
   struct Numbers {
     std::array<double, 6> values{};
-    /// All words count, and the first six are read.
+    /// The number of all words; only the first six are read.
     size_t word_count = 0;
-    /// Number of words before the first that is not a number up to 1e15.
+    /// Number of words before the first word that is not a number up to 1e15.
     size_t good_count = 0;
-    /// That word.
+    /// The first word that is not such a number.
     std::string_view bad_word = {};
 
     bool are_good(size_t count) const { return good_count >= count; }
@@ -117,7 +117,7 @@ class ObjParser {
     return numbers;
   }
 
-  /// A vertex that is no position.
+  /// A vertex whose numbers are not a position.
   struct BadVertex {
     uint32_t index = 0;
     uint64_t line = 0;
@@ -125,7 +125,7 @@ class ObjParser {
     bool is_used = false;
   };
 
-  /// x y z, possibly with a weight or a colour. Faces that use an invalid position are left out.
+  /// Reads a position: x y z, possibly with a weight or a colour. Faces that use an invalid position are left out.
   void read_vertex(std::string_view rest) {
     const Numbers numbers = read_numbers(rest);
     const std::array<double, 6>& n = numbers.values;
@@ -161,8 +161,8 @@ class ObjParser {
     out_.colors.push_back(color);
   }
 
-  /// u, and mostly v; a third number is for textures of three dimensions. Files for which textures do not matter may
-  /// hold anything.
+  /// Reads a texture coordinate: u and usually v. A third number is for three-dimensional textures. A file that uses no
+  /// textures may contain anything here.
   void read_uv(std::string_view rest) {
     dvec2 uv(0.0);
     for (int i = 0; i < 2; ++i) {
@@ -225,7 +225,7 @@ class ObjParser {
     face_lines_.push_back(lines_.number());
   }
 
-  /// "1", "1/2", "1//3" or "1/2/3": position, texture coordinate, normal.
+  /// Reads a corner "1", "1/2", "1//3" or "1/2/3": position, texture coordinate, normal.
   bool read_corner(std::string_view word, ObjCorner& corner) {
     const std::string_view whole = word;
     std::array<std::string_view, 3> parts{};
@@ -245,7 +245,7 @@ class ObjParser {
     return true;
   }
 
-  /// The index for a word that is not an index: one past the end.
+  /// The value for a word that is not an index: an index one past the end.
   static constexpr uint32_t kMissing = kNoObjIndex - 1;
 
   /// Reads an OBJ index: from 1 on, or from -1 backwards from the current position. Vertices may follow the faces that
@@ -257,7 +257,7 @@ class ObjParser {
     return from_zero >= 0 && from_zero < int64_t{kMissing} ? static_cast<uint32_t>(from_zero) : kMissing;
   }
 
-  /// Once all vertices are known.
+  /// Checks all faces, after all vertices are known.
   void check_faces() {
     if (are_indices_in_range() && bad_vertices_.empty()) return;
     std::vector<bool> is_drawn(out_.faces.size(), true);
@@ -278,7 +278,7 @@ class ObjParser {
     keep_faces(is_drawn);
   }
 
-  /// Removes the other faces, and groups without faces.
+  /// Removes the faces that are not in `is_kept`, and groups without faces.
   void keep_faces(const std::vector<bool>& is_kept) {
     std::vector<ObjFace> kept;
     for (ObjGroup& group : out_.groups) {
@@ -299,7 +299,7 @@ class ObjParser {
     uint32_t normal_end = 0;
     for (const ObjCorner& corner : out_.corners) {
       position_end = std::max(position_end, corner.position + 1);
-      // 0 of kNoObjIndex.
+      // For kNoObjIndex the sum is 0.
       uv_end = std::max(uv_end, corner.uv + 1);
       normal_end = std::max(normal_end, corner.normal + 1);
     }
@@ -308,7 +308,7 @@ class ObjParser {
 
   static std::string place_of(uint64_t line) { return "line " + std::to_string(line); }
 
-  /// Whether the face has a place in space. An index that leads nowhere is refused.
+  /// Returns whether the corners of a face are valid positions. An index without a vertex is refused.
   bool check_positions(std::span<const ObjCorner> corners, uint64_t line) {
     bool is_placed = true;
     for (const ObjCorner& corner : corners) {
@@ -335,7 +335,7 @@ class ObjParser {
     return found != bad_vertices_.end() && found->index == position ? &*found : nullptr;
   }
 
-  /// Removes indices that are `count` or more. Returns whether there were any.
+  /// Removes indices that are `count` or larger. Returns whether there were any.
   static bool forget_past_the_end(std::span<ObjCorner> corners, uint32_t ObjCorner::*index, size_t count) {
     bool has_any = false;
     for (ObjCorner& corner : corners) {
@@ -359,7 +359,7 @@ class ObjParser {
   }
 
   TextLines lines_;
-  /// A statement of several lines.
+  /// The joined text of a statement that has several lines.
   std::string joined_;
   LoadReport& report_;
   ObjText out_;
@@ -369,7 +369,7 @@ class ObjParser {
   std::unordered_map<std::string, uint32_t> materials_;
   /// The line of each face.
   std::vector<uint64_t> face_lines_;
-  /// By index.
+  /// The vertices that are not positions, by their index.
   std::vector<BadVertex> bad_vertices_;
   uint64_t ignored_count_ = 0;
   std::string first_ignored_;

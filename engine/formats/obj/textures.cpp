@@ -19,7 +19,7 @@ struct MapUse {
   std::string_view keyword;
   ImageUse use;
 };
-/// The maps that are read. Maps of roughness and metallic are read so that they can be merged.
+/// The maps that are read. The maps of roughness and metallic are read only to be merged.
 constexpr std::array<MapUse, 8> kMapUses = {{{"map_Kd", ImageUse::kColor},
                                              {"map_d", ImageUse::kData},
                                              {"map_Ks", ImageUse::kColor},
@@ -36,7 +36,7 @@ std::optional<std::vector<std::byte>> read_beside_scene(const std::string& name,
   return read_file(*file, most_bytes);
 }
 
-/// Calls task with each map of the materials that is read, and its use.
+/// Calls the task for each map of the materials that is read, with the map's use.
 template <class Task>
 void for_each_map(const std::vector<MtlMaterial*>& materials, const Task& task) {
   for (MtlMaterial* material : materials) {
@@ -51,7 +51,7 @@ uint64_t texel_count(const uvec2& size) {
   return uint64_t{size.x} * size.y;
 }
 
-/// The texel of an image that lies where a texel of a picture of this size does; white without an image.
+/// Returns the texel of an image at the place of a texel of a picture of this size; white if there is no image.
 uint32_t texel_at(const TextureImage* image, const uvec2& texel, const uvec2& size) {
   if (image == nullptr) return 0xFFFFFFFFU;
   const uint64_t x = uint64_t{texel.x} * image->size.x / size.x;
@@ -98,7 +98,7 @@ TextureSlot ObjTextures::read_base_color(const MtlMap* color, const MtlMap* alph
     report_.warn("the options of map_d are ignored because they differ from those of map_Kd");
   }
   const ImagePointer alphas = find_picture(alpha, ImageUse::kData);
-  // Nothing else is made of one picture twice.
+  // Only an image without a colour picture has the same picture twice in its key.
   const std::pair sources(color == nullptr ? alphas : find_picture(color, ImageUse::kColor), alphas);
   const auto [known, is_new] = image_numbers_.try_emplace(sources, static_cast<uint32_t>(images_.size()));
   if (is_new) images_.push_back(merge_alpha(color == nullptr ? nullptr : sources.first, alphas));
@@ -147,7 +147,7 @@ ObjTextures::ImagePointer ObjTextures::find_picture(const MtlMap* map, ImageUse 
   return map == nullptr ? nullptr : pictures_.at({map->file, use});
 }
 
-/// OBJ's v grows upwards, from the lowest row of a picture. The mesh's is 1 - v.
+/// Places a map. In OBJ files v increases upwards, from the lowest row of a picture; the mesh's v is 1 - v.
 TextureSlot ObjTextures::place(const MtlMap& map, uint32_t image) {
   const auto [known, is_new] =
       texture_numbers_.try_emplace({image, map.is_clamped}, static_cast<uint32_t>(textures_.size()));

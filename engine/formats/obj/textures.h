@@ -15,7 +15,7 @@
 
 namespace promin {
 
-/// The pictures of MTL materials, each once for each use.
+/// The pictures of MTL materials. Each picture is stored once for each of its uses.
 class ObjTextures {
  public:
   /// Decodes the pictures of all maps of the materials on all cores. Maps whose pictures cannot be decoded cause a
@@ -25,17 +25,18 @@ class ObjTextures {
   /// Returns the slot of a usable map; an empty one for nullptr.
   TextureSlot read_slot(const MtlMap* map, ImageUse use);
 
-  /// Returns the slot of a colour picture combined with the alpha of another picture: its alpha channel if it has one,
-  /// else its red. Without a colour picture the colour is white; if both are nullptr, the slot is empty. One file may
-  /// serve both.
+  /// Returns the slot of a colour picture, combined with the alpha of another picture: the other picture's alpha
+  /// channel if it has one, otherwise its red channel. Without a colour picture the colour is white. If both pointers
+  /// are nullptr, the slot is empty. Both may name the same file.
   TextureSlot read_base_color(const MtlMap* color, const MtlMap* alpha);
 
-  /// Returns the slot of a picture with roughness in green and metallic in blue, combined from a map of each. A missing
-  /// map gives 1; if both are nullptr, the slot is empty.
+  /// Returns the slot of a picture with roughness in green and metallic in blue, combined from the two maps. A missing
+  /// map gives 1. If both pointers are nullptr, the slot is empty.
   TextureSlot read_metallic_roughness(const MtlMap* roughness, const MtlMap* metallic);
 
-  /// Returns the slot of the normals computed from a height map (formats/obj/heights.h). If its picture holds normals
-  /// instead, they are used with a warning. Returns an empty slot for nullptr, and if there are no slopes.
+  /// Returns the slot of the normals computed from a height map (formats/obj/heights.h). If the picture contains
+  /// normals and not heights, the normals are used with a warning. Returns an empty slot for nullptr, and if there are
+  /// no slopes.
   TextureSlot read_heights(const MtlMap* map);
 
   /// Moves the images and textures of the slots to the scene.
@@ -53,12 +54,12 @@ class ObjTextures {
   std::map<std::pair<std::string, ImageUse>, ImagePointer> pictures_;
   std::vector<ImagePointer> images_;
   std::vector<Texture> textures_;
-  /// Indices of images_, by the pictures that they were made from.
+  /// Indices into images_, by the pictures from which the images were made.
   std::map<std::pair<ImagePointer, ImagePointer>, uint32_t> image_numbers_;
-  /// Indices in images_ of normal maps, by the height map's picture and the fields of HeightMap. A picture that is a
-  /// normal map itself has a height of 0.
+  /// Indices into images_ of normal maps, by the height map's picture and the members of HeightMap. If the picture is
+  /// itself a normal map, its height is 0.
   std::map<std::tuple<ImagePointer, double, double, int, bool>, uint32_t> height_numbers_;
-  /// Indices of textures_, by image and whether it is clamped.
+  /// Indices into textures_, by image and whether the texture is clamped.
   std::map<std::pair<uint32_t, bool>, uint32_t> texture_numbers_;
 };
 

@@ -17,7 +17,7 @@
 namespace promin {
 namespace {
 
-/// The indices of the numbers of a vertex or face that are read; all others go to the last place.
+/// Indices of the numbers of a vertex or face that are read. All other numbers are stored in the last place.
 enum Column : uint32_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kU, kV, kTexture, kColumnCount };
 using Row = std::array<double, kColumnCount + 1>;
 
@@ -55,7 +55,7 @@ uint32_t column_of(const PlyProperty& property) {
   return found == kColumnNames.end() || property.is_list ? kColumnCount : found->column;
 }
 
-/// The places of an element's properties, and the numbers that stand for full colour.
+/// The positions of an element's properties, and the numbers that stand for full colour.
 struct Layout {
   std::vector<uint32_t> columns;
   std::array<bool, kColumnCount + 1> is_there{};
@@ -99,7 +99,8 @@ class BodyReader {
  private:
   bool is_good() const { return problem_.empty() && rows_.problem().empty(); }
 
-  /// Data of faces has priority over data of vertices, except for colours, because vertices give more of them.
+  /// Data of faces is preferred to data of vertices. For colours, vertices are preferred, because there are more of
+  /// them.
   void decide_what_is_read() {
     const Layout vertices(*header_.find("vertex"));
     has_normals_ = vertices.has_all(kNx);
@@ -166,7 +167,7 @@ class BodyReader {
     }
   }
 
-  /// That of the current row.
+  /// Returns the place of the current row, for messages.
   std::string place_of(const std::string& element) const {
     return rows_.place().empty() ? element + " " + std::to_string(row_) : rows_.place();
   }
@@ -204,7 +205,7 @@ class BodyReader {
 
   vec4 color_of(const Layout& layout, const Row& row, const char* element) {
     const auto share = [&](Column column) { return clamp(row[column] / layout.full[column], element); };
-    // The order in which arguments are evaluated is the compiler's own, that of statements is not.
+    // Reads the components in separate statements, because the order in which arguments are evaluated is unspecified.
     dvec4 color(1.0);
     color.r = decode(share(kRed));
     color.g = decode(share(kGreen));
@@ -225,7 +226,7 @@ class BodyReader {
   }
 
   vec2 uv_of(double u, double v, const char* element) {
-    // Written so that NaN fails.
+    // The comparison is written so that NaN fails.
     if (std::abs(u) <= kMaxCoordinate && std::abs(v) <= kMaxCoordinate) return vec2(dvec2(u, v));
     report_.repair({"ply.uv.range", "a texture coordinate is not finite or beyond 1e15", "", place_of(element),
                     "export the mesh again", "0 is used"});
@@ -243,7 +244,7 @@ class BodyReader {
     return static_cast<double>(byte) / 255.0 == share ? kOfBytes[byte] : srgb_to_linear(share);
   }
 
-  /// Returns nullopt after reporting the problem.
+  /// Returns the index that a number stands for. If it is no index, adds the problem to the report and returns nullopt.
   std::optional<uint32_t> index_of(double number) {
     if (number >= 0.0 && number < static_cast<double>(vertex_count_) && number == std::floor(number)) {
       return static_cast<uint32_t>(number);
@@ -282,7 +283,7 @@ class BodyReader {
     }
   }
 
-  /// Faces that show no texture have no texture coordinates, or the texture -1.
+  /// Returns the texture of a face. A face without a texture has no texture coordinates, or the texture -1.
   uint32_t texture_of(const Layout& layout, const Row& row) {
     if (has_corner_uvs_ && !has_own_uvs()) {
       if (!uv_list_.empty()) {
@@ -303,7 +304,7 @@ class BodyReader {
     return PlyBody::kNoTexture;
   }
 
-  /// A strip is several: each -1 begins another. Every second triangle of one is wound the other way.
+  /// Adds a triangle strip. Each -1 begins another strip. Every second triangle of a strip has the opposite winding.
   void add_strip() {
     size_t first = 0;
     for (size_t i = 0; i < list_.size(); ++i) {

@@ -16,29 +16,29 @@ namespace promin {
 /// The parts of a PLY file that promin draws, as stored: numbers may have any value, indices are in range.
 struct PlyBody {
   std::vector<vec3> positions = {};
-  /// Empty, or one per position.
+  /// Vertex normals: empty, or one per position.
   std::vector<vec3> normals = {};
-  /// Empty, or one per position: linear RGBA within 0...1.
+  /// Vertex colours: empty, or one per position; linear RGBA within 0...1.
   std::vector<vec4> colors = {};
-  /// Empty, or one per position; v increases upwards from the lowest row of a picture.
+  /// Texture coordinates: empty, or one per position; v increases upwards from the lowest row of a picture.
   std::vector<vec2> uvs = {};
-  /// Indices of positions, polygon after polygon.
+  /// The corners of all polygons, one polygon after the other, as indices of positions.
   std::vector<uint32_t> corners = {};
   /// Number of corners of each polygon, 3...kMaxPolygonCorners.
   std::vector<uint32_t> corner_counts = {};
-  /// Empty, or one per polygon, as `colors`. Empty where vertices have colours.
+  /// Colours of polygons in the form of `colors`: empty, or one per polygon. Empty if vertices have colours.
   std::vector<vec4> face_colors = {};
-  /// Empty, or one per corner, like `uvs`, which are then empty.
+  /// Texture coordinates of corners in the form of `uvs`: empty, or one per corner. If they exist, `uvs` is empty.
   std::vector<vec2> corner_uvs = {};
-  /// Indices into PlyHeader::texture_files, one per polygon; empty if all are 0.
+  /// For each polygon, its index into PlyHeader::texture_files. Empty if all indices are 0.
   std::vector<uint32_t> face_textures = {};
 
-  /// Marks a polygon without a texture.
+  /// The texture index of a polygon without a texture.
   static constexpr uint32_t kNoTexture = std::numeric_limits<uint32_t>::max();
 };
 
 /// Reads the rows after a header that has vertices and faces, and texture coordinates if it has texture files. Strips
-/// become triangles. Problems go to the report.
+/// become triangles. The report receives problems.
 PlyBody read_ply_body(std::string_view file, const PlyHeader& header, LoadReport& report);
 
 }  // namespace promin

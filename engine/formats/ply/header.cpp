@@ -63,16 +63,16 @@ class HeaderLines {
     return true;
   }
 
-  /// The current line without spaces around it.
+  /// Returns the current line without spaces around it.
   std::string_view line() const { return line_; }
   uint64_t number() const { return number_; }
   std::string place() const { return "line " + std::to_string(number_); }
-  /// Where the next line begins.
+  /// Returns the offset of the next line.
   size_t next() const { return next_; }
 
  private:
   std::string_view file_;
-  /// Any of these ends a line.
+  /// The characters that end a line.
   std::string_view ends_;
   std::string_view line_;
   size_t next_ = 0;
@@ -126,7 +126,7 @@ class HeaderParser {
     }
   }
 
-  /// The name is the rest of the line, because it may hold spaces.
+  /// Reads a comment. The name of a texture file is the rest of the line, because it may contain spaces.
   void read_comment(std::string_view text) {
     if (!text.starts_with(kTextureFile)) return;
     const std::string_view name = trim(text.substr(kTextureFile.size()));
@@ -178,7 +178,7 @@ class HeaderParser {
     if (has_room(properties, "properties")) properties.push_back(property);
   }
 
-  /// Limits the search for each new name among the others.
+  /// Refuses names that occur twice. The number of names is limited, because each new name is compared with all others.
   template <class Named>
   bool has_room(const std::vector<Named>& all, const std::string& what) {
     if (all.size() < kMaxNames) return true;
@@ -195,10 +195,10 @@ class HeaderParser {
     return PlyType::kFloat32;
   }
 
-  /// A wrong header must not cause large allocations.
+  /// Checks the counts, so that a wrong header cannot cause large allocations.
   void check_counts(uint64_t room) {
     const bool is_text = out_.encoding == PlyEncoding::kText;
-    // The last number of a text may have no space behind it.
+    // The last number of a text need not be followed by a space.
     if (is_text) ++room;
     for (const PlyElement& element : out_.elements) {
       uint64_t row_bytes = 0;

@@ -64,7 +64,7 @@ bool has_rounded_coordinates(const PlyHeader& header) {
   return std::ranges::any_of(header.find("vertex")->properties, is_rounded);
 }
 
-/// Checks the required parts of the header.
+/// Checks that the header has the required elements and properties.
 void check_elements(const PlyHeader& header, LoadReport& report) {
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr) {
@@ -86,7 +86,7 @@ void check_elements(const PlyHeader& header, LoadReport& report) {
 /// Makes a mesh from the content of a file.
 class MeshMaker {
  public:
-  /// `material_of_texture` has what the faces of each texture file are made of; kUnused where its picture cannot be
+  /// `material_of_texture` has the material of the faces with each texture file; kUnused if its picture cannot be
   /// shown.
   MeshMaker(const PlyBody& body, const std::vector<uint32_t>& material_of_texture, LoadReport& report)
       : body_(body),
@@ -112,16 +112,16 @@ class MeshMaker {
   }
 
  private:
-  /// At most this number of vertices at the same position are searched, which limits the time if very many faces around
-  /// one position have different colours.
+  /// The largest number of vertices at one position that are searched. It limits the time if very many faces around one
+  /// position have different colours.
   static constexpr int kMostTries = 32;
 
   bool shows_textures() const {
     return std::ranges::any_of(material_of_texture_, [](uint32_t material) { return material != kUnused; });
   }
 
-  /// Adds the vertices that faces use, in the file's order; others may have any content. Vertices without normals are
-  /// added with their triangles.
+  /// Adds the vertices that faces use, in the file's order. Unused vertices may have any content. Vertices without
+  /// normals are added later, with their triangles.
   void add_vertices() {
     new_index_.resize(body_.positions.size(), kUnused);
     for (const uint32_t corner : body_.corners) new_index_[corner] = 0;
@@ -137,7 +137,7 @@ class MeshMaker {
     }
   }
 
-  /// Whether the vertex needs none, or has one of some length.
+  /// Returns whether the vertex needs no normal, or has a normal of non-zero length.
   bool has_normal(uint32_t vertex) const {
     if (!has_normals_) return true;
     const double length = glm::length(dvec3(body_.normals[vertex]));
@@ -151,14 +151,15 @@ class MeshMaker {
     vec4 uv{0.0F};
   };
 
-  /// That of a corner, which is an index into PlyBody::corners where faces say anything.
+  /// Returns the attributes of a corner, given by its vertex and its index into PlyBody::corners. The index matters
+  /// only if faces have attributes.
   Look look_of(uint32_t vertex, size_t corner) const {
     Look look{vertex};
     if (!body_.colors.empty()) look.color = body_.colors[vertex];
     if (!body_.face_colors.empty()) look.color = body_.face_colors[polygon_];
     if (!has_uvs_) return look;
     const vec2 uv = body_.corner_uvs.empty() ? body_.uvs[vertex] : body_.corner_uvs[corner];
-    // A mesh's v grows downwards, from the first row of a picture.
+    // In a mesh v increases downwards, from the first row of a picture.
     look.uv = vec4(uv.x, static_cast<float>(1.0 - static_cast<double>(uv.y)), 0.0F, 0.0F);
     return look;
   }
@@ -171,7 +172,7 @@ class MeshMaker {
     return static_cast<uint32_t>(mesh_.positions.size() - 1);
   }
 
-  /// The vertices that share a place of the file form a chain, the newest first.
+  /// Returns the vertex with these attributes. The vertices at one position of the file form a chain, the newest first.
   uint32_t find_or_add_vertex(const Look& look) {
     uint32_t known = newest_vertex_[look.vertex];
     for (int i = 0; known != kUnused && i < kMostTries; known = previous_vertex_[known], ++i) {
@@ -210,13 +211,13 @@ class MeshMaker {
     if (has_uvs_) mesh_.triangle_materials.resize(mesh_.triangles.size(), material_of_polygon());
   }
 
-  /// kUnused: that of what shows no picture.
+  /// Returns the material of the current polygon; kUnused if the polygon shows no picture.
   uint32_t material_of_polygon() const {
     const uint32_t texture = body_.face_textures.empty() ? 0 : body_.face_textures[polygon_];
     return texture == PlyBody::kNoTexture ? kUnused : material_of_texture_[texture];
   }
 
-  /// `places` are those of its corners in the polygon.
+  /// Adds a triangle. `places` are the positions of its corners in the polygon.
   void add_triangle(const uvec3& places) {
     const uint32_t* corners = &body_.corners[first_corner_];
     const bool is_smooth =
@@ -230,7 +231,7 @@ class MeshMaker {
     mesh_.triangles.push_back(vertices);
   }
 
-  /// A triangle without area is never hit, so any normal will do for it.
+  /// Adds a flat-shaded triangle. If it has no area, its normal may be any vector, because no ray hits it.
   void add_sharp_triangle(const uvec3& places) {
     const uint32_t* corners = &body_.corners[first_corner_];
     report_.repair({"ply.normal.zero", "a face has a normal that is 0 or not a number", "",
@@ -254,23 +255,23 @@ class MeshMaker {
   bool has_normals_;
   bool has_colors_;
   bool has_uvs_;
-  /// Whether faces give their corners attributes that the vertices lack.
+  /// True if faces have attributes of corners, so that vertices must be split.
   bool is_split_;
   Mesh mesh_;
   /// The current polygon, and the index of its first corner.
   size_t polygon_ = 0;
   size_t first_corner_ = 0;
-  /// The mesh vertex of each vertex of the file, if nothing is split.
+  /// The mesh vertex of each vertex of the file, if no vertex is split.
   std::vector<uint32_t> new_index_;
-  /// The newest vertex of the mesh in the place of each of the file, where anything is split.
+  /// If vertices are split, the newest mesh vertex at the position of each vertex of the file.
   std::vector<uint32_t> newest_vertex_;
-  /// The one before it in the same place, for each vertex of the mesh.
+  /// For each vertex of the mesh, the previous vertex at the same position.
   std::vector<uint32_t> previous_vertex_;
   std::vector<vec3> polygon_positions_;
 };
 
 /// Adds a material for each texture file whose picture can be shown, with its image and texture. Returns the index of
-/// each file's material, kUnused where there is no material for it.
+/// each file's material; kUnused for a file without a material.
 std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool takes_texels, Scene& scene,
                                    LoadReport& report) {
   std::vector<PictureSource> sources;
@@ -307,7 +308,7 @@ std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool t
   return materials;
 }
 
-/// Adds the grey material where anything is made of it, and the mesh, if there is any of it.
+/// Adds the mesh if it is not empty, and the grey material if a triangle of the mesh uses it.
 void add_mesh(Mesh mesh, Scene& scene) {
   const auto grey = static_cast<uint32_t>(scene.materials.size());
   std::vector<uint32_t>& materials = mesh.triangle_materials;

@@ -15,7 +15,7 @@
 
 namespace promin {
 
-/// Reads numbers from the rows of a binary PLY file. After the end, and after any problem, numbers are 0.
+/// Reads numbers from the rows of a binary PLY file. After the end of the file, and after a problem, all numbers are 0.
 template <std::endian kOrder>
 class PlyBinaryRows {
  public:
@@ -75,7 +75,8 @@ class PlyBinaryRows {
   std::string problem_;
 };
 
-/// Reads numbers from the rows of a text PLY file, where each row is a line. Otherwise like PlyBinaryRows.
+/// Reads numbers from the rows of a text PLY file, where each row is a line. It has the same functions as
+/// PlyBinaryRows.
 class PlyTextRows {
  public:
   PlyTextRows(std::string_view body, uint64_t header_lines) : lines_(without_zero_bytes_at_end(body), header_lines) {}
@@ -104,7 +105,7 @@ class PlyTextRows {
     return number;
   }
 
-  /// Does the same for any word; NaN if it is not a number.
+  /// Reads any word as a number; NaN if it is not a number.
   double take_any(PlyType /*type*/) {
     word_ = take_field(rest_);
     if (word_.empty() && problem_.empty()) problem_ = "a row has fewer numbers than its element has properties";

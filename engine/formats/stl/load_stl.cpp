@@ -25,8 +25,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the numbers of the file are little-endian");
 
-// A binary file: a header that may say anything, the count of facets, and for each of these the normal, three corners
-// and two bytes.
+// Layout of a binary file: a header with any content, the number of facets, and then the facets. A facet has a normal,
+// three corners and two bytes.
 constexpr size_t kHeaderBytes = 80;
 constexpr size_t kFirstFacet = kHeaderBytes + 4;
 constexpr size_t kFacetBytes = 50;
@@ -48,8 +48,8 @@ bool has_size_of_binary(std::string_view file) {
   return file.size() >= kFirstFacet && file.size() == kFirstFacet + kFacetBytes * facet_count(file);
 }
 
-/// Texts begin with "solid", but so do the headers of some binary files. Those hold zeros further on, in their count at
-/// the latest unless it is beyond 16 million.
+/// Returns whether a file is a text. Text files begin with "solid", but so do the headers of some binary files. Binary
+/// files contain zeros further on, at the latest in the number of facets, unless there are more than 16 million.
 bool looks_like_text(std::string_view file) {
   const std::string_view begin = file.substr(0, kFirstFacet + kFacetBytes);
   if (begin.find('\0') != std::string_view::npos) return false;
@@ -57,8 +57,9 @@ bool looks_like_text(std::string_view file) {
 }
 
 /// The colours of a binary file's facets, which share the two bytes behind each facet, in one of two ways. VisCAM and
-/// SolidView have 5 bits of blue, green and red, from the lowest on, and set the highest bit where these count. Magics
-/// has red in the lowest, clears the highest bit where they count, and its header has the colour of the other facets.
+/// SolidView store 5 bits each of blue, green and red, from the lowest bit on, and set the highest bit if the colour is
+/// valid. Magics stores red in the lowest bits, clears the highest bit if the colour is valid, and stores the colour of
+/// all other facets in the header.
 class FacetColors {
  public:
   FacetColors(std::string_view file, uint64_t count) : file_(file) {
@@ -78,14 +79,14 @@ class FacetColors {
     }
   }
 
-  /// Whether facets have colours at all.
+  /// Returns whether facets have colours.
   bool exist() const { return is_magics_ || has_marks_; }
-  /// Whether the bytes contain anything other than colours.
+  /// Returns whether the bytes contain something other than colours.
   bool are_unknown() const { return has_codes_ && !exist(); }
 
   vec3 of(uint64_t facet) const {
     const uint16_t code = code_of(facet);
-    // Writers without facet colours leave these bytes 0.
+    // Programs that write no colours of facets set these bytes to 0.
     if (is_magics_ ? !has_codes_ || (code & kMark) != 0 : (code & kMark) == 0) return default_;
     const vec3 color(linear_[code & 31U], linear_[code >> 5 & 31U], linear_[code >> 10 & 31U]);
     return is_magics_ ? color : vec3(color.b, color.g, color.r);
@@ -100,12 +101,12 @@ class FacetColors {
   }
 
   std::string_view file_;
-  /// Linear light of each code of 5 bits.
+  /// Linear light for each code of 5 bits.
   std::array<float, 32> linear_{};
   bool is_magics_ = false;
   bool has_codes_ = false;
   bool has_marks_ = false;
-  /// White where no header says otherwise.
+  /// Colour of facets without a colour; white unless the header gives one.
   vec3 default_{1.0F};
 };
 
@@ -137,7 +138,7 @@ std::vector<StlSolid> read_binary(std::string_view file, LoadReport& report) {
   }
   uint64_t count = facet_count(file);
   const uint64_t room = (file.size() - kFirstFacet) / kFacetBytes;
-  // A program that writes to a pipe cannot go back to write the count.
+  // A program that writes to a pipe cannot go back to write the number of facets.
   const bool is_open = count == 0 || count == std::numeric_limits<uint32_t>::max();
   if (is_open && room > 0 && file.size() == kFirstFacet + kFacetBytes * room) {
     report.repair({"stl.count.missing", "the number of facets is missing", std::to_string(count), "",

@@ -15,7 +15,8 @@
 namespace promin {
 namespace {
 
-/// What is behind "solid" up to where its first facet or its end begins, which may be on the same line.
+/// Returns the text after "solid" up to the beginning of the first facet or of the end statement, which may be on the
+/// same line.
 std::string_view name_in(std::string_view behind) {
   std::string_view rest = behind;
   for (std::string_view word = take_field(rest); !word.empty(); word = take_field(rest)) {
@@ -53,7 +54,7 @@ class StlParser {
     report_.repair({code, what, value, words_.place(), "export the file again", repair});
   }
 
-  /// Ordered by how often they come.
+  /// Reads a statement. The frequent statements are tested first.
   void read_statement(std::string_view keyword) {
     if (is_stl_keyword(keyword, "vertex")) {
       read_vertex();
@@ -82,7 +83,7 @@ class StlParser {
     while (words_.is_next_on_line() && words_.next().data() < name.data() + name.size()) words_.take();
   }
 
-  /// The normal may be anything, as it is not used.
+  /// Begins a facet. Its normal may be any text, because it is not used.
   void begin_facet() {
     if (is_in_facet_) refuse("stl.facet.nested", "a facet begins within another facet", "export the file again");
     if (solids_.empty()) solids_.emplace_back();
@@ -101,7 +102,7 @@ class StlParser {
       const std::string_view word = words_.take();
       const std::optional<double> number = parse_any_number(word);
       if (!number) return refuse("stl.number.wrong", quote(word) + " is not a number", "give each vertex x y z");
-      // Written so that NaN fails.
+      // The comparison is written so that NaN fails.
       if (is_placed_ && !(std::abs(*number) <= kMaxCoordinate)) {
         is_placed_ = false;
         repair("stl.position.range", "a facet has a vertex coordinate that is not a number up to 1e15", quote(word),
@@ -136,9 +137,9 @@ class StlParser {
   LoadReport& report_;
   std::vector<StlSolid> solids_;
   bool is_in_facet_ = false;
-  /// Whether all corners of the facet lie somewhere.
+  /// True if all corners of the facet have valid positions.
   bool is_placed_ = true;
-  /// Those of the facet.
+  /// The corners of the current facet.
   std::vector<vec3> corners_;
   uint64_t ignored_count_ = 0;
   std::string first_ignored_;

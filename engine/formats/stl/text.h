@@ -16,15 +16,15 @@ struct StlSolid {
   std::string name = {};
   /// Three corners for each facet; each coordinate is at most 1e15.
   std::vector<vec3> corners = {};
-  /// Empty, or a linear colour for each facet, within 0...1.
+  /// Colours of the facets, linear, within 0...1: empty, or one for each facet.
   std::vector<vec3> colors = {};
 };
 
-/// Returns whether a word is the keyword, which is given in lower case; the file may use any case.
+/// Returns whether a word is the keyword. `keyword` is in lower case; the word may be in any case.
 bool is_stl_keyword(std::string_view word, std::string_view keyword);
 
-/// Parses a text STL file. Line ends matter only after the name of a solid. Facets with invalid positions are left out,
-/// and those of more than three corners are divided into triangles. Problems go to the report with their line.
+/// Parses a text STL file. Line ends matter only after the name of a solid. Facets with invalid positions are left out.
+/// Facets with more than three corners are divided into triangles. The report receives problems with their line.
 std::vector<StlSolid> parse_stl_text(std::string_view text, LoadReport& report);
 
 }  // namespace promin

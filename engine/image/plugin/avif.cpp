@@ -17,11 +17,11 @@ void check(avifResult result) {
   if (result != AVIF_RESULT_OK) throw std::runtime_error(avifResultToString(result));
 }
 
-/// The file with its head read.
+/// Returns a decoder that has read the header of the file.
 Decoder open_avif(std::span<const unsigned char> file) {
   Decoder decoder(avifDecoderCreate(), avifDecoderDestroy);
   if (!decoder) throw std::bad_alloc();
-  // Accepts files without the boxes that some encoders omit and no decoder needs.
+  // Accepts files without boxes that some encoders omit and that no decoder needs.
   decoder->strictFlags = AVIF_STRICT_DISABLED;
   check(avifDecoderSetIOMemory(decoder.get(), file.data(), file.size()));
   check(avifDecoderParse(decoder.get()));

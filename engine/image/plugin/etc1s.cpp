@@ -21,10 +21,10 @@ using Bytes = std::span<const unsigned char>;
 
 constexpr uint32_t kMostBits = 16;
 
-/// A canonical prefix code, as Deflate has them (RFC 1951, 3.2.2).
+/// A canonical prefix code like those of Deflate (RFC 1951, 3.2.2).
 class PrefixCode {
  public:
-  /// The length of each symbol's word, 0 where a symbol has no word.
+  /// Creates a code. `lengths` has the length of each symbol's word, 0 for a symbol without a word.
   explicit PrefixCode(const std::vector<uint8_t>& lengths) {
     for (const uint8_t length : lengths) ++counts_[length];
     counts_[0] = 0;
@@ -54,7 +54,7 @@ class PrefixCode {
   std::vector<uint32_t> symbols_;
 };
 
-/// Reads the lengths of a code's words, which are themselves words of a small code.
+/// Reads a code: the lengths of its words, which are themselves encoded with a small code.
 PrefixCode read_code(BitReader& bits) {
   constexpr std::array<uint8_t, 21> kOrder = {17, 18, 19, 20, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15, 16};
   const uint32_t symbol_count = bits.take(14);
@@ -84,7 +84,7 @@ PrefixCode read_code(BitReader& bits) {
   return PrefixCode(lengths);
 }
 
-/// Chunks of so many bits, each with a bit that says whether another follows.
+/// Reads a number in chunks of this many bits. A bit after each chunk says whether another chunk follows.
 uint32_t take_chunks(BitReader& bits, uint32_t chunk_bits) {
   uint32_t number = 0;
   for (uint32_t shift = 0; shift < 32; shift += chunk_bits) {
@@ -94,12 +94,12 @@ uint32_t take_chunks(BitReader& bits, uint32_t chunk_bits) {
   refuse();
 }
 
-/// The colours of a block, by its selectors.
+/// The four colours of a block, indexed by selector.
 using Palette = std::array<std::array<uint8_t, 3>, 4>;
-/// A byte for each row of the block, two bits for each texel.
+/// The selectors of a block: a byte for each row, with two bits for each texel.
 using Selectors = std::array<uint8_t, 4>;
 
-/// ETC1: what is added to a colour, by its table and selector.
+/// Numbers that ETC1 adds to a colour, indexed by table and selector.
 constexpr std::array<std::array<int, 4>, 8> kModifiers = {{{-8, -2, 2, 8},
                                                            {-17, -5, 5, 17},
                                                            {-29, -9, 9, 29},
@@ -142,7 +142,7 @@ std::vector<Palette> read_palettes(Bytes bytes, uint32_t count) {
 
 std::vector<Selectors> read_selectors(Bytes bytes, uint32_t count) {
   BitReader bits(bytes);
-  // These bits ask for codebooks outside the file, which no version has.
+  // These bits request codebooks outside the file. No version of the format has them.
   if (bits.take(2) != 0) refuse();
   const bool is_raw = bits.take(1) != 0;
   const PrefixCode code = is_raw ? PrefixCode({}) : read_code(bits);
@@ -157,7 +157,7 @@ std::vector<Selectors> read_selectors(Bytes bytes, uint32_t count) {
   return selectors;
 }
 
-/// The selectors that were used last, about in the order of their use.
+/// The selectors that were used last, approximately in the order of their use.
 class History {
  public:
   explicit History(size_t size) : values_(size), next_(size / 2) {}
@@ -209,7 +209,7 @@ class SliceReader {
         above_(column_count),
         predictions_below_(column_count) {}
 
-  /// The numbers of the next block's palette and selectors; `row` and `column` are its own.
+  /// Reads the numbers of the next block's palette and selectors. `row` and `column` are the block's position.
   std::pair<uint32_t, uint32_t> read(uint32_t row, uint32_t column) {
     const uint32_t palette = read_palette(row, column);
     const uint32_t selectors = read_selectors();
@@ -218,7 +218,7 @@ class SliceReader {
   }
 
  private:
-  /// Two bits for each of two by two blocks say where their palettes come from.
+  /// Reads the predictions for two by two blocks. Two bits for each block say where its palette comes from.
   uint32_t read_prediction() {
     constexpr uint32_t kRepeat = 256;
     if (prediction_run_ > 0) {
@@ -281,7 +281,7 @@ class SliceReader {
   uint32_t palette_count_;
   uint32_t selector_count_;
   History history_;
-  /// The palettes of the blocks above; left of the next block those of its own row.
+  /// The palettes of the blocks of the row above. To the left of the next block, they are already those of its own row.
   std::vector<uint32_t> above_;
   std::vector<uint32_t> predictions_below_;
   uint32_t above_left_ = 0;
@@ -297,7 +297,7 @@ Bytes part_of(Bytes bytes, uint64_t place, uint64_t count) {
   return bytes.subspan(place, count);
 }
 
-/// What the file's global data have for all of its pictures, and where the slices of the largest lie.
+/// The file's global data, which all its pictures share, and the positions of the slices of the largest picture.
 struct Globals {
   explicit Globals(Bytes bytes) {
     const auto number_at = [&](uint64_t place, uint64_t size) {
@@ -314,7 +314,7 @@ struct Globals {
     for (size_t i = 0; i < slices.size(); ++i) {
       slices[i] = {number_at(kHeadBytes + 4 + 8 * i, 4), number_at(kHeadBytes + 8 + 8 * i, 4)};
     }
-    // The descriptions of the images of all levels lie before the codebooks, which are the rest.
+    // The image descriptions of all levels come before the codebooks, which are the rest of the data.
     const uint64_t codebook_bytes = uint64_t{lengths[0]} + lengths[1] + lengths[2] + lengths[3];
     if (bytes.size() < kHeadBytes + kImageBytes + codebook_bytes) refuse();
     const uint64_t at = bytes.size() - codebook_bytes;
@@ -326,7 +326,7 @@ struct Globals {
   std::vector<Palette> palettes;
   std::vector<Selectors> selectors;
   Bytes tables;
-  /// Place and length of that of colours, and of the second.
+  /// Position and length of the slice of colours, and of the second slice.
   std::array<std::pair<uint32_t, uint32_t>, 2> slices;
 };
 

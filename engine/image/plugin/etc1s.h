@@ -9,10 +9,10 @@
 struct Etc1sPicture {
   uint32_t width;
   uint32_t height;
-  /// The file's global data of supercompression, and its largest level.
+  /// The file's global data of supercompression, and the bytes of its largest level.
   std::span<const unsigned char> globals;
   std::span<const unsigned char> level;
-  /// Whether the second slice, if there is one, holds green and not alpha.
+  /// True if the second slice contains green and not alpha. It has no effect without a second slice.
   bool is_second_green;
 };
 

@@ -16,14 +16,14 @@
 #include "image/plugin/own_formats.h"
 #include "image/plugin/uastc.h"
 
-// The numbers are those of the Khronos Texture File Format Specification 2.0 and of Vulkan's VkFormat.
+// The numbers come from the Khronos Texture File Format Specification 2.0 and from Vulkan's VkFormat.
 namespace {
 
 using Bytes = std::span<const unsigned char>;
 
 static_assert(std::endian::native == std::endian::little, "the file's numbers are little-endian");
 
-/// Throws where the file ends before them.
+/// Returns bytes of the file. Throws if the file ends before them.
 Bytes bytes_at(Bytes file, uint64_t place, uint64_t count) {
   if (place > file.size() || count > file.size() - place) throw std::runtime_error("it ends too early");
   return file.subspan(place, count);
@@ -36,7 +36,7 @@ Number number_at(Bytes file, uint64_t place) {
   return number;
 }
 
-/// The bytes of a pixel, in the order of the channels.
+/// The bytes of a pixel: the number of channels and their order.
 struct Layout {
   uint32_t channel_count;
   bool is_bgr;
@@ -77,7 +77,7 @@ constexpr uint8_t kEtc1sGreen = 4;
 struct Header {
   uint32_t width;
   uint32_t height;
-  /// The colour model of a file without a VkFormat; else 0.
+  /// The colour model if the file has no VkFormat; otherwise 0.
   uint8_t basis_model;
   Layout layout;
   uint32_t supercompression;
@@ -86,7 +86,7 @@ struct Header {
 constexpr uint32_t kBasisLz = 1;
 constexpr uint32_t kZstd = 2;
 
-/// A byte of the data format descriptor.
+/// Returns a byte of the data format descriptor.
 uint8_t descriptor_byte(Bytes file, uint64_t place) {
   constexpr uint64_t kDescriptorAt = 48;
   return number_at<uint8_t>(file, number_at<uint32_t>(file, kDescriptorAt) + place);
@@ -95,7 +95,7 @@ uint8_t descriptor_byte(Bytes file, uint64_t place) {
 Header read_header(Bytes file) {
   const auto field = [&](uint64_t index) { return number_at<uint32_t>(file, 12 + 4 * index); };
   const uint32_t vk_format = field(0);
-  // Depth, layers and faces.
+  // Fields 4, 5 and 6 are the depth, the number of layers and the number of faces.
   if (field(4) > 1 || field(5) > 1 || field(6) > 1) throw std::runtime_error("it is not a two-dimensional picture");
   Header header = {field(2), field(3), 0, {}, field(8)};
   constexpr uint64_t kColorModelAt = 12;
@@ -112,7 +112,8 @@ Header read_header(Bytes file) {
   return header;
 }
 
-/// The value of a key of the file's own notes, without its closing zero; empty without the key.
+/// Returns the value of a key in the file's key/value data, without its terminating zero; empty if there is no such
+/// key.
 std::string_view find_value(Bytes file, std::string_view key) {
   const auto field = [&](uint64_t place) { return number_at<uint32_t>(file, place); };
   Bytes notes = bytes_at(file, field(56), field(60));
@@ -130,7 +131,7 @@ std::string_view find_value(Bytes file, std::string_view key) {
   return {};
 }
 
-/// The bytes of the largest level, as the file has them.
+/// Returns the stored bytes of the largest level, which may be compressed.
 Bytes stored_level(Bytes file) {
   constexpr uint64_t kLevelsAt = 80;
   return bytes_at(file, number_at<uint64_t>(file, kLevelsAt), number_at<uint64_t>(file, kLevelsAt + sizeof(uint64_t)));
@@ -177,7 +178,8 @@ void read_uastc(Bytes file, const Header& header, std::span<unsigned char> pixel
   }
 }
 
-/// Which of red, green, blue, alpha, 0 and 1 a pixel's channels show: "rgba" unless the file says another.
+/// Returns for each channel of a pixel whether it shows red, green, blue, alpha, 0 or 1: "rgba" unless the file has
+/// another swizzle.
 std::array<size_t, 4> read_swizzle(Bytes file) {
   constexpr std::string_view kNames = "rgba01";
   std::array<size_t, 4> swizzle = {0, 1, 2, 3};

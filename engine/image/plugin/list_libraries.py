@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the shared libraries that a library needs, directly and through others, each after those that it needs itself.
+"""Lists the shared libraries that a library needs, directly or through other libraries. Each library comes after the
+libraries that it needs itself.
 
-list_libraries.py LIBRARY OUTPUT: writes their names to OUTPUT, one a line. image/open_pictures.cpp opens them in this
-order. Where the tools that tell are missing, or the library is for another machine, the list is empty, which costs
-time when pictures are opened and nothing else.
+list_libraries.py LIBRARY OUTPUT: writes their names to OUTPUT, one on each line. image/open_pictures.cpp opens them in
+this order. If the tools for reading libraries are missing, or the library is for another machine, the list is empty.
+Opening pictures then only takes longer.
 """
 
 import re

@@ -22,14 +22,14 @@
 #include "image/plugin/upright.h"
 
 struct ProminPicturesReader {
-  /// A file in memory that is read without OpenImageIO, and its format; all else has an input.
+  /// The bytes of a file that is read without OpenImageIO, and its format. For all other files there is an `input`.
   std::span<const unsigned char> own;
   const OwnFormat* own_format = nullptr;
-  /// Another file in memory.
+  /// The bytes of a file in memory that OpenImageIO reads.
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   std::unique_ptr<OIIO::ImageInput> input;
   int first_channel = -1;
-  /// Of the part that was described last.
+  /// Name of the part that was described last.
   std::string part_name;
   std::vector<std::string> channel_names;
   std::vector<ProminPicturesChannel> channels;
@@ -37,7 +37,8 @@ struct ProminPicturesReader {
 
 namespace {
 
-/// OpenImageIO's explanations may run over several lines; an error of ours is one.
+/// Returns the first line of an explanation: OpenImageIO's explanations may have several lines, but promin's errors
+/// have one.
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
@@ -64,7 +65,8 @@ int guard(ProminPicturesMessage* message, const Body& body) noexcept {
   return PROMIN_PICTURES_FAILED;
 }
 
-/// The place of the R, G, B triple among a file's channels, or of a luminance without chroma; -1 if it has neither.
+/// Returns the index of the R, G, B triple among a file's channels, or of a luminance without chroma; -1 if the file
+/// has neither.
 int find_rgb(const OIIO::ImageSpec& spec) {
   const auto& names = spec.channelnames;
   for (int first = 0; first + 2 < spec.nchannels; ++first) {
@@ -85,7 +87,7 @@ bool is_exr(const ProminPicturesReader& reader) {
   return std::string_view(reader.input->format_name()) == "openexr";
 }
 
-/// How files are opened: some readers would multiply colours by alpha.
+/// Returns options for opening files. Without them some readers multiply colours by alpha.
 OIIO::ImageSpec keep_alpha_apart() {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
@@ -95,14 +97,14 @@ OIIO::ImageSpec keep_alpha_apart() {
 ProminPicturesInfo describe(ProminPicturesReader& reader) {
   const OIIO::ImageSpec& spec = reader.input->spec();
   reader.first_channel = find_rgb(spec);
-  // Several parts in other formats are successive pictures.
+  // In formats other than EXR, several parts are successive pictures, so only the first counts.
   const int parts = is_exr(reader) ? std::max(spec.get_int_attribute("oiio:subimages", 1), 1) : 1;
   return {is_flat(spec) ? static_cast<uint64_t>(spec.width) : 0, is_flat(spec) ? static_cast<uint64_t>(spec.height) : 0,
           is_flat(spec) ? 1U : 0U, reader.first_channel, static_cast<uint32_t>(parts)};
 }
 
-/// Returns whether a channel's integers are read as integers and not as fractions of the largest: they are ids and not
-/// light.
+/// Returns whether a channel's integers are read as integers, because they are ids, and not as fractions of the largest
+/// integer.
 bool is_integer(const ProminPicturesReader& reader, const OIIO::TypeDesc& type) {
   return is_exr(reader) && type == OIIO::TypeDesc::UINT32;
 }
@@ -134,7 +136,8 @@ ProminPicturesPart describe_part(ProminPicturesReader& reader, uint32_t part) {
           reader.channels.size()};
 }
 
-/// Rows of a part as the file keeps them, from `begin` to `end` in the part's own count, and where these begin.
+/// Rows `begin` to `end` of a part in the format of the file. The rows are numbered as in the part, and `first` is the
+/// first row in the data.
 struct NativeRows {
   std::vector<unsigned char> bytes;
   size_t skipped_bytes = 0;
@@ -146,7 +149,7 @@ NativeRows read_native(ProminPicturesReader& reader, uint32_t part, const OIIO::
   NativeRows rows;
   bool is_read = false;
   if (spec.tile_height > 0) {
-    // Tiles are read whole.
+    // Tiles can only be read whole.
     const int first = begin / spec.tile_height * spec.tile_height;
     const int last = std::min((end + spec.tile_height - 1) / spec.tile_height * spec.tile_height, spec.height);
     rows.bytes.resize(static_cast<size_t>(last - first) * row_bytes);
@@ -173,7 +176,7 @@ void read_rows(ProminPicturesReader& reader, uint32_t part, uint32_t first_row, 
   const unsigned char* from = rows.bytes.data() + rows.skipped_bytes;
   for (size_t i = 0; i < channel_count; ++i) {
     const OIIO::TypeDesc type = spec.channelformat(static_cast<int>(i));
-    // Of integers the same type on both sides: a copy.
+    // For integers both types are equal, so the conversion is a copy.
     const OIIO::TypeDesc to = is_integer(reader, type) ? type : OIIO::TypeDesc(OIIO::TypeDesc::FLOAT);
     const bool is_done =
         OIIO::convert_image(1, spec.width, end - begin, 1, from, type, stride, OIIO::AutoStride, OIIO::AutoStride,
@@ -183,14 +186,14 @@ void read_rows(ProminPicturesReader& reader, uint32_t part, uint32_t first_row, 
   }
 }
 
-/// The number of channels that are read for RGBA: grey, grey and alpha, colours, colours and alpha.
+/// Returns the number of channels that are read to make RGBA: grey; grey and alpha; colours; or colours and alpha.
 int count_rgba(const OIIO::ImageSpec& spec) {
   const int count = std::min(spec.nchannels, 4);
   const bool has_alpha = spec.alpha_channel == count - 1;
   return count % 2 == 0 && !has_alpha ? count - 1 : count;
 }
 
-/// Spreads the first channels of each pixel over all four.
+/// Extends each pixel from its first channels to all four channels.
 void spread_channels(std::span<unsigned char> pixels, int count) {
   if (count == 4) return;
   for (size_t i = 0; i < pixels.size(); i += 4) {
@@ -206,14 +209,14 @@ void write_bytes(const char* file, std::span<const unsigned char> bytes) {
   if (!stream.flush()) throw std::runtime_error("cannot write the file");
 }
 
-/// `spec` has size and channels.
+/// Writes a picture. `spec` has its size and its channels.
 void write_picture(const char* file, const std::string& format, OIIO::ImageSpec spec, const void* pixels) {
   const bool is_light = format == "hdr";
   spec.set_format(is_light ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", is_light ? "Linear" : "sRGB");
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("compression", "zip");
-  // Otherwise the file would contain its time of writing, and equal pictures would give different files.
+  // Without this, the file would contain the time of writing, and equal pictures would give different files.
   spec.attribute("DateTime", "");
   const auto output = OIIO::ImageOutput::create(format);
   if (!output) throw std::runtime_error(first_line(OIIO::geterror()));
@@ -222,9 +225,9 @@ void write_picture(const char* file, const std::string& format, OIIO::ImageSpec 
   }
 }
 
-/// Throws std::runtime_error where the font or the text cannot be drawn.
+/// Draws a text. Throws std::runtime_error if the font cannot be used or the text cannot be drawn.
 void draw_text(const char* font, const char* text, int width, int height, unsigned char* coverage) {
-  // Lines of text, with what hangs below them, are this much higher than their letters.
+  // Height of a line of text, including descenders, relative to the size of its letters.
   constexpr double kLine = 1.35;
   constexpr int kLeastSize = 6;
   int size = std::max(static_cast<int>(height / kLine), kLeastSize);

@@ -16,8 +16,9 @@ namespace {
   throw std::runtime_error("a UASTC block is damaged");
 }
 
-/// How numbers of endpoints are stored: one of three or five, and bits, whose letters say where they go when the number
-/// becomes one of 8 bits (Khronos Data Format Specification, "Endpoint unquantization"; the lowest is always "a").
+/// The storage of the numbers of endpoints: one digit to the base three or five, and bits. The letters say where these
+/// bits go when the number is converted to 8 bits (Khronos Data Format Specification, "Endpoint unquantization"; the
+/// lowest bit is always "a").
 struct Range {
   uint32_t base;
   uint32_t bits;
@@ -35,7 +36,7 @@ constexpr Range kQuintBits5 = {5, 5, "edcb0000e", 6};
 
 enum class Channels : uint32_t { kLuminanceAlpha = 2, kRgb = 3, kRgba = 4 };
 
-/// A kind of block. Hints for other formats come first in it, and are passed over.
+/// A kind of block. Such a block begins with hints for other formats, which are skipped.
 struct Mode {
   uint32_t code;
   uint32_t code_bits;
@@ -68,16 +69,16 @@ constexpr std::array<Mode, 19> kModes = {{{1, 4, Channels::kRgb, kTritBits6, 4, 
                                           {37, 6, Channels::kLuminanceAlpha, kBits8, 2, 2, 1, 23},
                                           {9, 4, Channels::kRgb, kBits5, 5, 1, 1, 15}}};
 
-/// Which of two subsets each texel belongs to, the first texel in the lowest bit.
+/// For each pattern of two subsets, the subset of each texel; the first texel is the lowest bit.
 constexpr auto kPatterns2 =
     std::to_array<uint16_t>({0xCCCC, 0x8888, 0x1111, 0xECC8, 0x377F, 0xFEEC, 0x0137, 0x137F, 0xC800, 0x0013,
                              0xFE80, 0x17FF, 0x0017, 0x00FF, 0xFFF0, 0x0FFF, 0xFF71, 0x8EFF, 0x08CE, 0x008C,
                              0x7310, 0xCEFF, 0x7331, 0x088C, 0xCEEF, 0x6666, 0xF00F, 0x5555, 0x0F0F, 0x36C9});
-/// The same of mode 7.
+/// The patterns of two subsets in mode 7.
 constexpr auto kPatterns23 =
     std::to_array<uint16_t>({0x00F0, 0x4444, 0x0133, 0xCC80, 0xF0FF, 0x2222, 0xFFC8, 0xCCCE, 0x3C03, 0x00EE, 0x7700,
                              0x3003, 0x00CE, 0xFF80, 0x6FFF, 0x1333, 0x11FF, 0x136C, 0x00EF});
-/// Which of three, two bits for each texel.
+/// For each pattern of three subsets, the subset of each texel, with two bits for each texel.
 constexpr auto kPatterns3 =
     std::to_array<uint32_t>({0xA5A50000, 0xAA005555, 0xAA000055, 0x0000AA55, 0x25252525, 0x94949494, 0x58585858,
                              0x56560202, 0x92929292, 0x55AA0055, 0xA05050A0});
@@ -132,7 +133,7 @@ uint8_t to_8_bits(const Range& range, uint32_t digit, uint32_t stored) {
   return static_cast<uint8_t>((flip & 0x80) | value >> 2);
 }
 
-/// Numbers of 8 bits. Digits come first, several in as many bits as they need, and then the bits of all.
+/// Reads numbers of 8 bits. The digits come first, several packed into few bits, and then the bits of all numbers.
 std::vector<uint8_t> read_endpoints(BitReader& bits, const Range& range, size_t count) {
   constexpr std::array<uint32_t, 6> kBitsOfTrits = {0, 2, 4, 5, 7, 8};
   constexpr std::array<uint32_t, 4> kBitsOfQuints = {0, 3, 5, 7};
@@ -148,10 +149,10 @@ std::vector<uint8_t> read_endpoints(BitReader& bits, const Range& range, size_t 
   return numbers;
 }
 
-/// Of 64 parts of the second endpoint.
+/// Returns the weight of the second endpoint, in 64ths.
 uint32_t weight_of(uint32_t stored, uint32_t bits) {
   const uint32_t most = (1U << bits) - 1;
-  // ASTC repeats the bits to six, and adds one to the upper half.
+  // ASTC repeats the bits until there are six, and adds 1 to values in the upper half.
   uint32_t six = 0;
   for (int shift = 6 - static_cast<int>(bits); shift > -static_cast<int>(bits); shift -= static_cast<int>(bits)) {
     six |= shift >= 0 ? stored << shift : stored >> -shift;
@@ -159,7 +160,8 @@ uint32_t weight_of(uint32_t stored, uint32_t bits) {
   return stored == most ? 64 : six + (six > 32 ? 1 : 0);
 }
 
-/// The weight of each texel in each plane. The first texel of each subset lacks its highest bit, which is 0.
+/// Reads the weight of each texel in each plane. The highest bit of the first texel of each subset is not stored; it is
+/// 0.
 std::array<std::array<uint32_t, 2>, kTexels> read_weights(BitReader& bits, const Mode& mode, const Subsets& subsets) {
   std::array<std::array<uint32_t, 2>, kTexels> weights{};
   for (size_t i = 0; i < kTexels; ++i) {
@@ -175,7 +177,7 @@ uint8_t interpolate(uint32_t from, uint32_t to, uint32_t weight) {
   return static_cast<uint8_t>(((257 * from * (64 - weight) + 257 * to * weight + 32) >> 6) >> 8);
 }
 
-/// Where the two numbers of a channel of RGBA lie among those of a subset; those of an alpha of 1 lie nowhere.
+/// Returns the position of a channel's two numbers among the numbers of a subset. An alpha of 1 has no numbers.
 size_t place_of_channel(Channels channels, size_t channel) {
   if (channels == Channels::kLuminanceAlpha) return channel == 3 ? 2 : 0;
   return 2 * channel;

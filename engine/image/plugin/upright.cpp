@@ -11,15 +11,15 @@
 
 namespace {
 
-/// How a file's pixels lie.
+/// The orientation of a file's pixels.
 struct Order {
   bool is_by_columns;
   bool is_from_right;
   bool is_from_bottom;
 };
 
-/// By OpenImageIO's attribute, less 1: for the resolution strings -Y+X, -Y-X, +Y-X, +Y+X, +X-Y, +X+Y, -X+Y, -X-Y, whose
-/// first axis is that of the rows of the file.
+/// Orientations, indexed by OpenImageIO's attribute minus 1. They belong to the resolution strings -Y+X, -Y-X, +Y-X,
+/// +Y+X, +X-Y, +X+Y, -X+Y, -X-Y, whose first axis is that of the file's rows.
 constexpr std::array<Order, 8> kOrders = {{{false, false, false},
                                            {false, true, false},
                                            {false, true, true},
@@ -29,7 +29,7 @@ constexpr std::array<Order, 8> kOrders = {{{false, false, false},
                                            {true, true, true},
                                            {true, true, false}}};
 
-/// Has the whole picture in memory from the first row that is read on.
+/// An input that loads the whole picture into memory when the first row is read.
 class UprightInput final : public OIIO::ImageInput {
  public:
   UprightInput(std::unique_ptr<OIIO::ImageInput> input, const Order& order) : input_(std::move(input)), order_(order) {
@@ -64,7 +64,7 @@ class UprightInput final : public OIIO::ImageInput {
     return false;
   }
 
-  /// Where the file has a pixel.
+  /// Returns the position of a pixel in the file.
   size_t place_of(int x, int y) const {
     const auto u = static_cast<size_t>(order_.is_from_right ? m_spec.width - 1 - x : x);
     const auto v = static_cast<size_t>(order_.is_from_bottom ? m_spec.height - 1 - y : y);

@@ -16,10 +16,10 @@
 namespace promin {
 namespace {
 
-/// The log may take half of what Vulkan guarantees for a storage buffer.
+/// The largest size of the log in bytes: half of the size that Vulkan guarantees for a storage buffer.
 constexpr uint64_t kMostLogBytes = 64U << 20;
 
-/// Entries of the log of one sample of the view at most, whatever the sample meets.
+/// Returns the largest number of log entries of one sample of the view, for any objects that its rays hit.
 uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View& view) {
   const uint32_t layers = features.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
   const uint64_t steps = most_steps(view.max_depth, refracted_rays(features), layers);
@@ -32,7 +32,7 @@ uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View
   return entries;
 }
 
-/// The log of the sample that was traced last, behind the pixel (shaders/picture/ray_log.glsl).
+/// Reads the log of the sample that was traced last. The log follows the pixel (shaders/picture/ray_log.glsl).
 std::vector<layout::RayLog> read_log(const Film& film) {
   const vk::DeviceSize count_offset = Film::kPixelsOffset + sizeof(uvec4);
   uvec4 count;
@@ -42,7 +42,7 @@ std::vector<layout::RayLog> read_log(const Film& film) {
   return log;
 }
 
-/// The sum of the pixel's samples so far.
+/// Reads the sum of the pixel's samples so far.
 vec3 read_sum(const Film& film) {
   uvec4 pixel;
   film.buffer().read(std::as_writable_bytes(std::span(&pixel, 1)), Film::kPixelsOffset);
@@ -54,7 +54,7 @@ vec3 read_sum(const Film& film) {
 Explanation explain_pixel(const gpu::Device& device, const std::shared_ptr<const DeviceScene>& scene,
                           const PrimitiveNumbers& numbers, FeatureMask features, const View& view, const uvec2& pixel) {
   constexpr uint64_t kEntryRecords = sizeof(layout::RayLog) / sizeof(uvec4);
-  // Packets share the steps through the tree, but a log is of single rays.
+  // The film has packets of one ray, because rays of a packet share their steps but a log describes single rays.
   Film film(device, scene, features | layout::FEATURE_RAY_LOG,
             {.packet_size = 1,
              .log_records = static_cast<uint32_t>(1 + most_entries(*scene, features, view) * kEntryRecords)});

@@ -51,7 +51,7 @@ ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbe
                                std::span<const uint32_t> light_numbers) {
   ExplainedSample sample;
   std::vector<ExplainedSource> sources;
-  // The numbers of the last rays, by their bounces.
+  // The number of the last ray with each number of bounces.
   std::vector<uint32_t> last_of_bounces;
   for (const RayLog& entry : log) {
     if (entry.ids.x == layout::LOG_SOURCE) {
@@ -60,7 +60,8 @@ ExplainedSample explain_sample(std::span<const RayLog> log, const PrimitiveNumbe
     }
     ExplainedRay ray;
     ray.kind = RayKind{entry.ids.w};
-    // Paths are followed depth first, so it leaves the last one with a bounce less, or as many where it only goes on.
+    // Paths are followed depth first. A ray therefore starts at the last ray with one bounce less; if it only continues
+    // a ray, at the last ray with the same number of bounces.
     const uint32_t bounces = entry.ids.y;
     const uint32_t of_parent = ray.kind == RayKind::kThrough || bounces == 0 ? bounces : bounces - 1;
     last_of_bounces.resize(bounces + size_t{1});

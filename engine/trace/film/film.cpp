@@ -24,13 +24,14 @@ using Stage = vk::PipelineStageFlagBits;
 
 constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
 
-/// Samples of a list that a thread takes at a time.
+/// Number of samples of a list that a thread processes at a time.
 constexpr size_t kListChunk = 65536;
 
-/// One for each lane of a block.
+/// Counters, one for each lane of a block.
 using Counters = std::array<uvec4, kLanes>;
 
-/// Rays and cut loops, then passes (shaders/picture/film.glsl).
+/// Returns the counters of the lanes: first the rays and cut loops, then the continuations behind surfaces
+/// (shaders/picture/film.glsl).
 std::array<Counters, 2> lanes_of(std::span<const std::byte> counters) {
   std::array<Counters, 2> lanes;
   assert(counters.size() >= sizeof lanes);
@@ -42,7 +43,7 @@ static_assert(sizeof(layout::FilmHead::ray_counts) == sizeof(Counters));
 
 uint32_t pick_packet_size(const gpu::DeviceProfile& profile, FeatureMask features, const FilmOptions& options) {
   if (options.packet_size) return *options.packet_size;
-  // Steps are of single rays.
+  // Packets share their steps, so step counts need single rays.
   const bool takes_packets =
       !features.has_any(layout::FEATURE_STEP_COUNTS) && options.expected_samples >= profile.samples_that_repay_packets;
   return takes_packets ? profile.pixel_packet_size : 1;
@@ -86,9 +87,10 @@ std::vector<gpu::BoundBuffer> Film::buffers() const {
 }
 
 void Film::bind_scene() {
-  // Other lights may take a larger stream.
+  // After a change of lights the stream may be larger.
   reserve(capacity_);
-  // The device has compiled it already unless the scene has outgrown its texel buffers.
+  // If the device has already compiled the pipeline, it is used again, unless the scene no longer fits in texel
+  // buffers.
   const auto constants_for = [&](uint32_t packet_size) {
     const gpu::TraversalForm form = traversal_form(device_->profile(), *scene_, packet_size);
     std::vector<gpu::SpecializationConstant> constants =
@@ -99,7 +101,7 @@ void Film::bind_scene() {
   };
   const std::vector<gpu::BoundBuffer> bound = buffers();
   stream_.reset();
-  // A driver compiles a pipeline in one thread, so the two stages are compiled side by side.
+  // A driver compiles a pipeline in one thread, so the two stages are compiled in parallel.
   for_each_index(has_stream() ? 2 : 1, 0, [&](size_t stage) {
     if (stage == 0) {
       kernel_.emplace(*device_, shaders_.camera_stage, constants_for(packet_size_), bound);
@@ -115,7 +117,7 @@ void Film::reserve(uint32_t pixel_count) {
   const uint64_t bytes = sizeof(layout::FilmHead) + records * sizeof(uvec4) + bytes_of_stream(pixel_count);
   if (buffer_ && buffer_->size_bytes() >= bytes && capacity_ == pixel_count) return;
   using Usage = vk::BufferUsageFlagBits;
-  // There before the old one goes: where memory is short the film stays whole.
+  // The new buffer is created before the old one is freed, so that the film stays valid if memory is short.
   gpu::Buffer buffer(*device_, bytes, Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eIndirectBuffer);
   vk::raii::BufferView texels = buffer.make_texel_view();
   texels_ = std::move(texels);
@@ -160,7 +162,7 @@ void Film::put_pixels(std::span<const uvec4> records, const uvec2& size) {
 
 TileOptions Film::piece_options(uint32_t depth) const {
   const gpu::DeviceProfile& profile = device_->profile();
-  // A piece's paths have room in the stream, be they all of its pixels.
+  // The stream has space for the paths of a piece, even if all of its pixels have paths.
   const uint32_t most_paths = stream_shape(TileOptions::kMaxBlocks * kLanes, depth).most_paths;
   return {.packet_size = packet_size_,
           .most_group_rows = profile.most_group_rows,
@@ -185,7 +187,8 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
   commands.updateBuffer<layout::ViewConstants>(*view_constants_.handle(), 0, picture.view_constants());
   commands.fillBuffer(*buffer_->handle(), offsetof(layout::FilmHead, ray_counts), kCountersBytes, 0);
   if (!picture.begins_sums()) return;
-  // Most samples add to few of these, so the first cannot begin them all, as it does the other sums.
+  // Most samples add to few of these sums. The first sample therefore cannot initialise all of them, as it does with
+  // other sums, so they are cleared.
   const vk::DeviceSize record_bytes = picture.pixel_count() * sizeof(uvec4);
   const auto clear = [&](uint32_t first, uint32_t count) {
     commands.fillBuffer(*buffer_->handle(), kPixelsOffset + first * record_bytes, count * record_bytes, 0);
@@ -238,8 +241,8 @@ void Film::warm_up() {
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     record_begin(commands, picture);
     record(commands, piece);
-    // The stream's kernels read what the piece has put into the film's head: before that anything may be there, also a
-    // number of turns for the check of loops that no driver ends within minutes.
+    // The stream's kernels read the constants that the piece has written to the film's head. Before that, the head may
+    // contain any number, for example a number of turns for the check of loops that would take minutes.
     if (!stream_) return;
     stream_->record_begin(commands, *buffer_, stream_shape(capacity_, 0));
     stream_->record_warm_up(commands);
@@ -252,7 +255,7 @@ uint32_t Film::most_layers() const {
 
 uint64_t Film::bytes_of_stream(uint32_t pixel_count) const {
   uint64_t bytes = stream_shape(pixel_count, 0).bytes();
-  // With glass deep pictures need more for a path, and have room for fewer paths.
+  // With glass, deep pictures need more memory for a path, so there is space for fewer paths.
   if (!features_.has_any(layout::FEATURE_GLASS)) return bytes;
   for (uint32_t depth = 1; depth <= layout::MOST_TREE_RAYS; ++depth) {
     bytes = std::max(bytes, stream_shape(pixel_count, depth).bytes());
@@ -285,7 +288,7 @@ uint32_t Film::max_capacity() const {
 }
 
 PixelWindow list_window(size_t sample_count) {
-  // A row of blocks, one at least.
+  // The number of blocks in a row, at least one.
   const auto blocks = static_cast<uint32_t>(std::max<size_t>(divide_up(sample_count, size_t{kLanes}), 1));
   return {uvec2(0), uvec2(blocks * layout::BLOCK_SIZE, layout::BLOCK_SIZE)};
 }

@@ -20,7 +20,7 @@ vec3 vec3_of(const uvec4& bits) {
 FilmRecords::FilmRecords(FeatureMask features)
     : first_part(features.has_any(layout::FEATURE_AOVS) ? layout::AOV_RECORDS : 1),
       first_ids(first_part + (features.has_any(layout::FEATURE_LIGHT_AOVS) ? layout::PART_RECORDS : 0)),
-      // Samples of a list have one id each, in the record of their sum.
+      // A sample of a list has a single id, in the record of its sum.
       first_range(first_ids +
                   (features.has_any(layout::FEATURE_SAMPLE_IDS) && !features.has_any(layout::FEATURE_LISTED_SAMPLES)
                        ? layout::SAMPLE_IDS / 4
@@ -57,7 +57,7 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
     const vec3 measures = vec3_of(film.record(layout::AOV_MEASURES, i));
     PrimitiveId id{Aovs::kNoId, Aovs::kNoId};
     if (order != layout::NO_ORDER) id = primitive_of_order(numbers, order);
-    // Members have the names of the table.
+    // The members of this struct have the names of the table of AOVs.
     const struct {
       float depth;
       vec3 position;
@@ -77,7 +77,7 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
            id.object,
            id.primitive,
            albedo.w};
-    // An AOV of a surface that nothing is read into does not compile.
+    // If an AOV of a surface has no code that reads it, this does not compile.
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) PROMIN_READ_##SOURCE(FIELD)
 #define PROMIN_READ_kSurface(FIELD) \
   if (!aovs.FIELD.empty()) aovs.FIELD[first + i] = told.FIELD;
@@ -117,7 +117,7 @@ void LightParts::put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) co
   aovs.alpha[pixel] = static_cast<float>(std::clamp(1.0 - background_share / samples, 0.0, 1.0));
   const dvec3& background = sums[layout::PART_BACKGROUND];
   if (background == dvec3(0.0)) return;
-  // Where nothing else is seen, exactly nothing is left; rounding may leave less than that.
+  // Where only the background is visible, the difference is exactly 0. Rounding may leave a small difference elsewhere.
   const vec3 seen = vec3(background / static_cast<double>(samples));
   color = aovs.alpha[pixel] == 0.0F ? vec3(0.0F) : glm::max(color - seen, vec3(0.0F));
 }
@@ -138,7 +138,8 @@ void CoverageTally::add(size_t pixel, uint32_t object) {
 
 CoverageRanks CoverageTally::rank(const Counts& counts, uint32_t samples) {
   CoverageRanks ranks;
-  // Each goes behind those that cover more, of as much the lower number first; what falls off the end is not told.
+  // The ids are inserted by descending coverage; at equal coverage the lower number comes first. Ids beyond the last
+  // rank are dropped.
   std::array<Count, kCoverageRanks> ranked;
   const auto is_before = [](const Count& a, const Count& b) {
     return a.samples != b.samples ? a.samples > b.samples : a.id < b.id;

@@ -13,67 +13,69 @@
 #include "scene/features.h"
 #include "trace/film/pixel_estimate.h"
 
-// Decodes a film's records of pixels (shaders/shared/layout.h, from AOV_* on). Does not use Vulkan.
+// Decodes the records of a film's pixels (shaders/shared/layout.h, from AOV_* on). This code does not use Vulkan.
 namespace promin {
 
-/// The layout of a pixel's records on a film with these features; they lie `pixel_count` apart.
+/// The layout of a pixel's records on a film with these features. Records of a pixel are `pixel_count` apart.
 struct FilmRecords {
   explicit FilmRecords(FeatureMask features);
 
-  /// The first of PART_*, of the ids of samples, and of RANGE_*.
+  /// Index of the first record of PART_*, of the ids of samples, and of RANGE_*.
   uint32_t first_part;
   uint32_t first_ids;
   uint32_t first_range;
-  /// Record of unlit surfaces, with FEATURE_UNLIT_SHARE.
+  /// Index of the record of unlit surfaces, with FEATURE_UNLIT_SHARE.
   uint32_t unlit;
   uint32_t count;
 
   bool has_unlit() const { return unlit < count; }
 };
 
-/// The records of a window of a picture, read from a film.
+/// The records of a window of a picture, copied from a film.
 struct ReadFilm {
   std::span<const uvec4> records;
   size_t pixel_count;
   FilmRecords layout;
 
   const uvec4& record(uint32_t which, size_t pixel) const { return records[which * pixel_count + pixel]; }
-  /// Returns the sum of a part of light over all samples.
+  /// Returns the sum over all samples of one part of the light.
   dvec3 part(uint32_t which, size_t pixel) const;
-  /// Returns the color range of its samples, with FEATURE_SAMPLE_RANGES.
+  /// Returns the range of the samples' colours, with FEATURE_SAMPLE_RANGES.
   ColorRange range(size_t pixel) const;
-  /// Returns the unlit surfaces that the camera sees, as Aovs::unlit but summed over samples, with FEATURE_UNLIT_SHARE.
+  /// Returns the visible unlit surfaces in the form of Aovs::unlit, but summed over samples. With FEATURE_UNLIT_SHARE.
   vec4 unlit(size_t pixel) const;
 };
 
-/// Reads AOVs of surfaces and steps into those members that have values. The film's first pixel is their pixel `first`.
+/// Reads AOVs of surfaces and steps into the members of `aovs` that have values. The film's first pixel is pixel
+/// `first` of the AOVs.
 void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthKind depth_kind, size_t first,
                    Aovs& aovs);
 void read_steps(const ReadFilm& film, size_t first, Aovs& aovs);
 
-/// Reads the unlit surfaces in the first pixels of a film with FEATURE_UNLIT_SHARE; nothing from other films.
+/// Reads the unlit surfaces of the first pixels of a film with FEATURE_UNLIT_SHARE. Does nothing for other films.
 void read_unlit(const ReadFilm& film, size_t pixel_count, std::vector<vec4>& unlit);
 
 /// The parts of a pixel's light, summed over samples.
 struct LightParts {
   dvec3 sums[layout::LIGHT_PARTS] = {};
-  /// Number of samples that see the background, weighted by transparency.
+  /// Number of samples that see the background, weighted by the transparency in front of it.
   double background_share = 0.0;
 
-  /// Adds the parts of a pixel of the film.
+  /// Adds the parts of the light of a pixel of the film.
   void add(const ReadFilm& film, size_t pixel);
-  /// Stores their averages for a pixel in the selected AOVs. With Aovs::alpha removes the background from its `color`.
+  /// Stores the parts' averages in the selected AOVs of a pixel. With Aovs::alpha it removes the background from
+  /// `color`.
   void put(uint32_t samples, size_t pixel, Aovs& aovs, vec3& color) const;
 };
 
 /// Counts the objects that the samples of pixels see.
 class CoverageTally {
  public:
-  /// `material_of_object` is indexed by object and must outlive this.
+  /// `material_of_object` is indexed by object and must outlive this object.
   CoverageTally(size_t pixel_count, std::span<const uint32_t> material_of_object)
       : material_of_object_(material_of_object), counts_(pixel_count) {}
 
-  /// Counts a sample; `object` may be Coverage::kNoId. Several threads may call it for different pixels.
+  /// Counts a sample. `object` may be Coverage::kNoId. Several threads may call it for different pixels.
   void add(size_t pixel, uint32_t object);
   void put(size_t tallied, uint32_t samples, size_t pixel, Aovs& aovs) const;
 
@@ -82,7 +84,7 @@ class CoverageTally {
     uint32_t id = Coverage::kNoId;
     uint32_t samples = 0;
   };
-  /// Counts by id. Most pixels show few objects, for which no heap memory is needed.
+  /// Numbers of samples by id. Most pixels show few objects, for which no heap memory is needed.
   class Counts {
    public:
     void add(uint32_t id, uint32_t samples);

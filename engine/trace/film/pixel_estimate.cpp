@@ -13,16 +13,17 @@
 namespace promin {
 namespace {
 
-/// If one edge crosses the pixel, the error of the covered area is less than this times N^(-3/4) in 95 of 100 cases.
+/// If one edge crosses the pixel, the error of the covered area is less than this factor times N^(-3/4) in 95 of 100
+/// cases.
 constexpr double kEdgeError = 0.62;
-/// Factor for a range of colours that only a neighbour's samples have seen.
+/// Factor for a range of colours that only samples of a neighbouring pixel have seen.
 constexpr double kNeighborShare = 0.5;
-/// Many edges: the batches' union is better than their mean by the fourth root of their number, 1.68 of 8, and
-/// Student's factor of 7 degrees of freedom is 2.37; that is 1.4. Pixels stop where their claim happens to be small,
-/// for which it is more.
+/// Factor for pixels with many edges. The union of the 8 batches is better than their mean by the fourth root of their
+/// number, 1.68. Student's factor for 7 degrees of freedom is 2.37. The quotient is 1.4. The factor is larger, because
+/// pixels stop when their claim happens to be small.
 constexpr double kBatchError = 1.6;
 
-/// N^(-3/4) of a power of two.
+/// Returns N^(-3/4) for a power of two N.
 double falloff(uint32_t count) {
   constexpr std::array kOfRemainder = {1.0, 0.59460355750136051, 0.35355339059327379, 0.21022410381342863};
   const int log2 = std::countr_zero(count);
@@ -30,7 +31,7 @@ double falloff(uint32_t count) {
   return std::ldexp(kOfRemainder[static_cast<size_t>(log2 % 4)], -3 * (log2 / 4));
 }
 
-/// A channel of which nothing is known is the largest, whichever it is: std::max takes NaN in its first argument alone.
+/// Returns the largest channel, which is NaN if any channel is NaN: std::max returns a NaN only in its first argument.
 float largest_claim(const vec3& claim) {
   if (glm::any(glm::isnan(claim))) return std::numeric_limits<float>::quiet_NaN();
   return std::max({claim.x, claim.y, claim.z});
@@ -87,12 +88,12 @@ vec3 PixelEstimate::claim(const ColorRange& around) const {
 }
 
 vec3 estimate_error(const ColorRange& around, uint32_t samples) {
-  // N^(3/4) by square roots, which are the same everywhere.
+  // N^(3/4) is computed with square roots, which have the same bits everywhere.
   const double root = std::sqrt(std::sqrt(static_cast<double>(samples)));
   const double edge = kEdgeError / (root * root * root);
   vec3 estimate(0.0F);
   for (int channel = 0; channel < 3; ++channel) {
-    // Where all are infinite their difference is no number.
+    // If all samples are infinite, their difference is NaN.
     if (!(around.hi[channel] > around.lo[channel])) continue;
     estimate[channel] =
         static_cast<float>(edge * (static_cast<double>(around.hi[channel]) - static_cast<double>(around.lo[channel])));

@@ -11,7 +11,7 @@
 
 namespace promin {
 
-/// The smallest and the largest value of some colors, by channel.
+/// The smallest and the largest value of some colours in each channel.
 struct ColorRange {
   vec3 lo{0.0F};
   vec3 hi{0.0F};
@@ -26,7 +26,8 @@ struct ColorRange {
   }
 };
 
-/// Returns the range of a pixel and its neighbours. `ranges` has `size` entries in row order; `index` is the pixel's.
+/// Returns the range of a pixel and its neighbours. `ranges` has `size` entries in row order; `index` is the index of
+/// the pixel.
 ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, size_t index);
 
 /// The mean of a pixel's samples, and an estimate of its error (docs/model.md, "Error of a pixel"). The samples are
@@ -34,14 +35,14 @@ ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, s
 /// result is the same for the same samples.
 class PixelEstimate {
  public:
-  /// Adds samples in their order. Their mean may be read when their number is a power of two.
+  /// Adds samples in their order. The mean may be read when the number of samples is a power of two.
   void add(const vec3& radiance);
 
   uint32_t count() const { return count_; }
   vec3 mean() const { return vec3(sum_ / static_cast<double>(count_)); }
   const ColorRange& range() const { return range_; }
 
-  /// Returns by how much each channel's mean may be off. `around` is the range of the first samples of the pixel's
+  /// Returns the claimed error of each channel of the mean. `around` is the range of the first samples of the pixel's
   /// neighbours. Requires at least kMinRefinedSamples samples.
   vec3 claim(const ColorRange& around) const;
 
@@ -51,27 +52,27 @@ class PixelEstimate {
   std::array<vec3, kMostBatches> batches_{};
   ColorRange range_;
   uint32_t count_ = 0;
-  /// Number of samples of a batch, which is a net too.
+  /// Number of samples of a batch. A batch is a net too.
   uint32_t batch_size_ = 2;
 };
 
-/// Estimates by how much each channel of a pixel with any number of lattice samples may be off: the error that an edge
-/// through the pixel causes. `around` is the range of its samples and of those of its neighbours. It is an estimate and
-/// not a claim, because it uses nothing else of the samples.
+/// Returns an estimate of the error of each channel of a pixel with any number of lattice samples: the error that an
+/// edge through the pixel causes. `around` is the range of the samples of the pixel and its neighbours. The result is
+/// an estimate and not a claim, because it depends only on this range.
 vec3 estimate_error(const ColorRange& around, uint32_t samples);
 
-/// Returns a pixel's largest claim as an error target measures it: relative to white, or to the pixel's largest channel
-/// if that is more, or as displayed. NaN if a claim is NaN. `unlit` is its Aovs::unlit.
+/// Returns a pixel's largest claim in the measure of an error target: relative to white, or to the pixel's largest
+/// channel if that is larger, or as displayed. The result is NaN if a claim is NaN. `unlit` is the pixel's Aovs::unlit.
 float claimed_error(const vec3& claim, const vec3& mean, const ErrorTarget& target, const vec4& unlit = vec4(0.0F));
 
-/// Returns a color as displayed: exposed, tone mapped and encoded as sRGB, 0...1.
+/// Returns a colour as displayed: exposed, tone mapped and encoded as sRGB, 0...1.
 vec3 shown_color(const vec3& color, const DisplayTransform& display, const vec4& unlit = vec4(0.0F));
 
-/// Returns by how much each displayed channel may be off, 0...1, if the light of all channels is within the claim: the
-/// distance of the farthest displayed corner of the claim from the mean. No point inside is farther if each displayed
-/// channel is monotonic in each channel of light. This holds for most tone mappings; for `neutral` and `agx` a point
-/// may be slightly farther (docs/model.md, "Error of a pixel"). Values that are not finite stay so. The error is that
-/// of the surfaces that are not unlit.
+/// Returns the error of each displayed channel, 0...1, if the light of all channels is within the claim: the largest
+/// distance of a displayed corner of the claim from the displayed mean. No point inside the claim is farther if each
+/// displayed channel is monotonic in each channel of light. This holds for most tone mappings; for `neutral` and `agx`
+/// a point may be slightly farther (docs/model.md, "Error of a pixel"). Values that are not finite stay as they are.
+/// The error is that of the lit surfaces.
 vec3 shown_claim(const vec3& claim, const vec3& mean, const DisplayTransform& display, const vec4& unlit = vec4(0.0F));
 
 }  // namespace promin

@@ -16,9 +16,9 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kSampleStep = 4;
-/// The least scale of a first picture, on a side of the window.
+/// The smallest scale of a first picture, relative to a side of the window.
 constexpr double kMinScale = 1.0 / 16.0;
-/// Each step takes this fraction of the scale that seems affordable.
+/// Each step uses this fraction of the scale that seems affordable.
 constexpr double kScaleStep = 0.98;
 
 uvec2 scale_size(const uvec2& size, double scale) {
@@ -65,11 +65,11 @@ ProgressivePicture::ProgressivePicture(const gpu::Device& device, std::shared_pt
       list.device = apart.device;
       listed = apart.scene;
     } else {
-      // Its caller keeps it.
+      // The caller keeps the device alive.
       list.device = std::shared_ptr<const gpu::Device>(std::shared_ptr<void>(), &device);
     }
     list.film = std::make_unique<Film>(*list.device, listed, features | layout::FEATURE_LISTED_SAMPLES);
-    // Drivers compile in a pipeline's first dispatch.
+    // Drivers compile in the first dispatch of a pipeline.
     list.film->warm_up();
     return list;
   };
@@ -146,7 +146,8 @@ std::optional<View> ProgressivePicture::next_view() const {
 
 uvec2 ProgressivePicture::first_size() const {
   if (fixed_scale_) return scale_size(full_size_, *fixed_scale_);
-  // Counts blocks, not pixels: those at the right and lower edge are not full, so a smaller picture may have as many.
+  // The code counts blocks and not pixels. Blocks at the right and lower edge are not full, so a smaller picture may
+  // have the same number of blocks.
   const double affordable = std::max<double>(pacer_.units(), TileScheduler::kMinBlocks);
   double scale = 1.0;
   while (scale > kMinScale && count_blocks(scale_size(full_size_, scale)) > affordable) {
@@ -167,7 +168,8 @@ void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const Vi
 
 double ProgressivePicture::record(const vk::raii::CommandBuffer& commands) {
   has_recorded_list_ = false;
-  // A view's first picture is finished even if the view has changed meanwhile: else a slow device would show none.
+  // The first picture of a view is finished even if the view has changed meanwhile. Otherwise a slow device would never
+  // show a picture.
   if (picture_ && picture_version_ != wanted_version_ && !is_first_) picture_.reset();
   if (picture_ && is_paused_ && !is_first_) return 0.0;
   const double most_units = pacer_.units() * std::min(1.0, longest_piece_ms_ / budget_ms_);
@@ -200,7 +202,7 @@ std::shared_ptr<const gpu::Device> ProgressivePicture::refining_device() {
 }
 
 double ProgressivePicture::record_refinement(const vk::raii::CommandBuffer& commands, double most_units) {
-  // Frames are drawn meanwhile, so a list that is still being traced is not waited for.
+  // Frames are drawn meanwhile, so the code does not wait for a list that is still being traced.
   if (!refining_device() || is_list_under_way_ || !prepare_refined()) return 0.0;
   is_prepared_ = false;
   has_recorded_list_ = is_list_under_way_ = refined_->has_samples();
@@ -216,7 +218,7 @@ bool ProgressivePicture::prepare_refined() {
     is_prepared_ = true;
   }
   if (is_prepared_ && refined_version_ == wanted_version_) return true;
-  // It needs much memory, so the last one goes before the next is made.
+  // A refined picture needs much memory, so the old one is destroyed before the next is created.
   if (std::exchange(refined_version_, wanted_version_) != wanted_version_) {
     refined_.reset();
     refined_fraction_ = 0.0;
@@ -236,7 +238,7 @@ bool ProgressivePicture::prepare_refined() {
 }
 
 void ProgressivePicture::show_refined() {
-  // Frames that used the film which is not shown ended before the samples of this picture were traced.
+  // The device has finished all frames that used the hidden film before it traced the samples of this picture.
   const size_t film = 1 - shown_->film;
   films_[film].put_pixels(refined_->take_pixels(), full_size_);
   picture_when_done_ = {film, full_size_, 1, refined_->error()};
@@ -264,10 +266,11 @@ void ProgressivePicture::set_budget(double budget_ms) {
 
 void ProgressivePicture::take_finished(const Finished& finished) {
   if (finished.units == 0.0) return;
-  // Where loops were cut the samples are wrong, and the picture goes on from others nonetheless: its caller is told.
+  // If loops were cut, the samples are wrong. The caller receives an error, and the picture continues with other
+  // samples.
   if (finished.has_list) is_list_under_way_ = false;
   if (finished.has_list && refined_) refined_fraction_ = refined_->fraction_done();
-  // Drivers compile in a pipeline's first dispatch.
+  // Drivers compile in the first dispatch of a pipeline, so its time is not used.
   if (std::exchange(is_warm_, true)) pacer_.learn(finished.units, finished.time_ms);
   refuse_cut_loops(finished.has_cut_loops);
 }

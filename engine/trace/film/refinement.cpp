@@ -12,16 +12,16 @@
 namespace promin {
 namespace {
 
-/// Pixels that a thread takes at a time.
+/// Number of pixels that a thread processes at a time.
 constexpr size_t kChunk = 1024;
 
-/// The side of the parts in which a picture is refined.
+/// The side in pixels of the parts in which a picture is refined.
 constexpr uint32_t kPartSide = 256;
 
 constexpr float kFirstError = 0.125F;
 constexpr float kErrorStep = 1.41421356F;
 
-/// Before anything is known, all samples over the first ones.
+/// Estimated ratio of all samples to the first samples, used before anything is known.
 constexpr double kMoreThanFirst = 1.5;
 
 }  // namespace
@@ -143,7 +143,7 @@ float Refinement::judge_error(size_t apron_index, const vec3& claim) const {
   const vec4 unlit = mean_unlit(apron_index);
   const float error = promin::claimed_error(claim, estimates_[apron_index].mean(), target_, unlit);
   if (shown_.empty() || unlit.w == 0.0F) return error;
-  // Where an unlit surface ends light may stay the same while what is shown does not.
+  // At the edge of an unlit surface, the light may be constant while the displayed colour is not.
   const PixelEstimate& shown = shown_[apron_index];
   ErrorTarget as_it_is = target_;
   as_it_is.display = DisplayTransform();
@@ -189,9 +189,9 @@ double Refinement::foretell_samples(float error) const {
   double samples = 0.0;
   for (size_t pixel = 0; pixel < claims_.size(); ++pixel) {
     const double count = estimate(pixel).count();
-    // As an edge's claim falls with them.
+    // The estimate assumes that the claim decreases like that of an edge.
     const double ratio = static_cast<double>(errors_[pixel] / error);
-    // Of what is not finite nothing is foretold.
+    // For ratios that are not finite there is no estimate.
     if (!(ratio > 1.0) || std::isinf(ratio)) continue;
     const double wanted = count * std::exp2(std::ceil(std::log2(ratio) * 4.0 / 3.0));
     samples += std::max(std::min<double>(wanted, target_.max_samples) - count, 0.0);

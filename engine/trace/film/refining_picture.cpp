@@ -39,7 +39,7 @@ void RefiningPicture::prepare(double units) {
     done_ = PictureError{.target = error_};
     refinement_.add_to(*done_);
     samples_when_done_ = refinement_.sample_count();
-    // A picture that no sample was missing for is shown only where it is the last.
+    // A picture for which no sample was missing is shown only if it is the last one.
     if (!is_as_shown || is_done()) break;
   }
   pixels_ = make_pixels();

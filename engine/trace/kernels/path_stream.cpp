@@ -21,10 +21,10 @@ namespace {
 using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
-/// Behind the lists (shaders/picture/stream.glsl).
+/// Size of the bins, which follow the lists (shaders/picture/stream.glsl).
 constexpr uint64_t kBinBytes = sizeof(uint32_t) * 2 * layout::STREAM_LISTS * layout::STREAM_BINS;
 
-/// Behind a film's pixels.
+/// Returns the offset of a record in the stream, which follows the film's pixels.
 uint64_t offset_of_record(uint64_t record) {
   return sizeof(layout::FilmHead) + record * sizeof(uvec4);
 }
@@ -36,7 +36,8 @@ std::vector<gpu::SpecializationConstant> with_query(std::span<const gpu::Special
   return all;
 }
 
-/// A log tells where shadow rays are blocked, and they go through what blends and glass one surface after the other.
+/// Returns whether shadow rays must find the nearest surface. A log needs the surface that blocks a ray, and shadow
+/// rays pass through surfaces that blend and through glass one surface after the other.
 bool needs_nearest_blocker(FeatureMask features) {
   return features.has_any(layout::FEATURE_RAY_LOG | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
 }
@@ -54,7 +55,7 @@ StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t
   StreamShape shape;
   shape.has_glass = features.has_any(layout::FEATURE_GLASS);
   shape.scatters_through = features.has_any(layout::FEATURE_DIFFUSE_TRANSMISSION);
-  // At each bounce the mirror ray is followed first.
+  // At each bounce the mirror ray is followed first, so only refracted rays wait.
   shape.waiting_rays = std::min(refracted_rays(features) * depth, layout::MOST_TREE_RAYS);
   shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
   shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(light_count, shape.sources);
@@ -72,7 +73,7 @@ uint32_t StreamShape::records_of_path() const {
 
 uint64_t StreamShape::path_bytes() const {
   const uint64_t records = records_of_path();
-  // What it asks for, and its places in the lists.
+  // The words of a path's requests, and its places in the lists.
   const uint64_t words = (1 + sources) + (2 + sources);
   return sizeof(uvec4) * records + sizeof(uint32_t) * words;
 }
@@ -99,7 +100,7 @@ void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu
   layout::StreamState state{};
   state.place = uvec4(shape.first_record, shape.most_paths, shape.sources, most_group_rows_);
   state.shadow_rays.y = shape.records_of_path();
-  // So that the first turn is 0.
+  // The next increment makes this turn 0.
   state.turn.x = ~0U;
   const vk::MemoryBarrier after_last(Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead,
                                      Access::eTransferWrite);
@@ -115,7 +116,7 @@ void PathStream::record_turns(const vk::raii::CommandBuffer& commands, const gpu
     wait_for_last(commands);
     pipeline.dispatch_indirect(commands, film, offsetof(layout::FilmHead, stream) + groups);
   };
-  // The last turn adds what the shadow rays of the last step let through.
+  // The last turn adds the light of the shadow rays of the last step.
   const uint64_t turns = uint64_t{steps} * shape.turns_of_bounce + 1;
   for (uint64_t turn = 0; turn < turns; ++turn) {
     wait_for_last(commands);

@@ -14,32 +14,33 @@ namespace promin {
 
 /// The layout and size of the stream of a film (shaders/picture/stream.glsl).
 struct StreamShape {
-  /// Returns the stream for a scene of this number of lights and at most this number of paths, within kMostBytes; with
-  /// glass for pictures of this depth.
+  /// Returns the stream for a scene with this number of lights and at most this number of paths, within kMostBytes.
+  /// With glass it is for pictures of this depth.
   static StreamShape of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth);
 
-  /// Returns the bytes of a path: its records, its shadow rays, and its entries in the lists.
+  /// Returns the number of bytes of a path: its records, its shadow rays, and its entries in the lists.
   uint64_t path_bytes() const;
-  /// Returns the bytes of all paths and the bins.
+  /// Returns the number of bytes of all paths and the bins.
   uint64_t bytes() const;
 
   uint32_t first_record = 0;
-  /// A multiple of the lanes of a workgroup.
+  /// Largest number of paths, a multiple of the number of lanes of a workgroup.
   uint32_t most_paths = 0;
-  /// Largest number of lights whose shadow rays are traced in a turn; 0 if nothing casts shadows.
+  /// Largest number of lights whose shadow rays are traced in a turn; 0 if no object casts shadows.
   uint32_t sources = 0;
   uint32_t turns_of_bounce = 1;
   /// Largest number of waiting rays of a path; only with glass.
   uint32_t waiting_rays = 0;
   bool has_glass = false;
-  /// Whether shadow rays may begin behind a surface.
+  /// True if shadow rays may begin behind a surface.
   bool scatters_through = false;
 
   /// Returns the number of records of a path, including its light sources.
   uint32_t records_of_path() const;
 
   static constexpr uint32_t kLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-  /// Together with the pixels of a film it is less than the size that Vulkan guarantees for a storage buffer.
+  /// Largest size of the stream in bytes. With the pixels of a film it is less than the size that Vulkan guarantees for
+  /// a storage buffer.
   static constexpr uint64_t kMostBytes = 48U << 20;
 };
 
@@ -47,20 +48,21 @@ struct StreamShape {
 /// each kind of work. It has no state of its own: all state is on the film.
 class PathStream {
  public:
-  /// Compiles the kernels unless the device has already compiled the same. `buffers` are those of the camera stage, and
-  /// the film as texels.
+  /// Compiles the kernels unless the device has already compiled the same ones. `buffers` are the buffers of the camera
+  /// stage, and the film as texels.
   PathStream(const gpu::Device& device, FeatureMask features, std::span<const gpu::SpecializationConstant> constants,
              std::span<const gpu::BoundBuffer> buffers, const PictureShaders& shaders);
 
   void bind(const gpu::BoundBuffer& buffer);
 
-  /// Records emptying the stream, before the camera stage adds paths.
+  /// Records commands that empty the stream, before the camera stage adds paths.
   void record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape) const;
-  /// Records all turns for paths of this number of steps: bounces, and surfaces that they pass through.
+  /// Records all turns for paths with this number of steps. A step is a bounce or a surface that the path passes
+  /// through.
   void record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape,
                     uint32_t steps) const;
-  /// Records a workgroup of each kernel, after record_begin and a dispatch whose constants are in the film's head. They
-  /// have no work, but make drivers compile now.
+  /// Records a workgroup of each kernel, after record_begin() and a dispatch whose constants are in the film's head.
+  /// The workgroups have no work, but drivers compile the kernels now.
   void record_warm_up(const vk::raii::CommandBuffer& commands) const;
 
  private:

@@ -23,7 +23,7 @@ namespace promin {
 namespace {
 
 constexpr uint32_t kGroupLanes = layout::BLOCK_SIZE * layout::BLOCK_SIZE;
-/// Keeps the device's cores busy in the first dispatch.
+/// Number of rays in the first dispatch, enough to keep the device's cores busy.
 constexpr double kFirstRays = 64.0 * kGroupLanes;
 static_assert(RayKernel::kMaxRays / kGroupLanes <= 65535, "Vulkan's guaranteed workgroup count");
 
@@ -75,7 +75,7 @@ struct RayKernel::Impl {
     buffers.push_back({layout::BINDING_VIEW, vk::DescriptorType::eUniformBuffer, &*view_constants});
     for (const gpu::BoundBuffer& buffer : ray_buffers()) buffers.push_back(buffer);
     kernel.emplace(device, spirv_of(options), constants, buffers);
-    // Drivers compile late: the first dispatch of a pipeline must not count as tracing.
+    // Drivers compile in the first dispatch of a pipeline, which must not count as tracing.
     const layout::Dispatch no_rays = make_cast_dispatch(scene->constants(), 0, 0);
     kernel->run(no_rays, *hits, uvec2(1));
     pipeline_ms = compiling.ms();
@@ -96,7 +96,7 @@ struct RayKernel::Impl {
     if (ray_count <= ray_capacity && record_count <= record_capacity) return;
     ray_count = std::max(ray_count, ray_capacity);
     record_count = std::max(record_count, record_capacity);
-    // Both are there before either is replaced: the pipeline stays bound to buffers that live.
+    // Both new buffers exist before either old one is replaced, so that the pipeline is never bound to a freed buffer.
     gpu::Buffer new_rays(device, ray_count * sizeof(layout::RayRecord),
                          kRecordsUsage | vk::BufferUsageFlagBits::eUniformTexelBuffer);
     vk::raii::BufferView new_ray_texels = new_rays.make_texel_view();
@@ -158,19 +158,20 @@ struct RayKernel::Impl {
     return time_ms;
   }
 
-  /// Traces the first rays of the buffer, so many.
+  /// Traces the first `ray_count` rays of the buffer.
   double trace(size_t ray_count, const ProgressCallback& progress) {
     double total_ms = 0.0;
     const uint32_t most_group_rows = device.profile().most_group_rows;
     const auto end = static_cast<uint32_t>(ray_count);
     const uint32_t group_rays = kGroupLanes * options.packet_size;
     for (uint32_t first = 0; first < end;) {
-      // A workgroup takes as long with fewer rays; on a busy machine the pacer would come down to one.
+      // A workgroup with fewer rays takes the same time. Without this limit, the pacer would go down to one ray on a
+      // busy machine.
       const double paced = std::max<double>(pacer.units(), group_rays);
       const double wanted = options.rays_per_dispatch > 0 ? options.rays_per_dispatch : paced;
       const auto count = static_cast<uint32_t>(std::min<double>(wanted, end - first));
       const layout::Dispatch dispatch = make_cast_dispatch(scene->constants(), first, first + count);
-      // Those beyond the last ray do nothing.
+      // Lanes beyond the last ray do nothing.
       const uvec2 groups = arrange_in_rows(divide_up(count, group_rays), most_group_rows);
       const double time_ms = kernel->run(dispatch, *hits, groups);
       refuse_cut_loops(were_loops_cut());
@@ -192,7 +193,7 @@ struct RayKernel::Impl {
   std::optional<gpu::Buffer> hits;
   size_t ray_capacity = 0;
   size_t record_capacity = 0;
-  /// Of lists: each ray's own record.
+  /// Each ray's own record, for lists.
   std::vector<layout::HitRecord> heads;
   std::optional<TracingKernel> kernel;
   double pipeline_ms = 0.0;
@@ -236,7 +237,7 @@ double RayKernel::list(std::span<const layout::RayRecord> rays, std::span<const 
 uint64_t RayKernel::most_listed(size_t ray_count) const {
   const uint64_t bytes = gpu::Buffer::most_bytes(impl_->device, kRecordsUsage);
   const uint64_t most_records = (bytes - sizeof(layout::Dispatch)) / sizeof(layout::HitRecord);
-  // Places are numbers of 32 bits.
+  // Places are 32-bit numbers.
   return std::min<uint64_t>(most_records, UINT32_MAX) - std::min<uint64_t>(ray_count, most_records);
 }
 

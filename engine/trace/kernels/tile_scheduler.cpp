@@ -19,14 +19,15 @@ uint32_t refracted_rays(FeatureMask features) {
 
 uint32_t most_steps(uint32_t depth, uint32_t refracted_rays, uint32_t most_layers) {
   if (refracted_rays == 0) return depth + most_layers;
-  // Below a surface that all light reaches, and below one that a single color does: that is parted no more.
+  // Number of rays below a surface that transmits light of all colours, and number below a surface that transmits a
+  // single colour, whose rays are not divided further.
   uint32_t in_tree = 0;
   uint32_t of_color = 0;
   for (uint32_t bounce = 0; bounce < depth && in_tree < layout::MOST_TREE_RAYS; ++bounce) {
     in_tree = 1 + refracted_rays + in_tree + refracted_rays * of_color;
     of_color = 2 + 2 * of_color;
   }
-  // Kernels that know glass may trace scenes without it, whose paths are as deep as they are asked for.
+  // Kernels with glass may trace scenes without glass, whose paths may have the full depth.
   return std::max(std::min(in_tree, layout::MOST_TREE_RAYS), depth) + most_layers;
 }
 

@@ -23,7 +23,7 @@ void Pacer::aim(double target_ms) {
 }
 
 void Pacer::learn(double units, double time_ms) {
-  // The units grow at most fourfold in a step, because the next tile may be dearer than the last.
+  // The units grow at most by a factor of four in a step, because the next tile may need more time than the last.
   const double ideal = units * target_ms_ / std::max(time_ms, 1e-3);
   units_ = std::clamp(ideal, 1.0, 4.0 * std::max(units_, units));
 }

@@ -15,14 +15,14 @@ namespace promin {
 
 class DeviceScene;
 
-/// Chooses the amount of work of the next dispatch so that it takes about the target time, because drivers kill
-/// dispatches of seconds.
+/// Chooses the amount of work of the next dispatch so that the dispatch takes about the target time, because drivers
+/// kill dispatches that take seconds.
 class Pacer {
  public:
   Pacer(double target_ms, double first_units) : target_ms_(target_ms), units_(first_units) {}
 
   double units() const { return units_; }
-  /// Sets another target; measurements are kept.
+  /// Sets another target. Earlier measurements are kept.
   void aim(double target_ms);
   /// Records that the last dispatch processed `units` in `time_ms`.
   void learn(double units, double time_ms);
@@ -32,8 +32,8 @@ class Pacer {
   double units_;
 };
 
-/// Returns the profile's traversal form for packets of this size. In a scene with more solids than triangles solids do
-/// not wait, because most leaves hold nothing else.
+/// Returns the profile's traversal form for packets of this size. In a scene with more solids than triangles, solids do
+/// not wait, because most leaves contain only solids.
 gpu::TraversalForm traversal_form(const gpu::DeviceProfile& profile, const DeviceScene& scene, uint32_t packet_size);
 
 /// Returns the specialisation constants of every pipeline that traces.
@@ -48,15 +48,16 @@ class TracingKernel {
 
   void bind(const gpu::BoundBuffer& buffer);
 
-  /// Records writing `constants` to the head of `head` and running the workgroups, after all earlier work of compute
-  /// shaders and transfers.
+  /// Records commands that write `constants` to the head of `head` and run the workgroups, after all earlier work of
+  /// compute shaders and transfers.
   void record(const vk::raii::CommandBuffer& commands, const layout::Dispatch& constants, const gpu::Buffer& head,
               const uvec2& group_count) const;
 
   /// Runs the commands of `record` and waits. Returns device milliseconds (the host's waiting time if the queue has no
   /// timestamps).
   double run(const layout::Dispatch& constants, const gpu::Buffer& head, const uvec2& group_count) const;
-  /// Does the same with all commands of `record_all`, which may call `record` any number of times.
+  /// Runs all commands of `record_all`, which may call `record` any number of times, and waits. Returns device
+  /// milliseconds.
   double run(const std::function<void(const vk::raii::CommandBuffer&)>& record_all) const;
 
  private:

@@ -32,18 +32,19 @@ using layout::RayRecord;
 
 /// The smallest number of rays for which a thread is worth its cost.
 constexpr size_t kRaysOfThread = 16384;
-/// Number of rays to prefetch ahead: in scattered order waiting for memory takes longer than everything else.
+/// Number of rays by which prefetching is ahead. In a scattered order, waiting for memory takes longer than everything
+/// else.
 constexpr size_t kFetchedAhead = 32;
 
 /// Rays in the order in which they are traced.
 struct OrderedRays {
   std::span<const Ray> rays;
-  /// Empty if they are traced in the given order.
+  /// The indices of the rays in the order of tracing; empty if they are traced in the given order.
   std::span<const uint32_t> permutation;
 
   /// Returns the index of the i-th ray to trace.
   size_t place_of(size_t i) const { return permutation.empty() ? i : permutation[i]; }
-  /// Calls fetch(place) for a ray some places after the i-th.
+  /// Calls fetch(place) for a ray some places after ray i.
   template <typename Fetch>
   void fetch_ahead(size_t i, const Fetch& fetch) const {
     if (i + kFetchedAhead < permutation.size()) fetch(permutation[i + kFetchedAhead]);
@@ -54,7 +55,7 @@ bool asks_for_crossings(HitQuery query) {
   return query == HitQuery::kCount || query == HitQuery::kAll;
 }
 
-/// Returns a callback for the progress of `count` rays from the first on as a part of all.
+/// Returns a callback that converts the progress of `count` rays from `first` on to a fraction of all rays.
 ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t count, size_t all) {
   if (!progress) return {};
   return [&progress, first, count, all](double fraction) {
@@ -62,10 +63,11 @@ ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t 
   };
 }
 
-/// Returns a power of two that scales the direction into the shader's range (shaders/trace/make_ray.glsl); mostly 1.
+/// Returns a power of two that scales the direction into the shader's range (shaders/trace/make_ray.glsl); usually it
+/// is 1.
 float scale_of(const vec3& direction) {
-  // Neither max_abs_component nor glm::abs is used: the calls of std::fmax in the one took a seventh of the time of
-  // `promin cast`, and the other is compiled to a branch for each sign, which nothing foretells.
+  // The code uses neither max_abs_component nor glm::abs: the calls of std::fmax in the first took a seventh of the
+  // time of `promin cast`, and the second is compiled to a branch for each sign, which the processor cannot predict.
   const float size = std::max(std::max(std::fabs(direction.x), std::fabs(direction.y)), std::fabs(direction.z));
   if (size > 0.0F && size < 0x1p-126F) return 0x1p64F;
   if (size >= 0x1p127F && std::isfinite(size)) return 0x1p-64F;
@@ -73,7 +75,7 @@ float scale_of(const vec3& direction) {
 }
 
 RayRecord record_of(const Ray& ray, float scale) {
-  // tmin * direction is kept. The scaled tmin may round to 0 here; hit_of decides.
+  // The product tmin * direction does not change. The scaled tmin may round to 0 here; hit_of() then decides.
   return {vec4(ray.origin, ray.tmin / scale), vec4(ray.direction * scale, ray.tmax / scale)};
 }
 
@@ -108,8 +110,8 @@ Hit hit_at(float t, const HitRecord& record, const PrimitiveNumbers& numbers) {
   return hit;
 }
 
-/// `scaled` is the ray, or null where its direction is not scaled: then the device has compared t with the given tmin
-/// and tmax.
+/// Returns the hit of a record. `scaled` is the ray, or null if its direction is not scaled. Without scaling, the
+/// device has compared t with the given tmin and tmax.
 Hit hit_of(const HitRecord& record, const Ray* scaled, HitQuery query, const PrimitiveNumbers& numbers) {
   Hit hit;
   if (record.a.y == layout::NO_ORDER) return hit;
@@ -125,8 +127,9 @@ Hit hit_of(const HitRecord& record, const Ray* scaled, HitQuery query, const Pri
   return hit_at(t, record, numbers);
 }
 
-/// Sorts a ray's crossings from the device into the order of hits. Returns the number that remain, at the front: a
-/// primitive that the tree references twice occurs twice, and some crossings have no t in the given units.
+/// Sorts a ray's crossings from the device into the order of hits. Returns the number of crossings that remain, at the
+/// front. A primitive that the tree references twice may occur twice, and some crossings have no t in the given units;
+/// both are dropped.
 size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
   const float scale = scale_of(ray.direction);
   const auto t_of = [](const HitRecord& crossing) { return std::bit_cast<float>(crossing.a.x); };
@@ -138,7 +141,7 @@ size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
     });
     count = static_cast<size_t>(end - crossings.begin());
   }
-  // Of the two ends inside a solid, which may have the same t, the entry comes first.
+  // A solid has two crossings, which may have the same t. The entry comes first.
   const auto key_of = [&](const HitRecord& crossing) { return std::tuple(t_of(crossing), crossing.a.y, crossing.b.w); };
   const auto end = crossings.begin() + static_cast<ptrdiff_t>(count);
   std::sort(crossings.begin(), end, [&](const HitRecord& a, const HitRecord& b) { return key_of(a) < key_of(b); });
@@ -148,7 +151,7 @@ size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
 
 }  // namespace
 
-// Hidden, although the class around it is not (promin/export.h).
+// This struct is hidden, although the class around it is not (promin/export.h).
 struct __attribute__((visibility("hidden"))) Caster::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedCasterOptions& options)
       : device(the_device), spirv(options.spirv.begin(), options.spirv.end()) {
@@ -166,13 +169,14 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     numbers = std::move(packed.numbers);
     copies = CopiedHits(packed.copies, numbers);
     cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
-    // Each is referred to at least once.
+    // The tree refers to each primitive at least once.
     repeats_primitives = packed.references.size() > packed.bounded_count;
   }
 
   enum class Order { kAsGiven, kInPackets, kSorted };
-  /// With a tree that references primitives more than once, a packet can see a primitive more often than each of its
-  /// rays would alone, so the counts of the first pass would not match. Such trees are traced ray by ray.
+  /// Returns the order of tracing. If a tree references primitives more than once, a packet can test a primitive more
+  /// often than each of its rays alone would, and the counts of the first pass would not match. Such trees are traced
+  /// ray by ray.
   Order order_for(HitQuery query, std::span<const Ray> rays) const {
     const bool takes_packets = device.profile().ray_packet_size > 1;
     const bool sorts_rays = device.profile().sorts_rays;
@@ -203,8 +207,8 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     return *kernel;
   }
 
-  /// Traces at most RayKernel::kMaxRays rays, for any query but kAll. Each answer is what `make` makes of the ray's
-  /// record and of the ray, which is null where no direction is scaled: on all cores.
+  /// Traces at most RayKernel::kMaxRays rays, for every query except kAll. `make` computes each answer, on all cores,
+  /// from the ray's record and the ray. The ray is null if no direction is scaled.
   template <typename Answer, typename Make>
   double trace(std::span<const Ray> rays, std::span<Answer> answers, HitQuery query, Order order,
                const ProgressCallback& progress, const Make& make) {
@@ -225,7 +229,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     return ordering_ms + kernel_for(query, order).run(rays.size(), fill, take, progress);
   }
 
-  /// The same for any number of rays.
+  /// Traces any number of rays in the same way.
   template <typename Answer, typename Make>
   double trace_all(std::span<const Ray> rays, std::span<Answer> answers, HitQuery query,
                    const ProgressCallback& progress, const Make& make) {
@@ -253,7 +257,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     return is_any_scaled;
   }
 
-  /// Fills list_offsets and list_hits for rays with these counts, all of which fit.
+  /// Fills list_offsets and list_hits for rays with these counts. All of their hits must fit.
   double list(std::span<const Ray> rays, std::span<const uint32_t> counts, Order order,
               const ProgressCallback& progress) {
     const Stopwatch ordering;
@@ -312,7 +316,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   }
 
   const gpu::Device& device;
-  /// This is a copy, because kernels are compiled as they are needed.
+  /// A copy of the SPIR-V, because kernels are compiled when they are needed.
   std::vector<uint32_t> spirv;
   std::shared_ptr<const DeviceScene> scene;
   PrimitiveNumbers numbers;
@@ -320,16 +324,17 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   FeatureMask features;
   SetupStats stats;
   SceneCube cube;
-  /// Whether a crossing may be met twice.
+  /// True if a ray may cross a primitive twice in the tree.
   bool repeats_primitives = false;
-  /// By HitQuery, and whether for packets.
+  /// The kernels, indexed by HitQuery, and by whether they trace packets.
   std::array<std::array<std::optional<RayKernel>, 2>, 4> kernels;
   RaySorter sorter;
   RayTiler tiler;
-  /// Of lists: what is asked and answered for the rays at hand, in the order in which they are traced; what the device
-  /// counts for a chunk of rays; of the part at hand the rays that cross something, their places in it, how many
-  /// crossings they have, in the order in which they are traced, where in `records` these begin and how many of them
-  /// are kept; what the sink gets.
+  /// Buffers of lists. `requests` and `records` are the current rays, in the order of tracing, and their records.
+  /// `chunk_counts` are the device's counts for a chunk of rays. `asked_rays` are the rays of the current part that
+  /// cross something, `asked_places` their places in the part, and `asked_counts` their numbers of crossings in the
+  /// order of tracing. `first_records` are the places in `records` where their crossings begin, and `kept_counts` the
+  /// numbers that are kept. The sink receives `list_offsets` and `list_hits`.
   std::vector<RayRecord> requests;
   std::vector<HitRecord> records;
   std::vector<uint32_t> chunk_counts;
@@ -357,7 +362,7 @@ void Caster::prepare(HitQuery query, std::span<const Ray> rays) {
     impl_->kernel_for(query, order);
     return;
   }
-  // Lists are made by counts, and some counts by lists.
+  // Lists need counts, and some counts need lists.
   impl_->kernel_for(HitQuery::kCount, order);
   if (query == HitQuery::kAll || impl_->counts_by_lists(rays)) impl_->kernel_for(HitQuery::kAll, order);
 }
@@ -404,7 +409,7 @@ double Caster::count(std::span<const Ray> rays, std::span<int32_t> counts, const
     };
     return list(rays, take, kListBytes, progress);
   }
-  // No ray has 2^31 crossings, because a scene has fewer than 2^27 primitives.
+  // No ray has 2^31 crossings, because a scene has fewer than 2^27 primitives, so the conversion is safe.
   return impl_->trace_all(rays, counts, HitQuery::kCount, progress,
                           [](const HitRecord& record, const Ray*) { return static_cast<int32_t>(record.a.x); });
 }
@@ -417,10 +422,10 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
     std::vector<uint32_t>& counts = impl_->chunk_counts;
     counts.resize(chunk.size());
     const Impl::Order order = impl_->order_for(HitQuery::kAll, chunk);
-    // Between dispatches no new progress is reported; the callback only decides whether to continue.
+    // No new progress is reported between these dispatches. The callback only decides whether to continue.
     time_ms += impl_->trace(chunk, std::span(counts), HitQuery::kCount, order, part_of(progress, first, 0, rays.size()),
                             [](const HitRecord& record, const Ray*) { return record.a.x; });
-    // The number of whole rays that are listed together also depends on the device.
+    // The number of rays that are listed together also depends on the device.
     const uint64_t most_listed = impl_->kernel_for(HitQuery::kAll, order).most_listed(chunk.size());
     const uint64_t most = std::min(budget_bytes / sizeof(Hit), most_listed);
     for (size_t begin = 0; begin < chunk.size();) {

@@ -9,15 +9,15 @@
 namespace promin {
 
 struct TunedCasterOptions : CasterOptions {
-  /// SPIR-V of another kernel with the bindings of shaders/cast/cast_bindings.glsl, only for cast(); empty for promin's
-  /// own.
+  /// SPIR-V of another kernel with the bindings of shaders/cast/cast_bindings.glsl, only for cast(). Empty for promin's
+  /// own kernel.
   std::span<const uint32_t> spirv = {};
-  /// A BVH file to share with other processes (pack_scene_sharing), unless `bvh` names a file.
+  /// A BVH file that is shared with other processes (pack_scene_sharing). It is not used if `bvh` names a file.
   std::optional<std::filesystem::path> shared_bvh = std::nullopt;
 };
 
 struct CasterAccess {
-  /// Does what Caster's constructor does, for a valid scene in world space.
+  /// Makes a Caster like its constructor, for a valid scene in world space.
   static Caster make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options);
 };
 

@@ -13,7 +13,7 @@
 
 namespace promin {
 
-/// Adds to lists of hits those of primitives that are not in the tree because they are copies of another.
+/// Adds to lists of hits the hits of primitives that are not in the tree because they are copies of other primitives.
 class CopiedHits {
  public:
   CopiedHits() = default;
@@ -21,17 +21,17 @@ class CopiedHits {
 
   bool empty() const { return copies_.empty(); }
 
-  /// Passes a list on with the hits of copies, in parts of whole rays with hits of `budget_bytes` together, but at
-  /// least one ray. `list` has the other hits of the rays in sorted order.
+  /// Passes a list with the hits of copies to `sink`, in parts of whole rays. A part has at most `budget_bytes` of
+  /// hits, but at least one ray. `list` has the other hits of the rays in sorted order.
   void list(const HitList& list, const HitListSink& sink, uint64_t budget_bytes) const;
 
  private:
   using Id = std::pair<int32_t, int32_t>;
 
-  /// Appends the hits of a ray and those of copies in sorted order.
+  /// Appends the hits of a ray and the hits of copies in sorted order.
   void append(std::span<const Hit> hits, std::vector<Hit>& all) const;
 
-  /// The copies of each primitive, by object and primitive.
+  /// The copies of each primitive, indexed by object and primitive.
   std::map<Id, std::vector<Id>> copies_;
 };
 

@@ -14,10 +14,10 @@
 namespace promin {
 namespace {
 
-/// Recording this many pieces takes no time.
+/// The largest number of pieces that are recorded together; recording so few takes almost no time.
 constexpr size_t kMostPiecesAtOnce = 64;
 
-/// A lane's counters have 32 bits, so they are read before they can have overflowed.
+/// The largest number of rays that a lane may count before its 32-bit counters are read.
 constexpr double kMaxRaysALane = 2e9;
 
 /// Extracts a window's pixels from those of a larger one.
@@ -52,7 +52,7 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
       pipelines_before_(device_.compiled_pipelines().size()),
       pacer_(options_.target_dispatch_ms.value_or(device_.profile().target_dispatch_ms), TileScheduler::kMinBlocks),
       scene_(device_, scene, options_, stats_) {
-  // The callback belonged to the constructor's caller.
+  // The callback belongs to the caller of the constructor and must not be called later.
   options_.progress = {};
   const Stopwatch compiling;
   if (options_.has_error_target) {
@@ -66,7 +66,7 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
 
 void PictureTracer::prepare_film(const RenderMode& mode) {
   FeatureMask features = features_of_scene(mode) | features_of_samples(mode);
-  // With steps, trace_middle provides the AOVs of surfaces.
+  // If steps are requested, trace_middle() also provides the AOVs of surfaces.
   if (wanted_.has_any(AovSource::kSurface) && !wanted_.steps) features |= layout::FEATURE_AOVS;
   if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
   prepare_film(features);
@@ -74,7 +74,7 @@ void PictureTracer::prepare_film(const RenderMode& mode) {
 
 FeatureMask PictureTracer::features_of_scene(const RenderMode& mode) const {
   const FeatureMask features = scene_.features(mode);
-  // A picture with alpha has no background, and so nothing in its place.
+  // A picture with alpha has no background, so it has no backdrop either.
   return wanted_.alpha ? features.without(layout::FEATURE_BACKDROP) : features;
 }
 
@@ -136,7 +136,7 @@ void PictureTracer::trace_window(Film& onto, const PixelWindow& window, const Vi
   double uncollected = 0.0;
   std::vector<TileSample> pieces;
   while (!picture.is_done()) {
-    // The pieces of a small picture are smaller than what is asked for, so several run at once.
+    // The pieces of a small picture are smaller than the requested size, so several run together.
     pieces.clear();
     double units = 0.0;
     do {
@@ -191,7 +191,7 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
 
 void PictureTracer::tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const {
   for_each_pixel(read.pixel_count, [&](size_t i) {
-    // Samples of a pixel mostly show the same.
+    // The samples of a pixel usually show the same object.
     uint32_t order = layout::NO_ORDER;
     uint32_t object = Aovs::kNoId;
     for (uint32_t sample = 0; sample < samples; ++sample) {
@@ -215,7 +215,7 @@ ReadFilm PictureTracer::read_film(const Film& from, const uvec2& size) {
 }
 
 RenderMode PictureTracer::mode_of_middle(RenderMode mode) const {
-  // These views compute no light.
+  // These debug views compute no light.
   mode.debug_view = wanted_.steps ? DebugView::kSteps : DebugView::kNormals;
   return mode;
 }
@@ -239,7 +239,7 @@ void PictureTracer::trace_middle(const View& view, RenderResult& result, const P
   for_each_band(view, middle_film_->records().count, [&](const PixelWindow& band, size_t first) {
     const uvec2 size = band.hi - band.lo;
     middle_film_->reserve(size.x * size.y);
-    // Its rays are the picture's, counted there.
+    // Its rays are counted with the picture's rays.
     RenderResult of_middle;
     trace_window(*middle_film_, band, middle_view, middle, of_middle, on_progress);
     result.trace_ms += of_middle.trace_ms;
@@ -261,7 +261,7 @@ RenderResult PictureTracer::make_result(const View& view) const {
 RenderResult PictureTracer::render(const View& view, const ProgressCallback& progress) {
   if (view.error_target) return render_to_error(view, progress);
   if (!estimates_errors(view.mode)) return render_samples(view, progress);
-  // Errors are estimated from neighbouring pixels.
+  // Errors are estimated from neighbouring pixels, so a larger window is traced.
   const PixelWindow window = picture_window(view);
   View wider = view;
   wider.crop = with_neighbors(window, view.size);

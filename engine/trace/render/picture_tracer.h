@@ -17,36 +17,38 @@
 
 namespace promin {
 
-/// Samples of each pixel: [first, end).
+/// A range of samples of each pixel: [first, end).
 struct SampleRange {
   uint32_t first;
   uint32_t end;
 };
 
-/// Returns the requested pixels of a view.
+/// Returns the window of pixels that a view requests.
 PixelWindow picture_window(const View& view);
 
-/// Returns a callback that reports a progress of 0 and only checks whether to continue. `progress` must outlive it.
+/// Returns a callback that always reports a progress of 0, so it only checks whether to continue. `progress` must
+/// outlive it.
 ProgressCallback keep_going(const ProgressCallback& progress);
 
 /// The implementation of a Renderer without its checks: a scene on a device, and the films onto which its pictures are
-/// traced. picture_tracer.cpp makes pictures of fixed samples, refined_pictures.cpp those with an error target.
+/// traced. picture_tracer.cpp makes pictures with a fixed number of samples, refined_pictures.cpp pictures with an
+/// error target.
 class PictureTracer {
  public:
-  /// As Renderer's constructor.
+  /// Has the arguments and the exceptions of Renderer's constructor.
   PictureTracer(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
 
   SceneOnDevice& scene() { return scene_; }
   const SceneOnDevice& scene() const { return scene_; }
   const SetupStats& stats() const { return stats_; }
-  /// Returns counts of the work since the constructor began.
+  /// Returns counts of the work since the start of the constructor.
   WorkDone work_done() const;
 
-  /// Updates the films after a part of the scene has changed. A film that cannot be bound to it is created again when
-  /// it is needed.
+  /// Updates the films after a part of the scene has changed. If the scene cannot be bound to a film, the film is
+  /// created again when it is needed.
   void take_change();
 
-  // As in Renderer, for valid views.
+  // The following functions are like those of Renderer, for valid views.
   RenderResult render(const View& view, const ProgressCallback& progress);
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress);
   void render_progressively(const View& view, double budget_ms,
@@ -68,23 +70,23 @@ class PictureTracer {
   bool has_parts(const RenderMode& mode) const {
     return wanted_.has_any(AovSource::kParts) && mode.debug_view == DebugView::kNone;
   }
-  /// Returns the feature for Aovs::unlit if it is requested and there are unlit surfaces.
+  /// Returns the feature for Aovs::unlit if the AOV is requested and the scene has unlit surfaces.
   FeatureMask features_of_scene(const RenderMode& mode) const;
   bool tells_unlit(const RenderMode& mode) const;
   /// Creates the film for samples of a list.
   void prepare_refining_film(const RenderMode& mode);
   void prepare_film(FeatureMask features);
   FilmOptions film_options() const;
-  /// Traces samples of a window of the picture, for which the film has room.
+  /// Traces samples of a window of the picture. The film must have space for the window.
   void trace_window(Film& onto, const PixelWindow& window, const View& view, const SampleRange& samples,
                     RenderResult& result, const ProgressCallback& on_progress);
-  /// Traces a band of the picture, as many samples per pixel at a time as there is room for their AOVs, and adds it to
-  /// the result. The band's first pixel is the result's pixel `first`.
+  /// Traces a band of the picture and adds it to the result. It traces as many samples per pixel at a time as there is
+  /// space for their AOVs. The band's first pixel is the result's pixel `first`.
   void trace_band(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
                   const ProgressCallback& on_progress);
   void tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const;
   uint32_t object_of(uint32_t order) const;
-  /// Reads the records of a window from a film. This invalidates what was read before.
+  /// Reads the records of a window from a film. Results of earlier calls become invalid.
   ReadFilm read_film(const Film& from, const uvec2& size);
   /// Divides a picture into bands of whole blocks that fit on a film.
   template <typename TraceBand>
@@ -98,38 +100,38 @@ class PictureTracer {
       trace_band(band, static_cast<size_t>(y - window.lo.y) * width);
     }
   }
-  /// Traces the middle sample again without light, for its step counts and surfaces. Step counts must be of single rays
-  /// and not of packets, and samples of a list have only light.
+  /// Traces the middle sample again without light, for its step counts and surfaces. Step counts need single rays and
+  /// not packets, and samples of a list have only light.
   void trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress);
   RenderMode mode_of_middle(RenderMode mode) const;
   void prepare_middle_film(const RenderMode& mode);
-  /// Returns a picture without pixels.
+  /// Returns a result whose picture has no pixels.
   RenderResult make_result(const View& view) const;
   /// Renders a picture with a fixed number of samples per pixel.
   RenderResult render_samples(const View& view, const ProgressCallback& progress);
-  /// AOVs of the samples of a window of a refined picture, by pixel.
+  /// AOVs of the samples of a window of a refined picture, indexed by pixel.
   struct RefinedAovs {
     PixelWindow window;
     std::vector<LightParts> parts;
     CoverageTally tally;
   };
   RefinedAovs begin_refined_aovs(const PixelWindow& window, const View& view) const;
-  /// Adds the AOVs of a list.
+  /// Adds the AOVs of the samples of a list.
   void take_aovs(std::span<const ListedSample> list, const ReadFilm& read, RefinedAovs& aovs) const;
-  /// Traces samples until the refinement reaches its error. `on_samples` receives the number of samples so far.
+  /// Traces samples until the refinement reaches its error. `on_samples` receives the number of samples traced so far.
   void refine(Refinement& refinement, const View& view, RefinedAovs& aovs, RenderResult& result,
               const ProgressCallback& on_samples);
   /// Fills a result with the refinement of a window.
   void take_refined(const Refinement& refinement, const RefinedAovs& aovs, const View& view,
                     RenderResult& result) const;
-  /// Returns a picture without pixels, but with the AOVs of rays through the centres of pixels.
+  /// Returns a result without pixels, but with the AOVs of rays through the pixels' centres.
   RenderResult begin_refined(const View& view, const ProgressCallback& progress);
   /// Returns whether AOVs of rays through the pixels' centres are requested.
   bool tells_of_centers() const;
   /// Compiles the missing pipelines.
   void prepare_to_refine(const RenderMode& mode);
   RenderResult render_to_error(const View& view, const ProgressCallback& progress);
-  /// Refines to the smallest error that is estimated to fit into the time, but at least to the first.
+  /// Refines to the smallest error that is estimated to fit into the time, but at least to the first error.
   RenderResult refine_within(const View& view, double seconds, const ProgressCallback& progress);
 
   const gpu::Device& device_;
@@ -141,10 +143,10 @@ class PictureTracer {
   SceneOnDevice scene_;
   std::optional<Film> film_;
   FeatureMask film_features_;
-  /// The film of trace_middle; created when its AOVs are first requested.
+  /// The film of trace_middle(), created when its AOVs are first requested.
   std::optional<Film> middle_film_;
   UnsetVector<uvec4> film_records_;
-  /// Color ranges of the samples of each pixel, for estimating errors.
+  /// Ranges of the colours of each pixel's samples, for estimating errors.
   std::vector<ColorRange> ranges_;
 };
 

@@ -11,17 +11,17 @@
 namespace promin {
 namespace {
 
-/// Refining to an error may take up to this factor of the estimated time.
+/// Factor by which refining to an error may exceed the estimated time.
 constexpr double kCaution = 1.2;
-/// Samples of a list take up to this factor of the time of a whole picture's samples.
+/// Factor by which samples of a list take longer than samples of a whole picture.
 constexpr double kListedCost = 1.5;
 /// A picture is refined if reaching its first error leaves at least half of the time.
 constexpr double kTimesFirstError = 2.0;
-/// The part of the remaining time planned for a picture of fixed samples.
+/// The fraction of the remaining time that is planned for a picture with a fixed number of samples.
 constexpr double kPlannedShare = 0.95;
-/// A picture that takes longer than this factor of the limit, or is estimated to, is abandoned.
+/// Factor of the time limit. A picture that takes longer, or is estimated to take longer, is abandoned.
 constexpr double kLongest = 1.15;
-/// The traced part of a picture from which its total time is estimated.
+/// The traced fraction of a picture from which its total time is estimated.
 constexpr double kForetells = 0.1;
 
 }  // namespace
@@ -38,7 +38,7 @@ void PictureTracer::take_aovs(std::span<const ListedSample> list, const ReadFilm
   const uint32_t width = aovs.window.hi.x - aovs.window.lo.x;
   for (size_t i = 0; i < list.size(); ++i) {
     const uvec2& pixel = list[i].pixel;
-    // The samples of pixels around the window are theirs.
+    // Samples of pixels around the window do not count here, because these pixels belong to other windows.
     if (glm::any(glm::lessThan(pixel, aovs.window.lo)) || glm::any(glm::greaterThanEqual(pixel, aovs.window.hi))) {
       continue;
     }
@@ -110,7 +110,7 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
 
 RenderResult PictureTracer::render_to_error(const View& view, const ProgressCallback& progress) {
   RenderResult result = begin_refined(view, progress);
-  // All parts are assumed to take as long as the earlier ones, as far as known.
+  // All parts are assumed to take as long as the earlier parts, as far as their times are known.
   double taken = 0.0;
   double pixels_done = 0.0;
   double told = 0.0;
@@ -124,7 +124,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
       const double left_of_part = std::max(refinement.foretell_total() - of_part, 0.0);
       const double a_pixel = (taken + of_part + left_of_part) / (pixels_done + part_pixels);
       const double left = left_of_part + a_pixel * (pixels - pixels_done - part_pixels);
-      // If more work remains than was estimated, the progress stops.
+      // If more work remains than was estimated, the reported progress stops for a while.
       told = std::max(told, (taken + of_part) / (taken + of_part + left));
       return progress(told);
     });
@@ -167,7 +167,7 @@ RenderResult PictureTracer::render_within(const View& view, double seconds, cons
   fixed.error_target.reset();
   fixed.samples_per_pixel = 1;
   RenderResult best = render(fixed, tell);
-  // What refines takes as long to compile as what has traced this picture, before this call or in it.
+  // The kernels for refinement take as long to compile as the kernels that traced this picture.
   const double compiling_ms = std::max(elapsed.ms() - best.trace_ms, stats_.pipeline_ms);
   const double refining_ms = compiling_ms + kListedCost * best.trace_ms * view.error_target->min_samples;
   if (kTimesFirstError * refining_ms < limit_ms - elapsed.ms()) {

@@ -23,7 +23,7 @@ void check_view(const View& view) {
 
 }  // namespace
 
-// Hidden, although the class around it is not (promin/export.h).
+// This struct is hidden, although the class around it is not (promin/export.h).
 struct __attribute__((visibility("hidden"))) Renderer::Impl {
   Impl(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options)
       : tracer(device, scene, options) {}
@@ -72,7 +72,7 @@ void Renderer::set_lights(std::span<const Light> lights) {
 
 namespace {
 
-/// Copies that are not in the tree do not show through their first.
+/// Throws InputError if copies that are not in the tree would become visible through the primitive that replaces them.
 void check_copies(const std::set<uint32_t>& copied, std::span<const Material> materials) {
   for (const uint32_t i : copied) {
     if (hides_copies(materials[i])) continue;

@@ -13,29 +13,31 @@
 #include "trace/film/film.h"
 #include "trace/kernels/picture_shaders.h"
 
-// Access to the implementation of Renderer, for the window, which records its frames itself, and for tests and
-// measurements.
+// Access to the implementation of Renderer. The window needs it, because it records its own frames; tests and
+// measurements need it too.
 namespace promin {
 
-/// Options that pictures do not need: for tests and measurements.
+/// Options for tests and measurements that pictures do not need.
 struct TunedRendererOptions : RendererOptions {
-  /// Features to compile even if the scene does not use them: all of them measure the gain of specialisation, and those
-  /// of several small scenes let these share their kernels. The image keeps its bits.
+  /// Features to compile even if the scene does not use them. With all features, measurements find the gain of
+  /// specialisation; with the features of several small scenes, these scenes share their kernels. The image keeps its
+  /// bits.
   FeatureMask more_features = {};
   /// Target for the longest time of a single dispatch. If empty, the device profile decides.
   std::optional<double> target_dispatch_ms = std::nullopt;
   /// The number of pixels that a lane traces together: 1, 2 or 4. If empty, the device profile decides. The image keeps
   /// its bits.
   std::optional<uint32_t> packet_size = std::nullopt;
-  /// A fixed number of 8x8 blocks per dispatch, for tests of tile independence; 0 adapts.
+  /// A fixed number of 8x8 blocks per dispatch, for tests that tiles do not change bits. If 0, the number is adapted.
   uint32_t blocks_per_dispatch = 0;
-  /// Read the scene from storage buffers even if texel buffers can hold it. The image keeps its bits.
+  /// If true, shaders read the scene from storage buffers even if texel buffers can hold it. The image keeps its bits.
   bool avoids_texels = false;
-  /// Other shaders with the same bindings; Renderer::explain does not use them.
+  /// The shaders. Renderer::explain() does not use other shaders with the same bindings.
   PictureShaders shaders = picture_shaders();
-  /// A BVH file to share with other processes (pack_scene_sharing), unless `bvh` names a file.
+  /// A BVH file that is shared with other processes (pack_scene_sharing). It is not used if `bvh` names a file.
   std::optional<std::filesystem::path> shared_bvh = std::nullopt;
-  /// Changes the packed scene before it is uploaded, for shaders that read another layout. Empty for no change.
+  /// A function that changes the packed scene before it is uploaded, for shaders that read another layout. Empty for no
+  /// change.
   std::function<PackedScene(PackedScene)> repack = {};
 };
 
@@ -47,7 +49,7 @@ class SceneOnDevice {
 
   const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
   const PrimitiveNumbers& numbers() const { return numbers_; }
-  /// Returns whether the tree was built here and not read from a file.
+  /// Returns whether the tree was built in this process and not read from a file.
   bool is_tree_built() const { return is_tree_built_; }
   size_t material_count() const { return shown_materials_.size(); }
   /// Returns the materials of copies that are not in the tree (device_scene/drop_copies.h).
@@ -55,7 +57,7 @@ class SceneOnDevice {
   /// Returns the material of each object.
   std::span<const uint32_t> object_materials() const { return object_materials_; }
 
-  /// Returns the features of a picture in a mode, with the scene's lights and environment or with others.
+  /// Returns the features of a picture in a mode. The lights and the environment are the scene's, or those given.
   FeatureMask features(const RenderMode& mode) const {
     return features_with(light_features_, environment_features_, mode);
   }
@@ -81,7 +83,7 @@ class SceneOnDevice {
 };
 
 struct RendererAccess {
-  /// Does what Renderer's constructor does, for a valid scene in world space.
+  /// Makes a Renderer like its constructor, for a valid scene in world space.
   static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
   static SceneOnDevice& scene_of(Renderer& renderer);
   static const SceneOnDevice& scene_of(const Renderer& renderer);

@@ -15,7 +15,7 @@
 namespace promin::work {
 namespace {
 
-/// Finds the note of the object file that is loaded at an address.
+/// Finds the note of the object file that contains an address.
 struct Search {
   uintptr_t address = 0;
   std::string id;
@@ -25,7 +25,7 @@ size_t align(size_t size, size_t alignment) {
   return (size + alignment - 1) / alignment * alignment;
 }
 
-/// Returns the build id among the notes of a segment; empty without one.
+/// Returns the build id in the notes of a segment; empty if there is none.
 std::string find_note(std::span<const unsigned char> notes, size_t alignment) {
   constexpr std::string_view kOwner("GNU", 4);
   for (size_t at = 0; at + sizeof(ElfW(Nhdr)) <= notes.size();) {

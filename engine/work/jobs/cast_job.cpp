@@ -29,14 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// By HitQuery.
+/// Names of the queries, indexed by HitQuery.
 constexpr std::array<std::string_view, 4> kQueryNames = {"nearest", "any", "count", "all"};
 
 std::string_view name_of(HitQuery query) {
   return kQueryNames[static_cast<size_t>(query)];
 }
 
-/// Rays of a file, from the first up to the end.
+/// A range of the rays of a file: from `first` up to, but without, `end`.
 struct RayRange {
   uint64_t begin = 0;
   uint64_t end = 0;
@@ -50,7 +50,7 @@ uint64_t choose_pieces(uint64_t count, bool is_all) {
   return std::max({uint64_t{1}, std::min(kUsualPieces, count / kLeastPieceRays), divide_up(count, most_rays)});
 }
 
-/// Divides all rays into nearly equal ranges, at least one.
+/// Divides all rays into nearly equal ranges; there is at least one.
 std::vector<RayRange> cut_rays(uint64_t count, const CastSpec& options) {
   const uint64_t pieces = options.job.pieces.value_or(choose_pieces(count, options.is_all));
   if (pieces > std::max<uint64_t>(count, 1) || pieces > kMostRayPieces) {
@@ -61,7 +61,7 @@ std::vector<RayRange> cut_rays(uint64_t count, const CastSpec& options) {
                       options.rays.string(), "lower --pieces"});
   }
   std::vector<RayRange> ranges;
-  // The product would overflow with 10^13 rays or more.
+  // The product would overflow with 10^13 rays or more, so the code divides first.
   const uint64_t least = count / pieces;
   const uint64_t longer = count % pieces;
   for (uint64_t i = 0, begin = 0; i < pieces; ++i) {
@@ -78,8 +78,8 @@ std::vector<std::string> name_pieces(const std::vector<RayRange>& ranges) {
   return names;
 }
 
-/// The description of a piece. Its bytes are hits or counts; with kAll its hits, followed for each ray by the number of
-/// hits up to its end.
+/// The description of a piece. The piece's bytes are hits or counts. With kAll, the hits are followed by an offset for
+/// each ray: the number of hits up to the ray's end.
 struct HitPiece {
   HitQuery query = HitQuery::kNearest;
   std::string driver;
@@ -190,7 +190,7 @@ class RayPieces : public PieceMaker {
   }
 
  private:
-  /// Appends the results of the rays.
+  /// Traces the rays and appends their results.
   void answer(std::span<const Ray> rays, std::vector<std::byte>& bytes, const ProgressCallback& progress) {
     const HitQuery query = job_.options_.query();
     if (query == HitQuery::kAll) {
@@ -223,7 +223,7 @@ class RayPieces : public PieceMaker {
   std::optional<Caster> caster_;
   std::vector<Hit> hits_;
   std::vector<int32_t> counts_;
-  /// The ends of the current piece's rays, with kAll.
+  /// With kAll, the ends of the hits of the current piece's rays.
   std::vector<uint64_t> ends_;
 };
 
@@ -232,14 +232,14 @@ std::unique_ptr<PieceMaker> RayJob::open(const gpu::Device& device, size_t /*pie
   return std::make_unique<RayPieces>(*this, device, progress);
 }
 
-/// Returns a piece's bytes, or a part of them, as values of their type. They are aligned because they begin at an
+/// Returns a piece's bytes, or a part of them, as values of their type. They are aligned, because they begin at an
 /// allocation or after hits.
 template <typename Value>
 std::span<const Value> values_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const Value*>(bytes.data()), bytes.size() / sizeof(Value)};
 }
 
-/// Hits of a piece with kAll, ray by ray.
+/// The hits of a piece with kAll, ray by ray.
 class HitLists {
  public:
   HitLists(std::span<const std::byte> bytes, uint64_t rays)
@@ -291,7 +291,7 @@ PieceDifference RayJob::compare(size_t piece, const jobs::Content& there, const 
   return comparison.difference();
 }
 
-/// Checks the number of output files.
+/// Checks that the number of output files is right.
 void check_count(size_t count, const std::vector<fs::path>& files) {
   if (files.size() == count) return;
   throw UsageError({"job.outputs.count",
@@ -301,7 +301,7 @@ void check_count(size_t count, const std::vector<fs::path>& files) {
                     count == 2 ? "give --output and --offsets" : "give --output alone"});
 }
 
-/// The files of a query, to which pieces are added in their order.
+/// The files of a query. Pieces are added in their order.
 class HitFiles {
  public:
   HitFiles(HitQuery query, const std::vector<fs::path>& files, uint64_t rays) {
@@ -352,7 +352,7 @@ std::unique_ptr<PlannedJob> plan_rays(const CastSpec& options, const Messages& c
 
 void check_merged_hits(const jobs::Job& job, const std::vector<fs::path>& files) {
   check_arrays(files);
-  // Pieces that a function has made describe their content themselves.
+  // Pieces that a function has made have a description of their content.
   const std::optional<std::string> spec = read_job_spec(job);
   if (spec) check_count(parse_spec<CastSpec>(*spec, spec_file(job)).is_all ? 2 : 1, files);
 }

@@ -21,16 +21,17 @@ namespace promin::work {
 /// The kind of a job whose pieces are results of rays.
 inline constexpr std::string_view kRayJob = "cast";
 
-/// Returns the job of rays of a checked specification. If `rays` is null, they are read from the file that it names.
-/// Throws InputError, and UsageError for more pieces than rays.
+/// Returns the job of the rays of a checked specification. If `rays` is null, the rays are read from the file that the
+/// specification names. Throws InputError, and UsageError if there are more pieces than rays.
 std::unique_ptr<PlannedJob> plan_rays(const CastSpec& options, const Messages& console,
                                       std::shared_ptr<RaySource> rays = nullptr);
 
-/// Throws UsageError for files that are not arrays, and if the job's command needs another number of files.
+/// Throws UsageError if files are not arrays, or if the job's command needs another number of files.
 void check_merged_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files);
-/// Puts the pieces of a job of rays together and writes hits or counts, with --all also the offsets to a second file.
-/// check_merged_hits must have checked the files. Throws UsageError for another number of files, RunError, Cancelled,
-/// and InputError if pieces do not belong together, which unless `is_mixed` includes pieces of different drivers.
+/// Combines the pieces of a job of rays and writes the hits or counts; with --all it writes the offsets to a second
+/// file. check_merged_hits() must have checked the files. Throws UsageError for another number of files, RunError,
+/// Cancelled, and InputError if pieces do not belong together. Unless `is_mixed`, pieces of different drivers do not
+/// belong together.
 void merge_hits(const jobs::Job& job, const std::vector<std::filesystem::path>& files, const ProgressCallback& progress,
                 bool is_mixed);
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Returns the difference, relative for numbers beyond 1. Infinite for values that are not finite and not equal.
+/// Returns the difference of two numbers, relative for numbers beyond 1. It is infinite if the numbers are not finite
+/// and not equal.
 double difference_of(float a, float b) {
   if (std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) || (std::isnan(a) && std::isnan(b))) return 0.0;
   const double difference = std::abs(double{a} - double{b}) / std::max(1.0, std::abs(double{a}));
@@ -42,7 +43,7 @@ void count(PieceDifference& difference, double value, double most) {
   }
 }
 
-/// The box of a primitive that is hit.
+/// Returns the box of a primitive that was hit.
 Bounds bounds_of(const world::Shape& shape, uint32_t primitive) {
   const auto find = [&](const auto& some) -> Bounds {
     using Some = std::decay_t<decltype(some)>;
@@ -100,7 +101,7 @@ double HitComparison::difference_of(const Ray& ray, const Hit& there, const Hit&
   if (there.object != anew.object || there.primitive != anew.primitive) return kInfinity;
   if (there.t == anew.t) return 0.0;
   const double scale = scale_of(ray, there);
-  // |d| cos is the component of the direction along the normal.
+  // The product |d| cos is the component of the direction along the normal.
   const double along = std::abs(glm::dot(dvec3(ray.direction), dvec3(there.normal)));
   const double k = std::abs(double{there.t} - double{anew.t}) * along / (kUnitRoundoff * scale);
   return std::isfinite(k) ? k : kInfinity;

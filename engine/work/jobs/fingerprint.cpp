@@ -19,7 +19,8 @@ namespace {
 constexpr size_t kRays = 4096;
 constexpr uvec2 kSize{48, 32};
 
-/// Returns a number in -1...1 with 24 bits by its index in a sequence, computed exactly so that all processors agree.
+/// Returns the number with this index in a fixed sequence: a number in -1...1 with 24 bits, computed exactly so that
+/// all processors agree.
 float number_at(uint32_t place) {
   uint32_t bits = place * 0x9E3779B9U;
   bits = (bits ^ (bits >> 16)) * 0x85EBCA6BU;
@@ -55,7 +56,7 @@ Scene make_scene() {
   return scene;
 }
 
-/// Rays from around the scene into it.
+/// Returns rays that start around the scene and run into it.
 std::vector<Ray> make_rays() {
   std::vector<Ray> rays(kRays);
   for (uint32_t i = 0; i < kRays; ++i) {

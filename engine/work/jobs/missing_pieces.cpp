@@ -14,10 +14,10 @@
 namespace promin::work {
 namespace {
 
-/// Missing pieces that a message names.
+/// The largest number of missing pieces that a message names.
 constexpr size_t kMostNamed = 5;
 
-/// Throws RunError if pieces are missing; `count` is the number of pieces checked.
+/// Throws RunError if pieces are missing. `count` is the number of pieces that were checked.
 void refuse_missing(const jobs::Job& job, const std::vector<size_t>& missing, size_t count) {
   if (missing.empty()) return;
   std::vector<std::string> names;

@@ -24,11 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Defaults: the approximate largest number of pixels of a band of one picture, and the smallest number of rows of any
-/// band.
+/// Defaults for dividing pictures: the approximate largest number of pixels of a band of one picture, and the smallest
+/// number of rows of a band.
 constexpr uint64_t kBandPixels = uint64_t{1} << 19;
 constexpr uint64_t kLeastBandRows = 8;
-/// Of a picture.
+/// The largest number of parts of a picture.
 constexpr uint64_t kMostParts = 1'000'000;
 /// Prefix of the names of a path's pieces.
 constexpr std::string_view kOfFrame = "frame";
@@ -56,7 +56,7 @@ PictureError error_of(const Json& json) {
           .samples = json.at("samples")};
 }
 
-/// Returns a choice from this number of values. Throws std::out_of_range.
+/// Returns the choice with this index. Throws std::out_of_range if there is no such choice.
 template <typename Choice>
 Choice choice_of(const Json& json, size_t count) {
   const auto number = json.get<int64_t>();
@@ -72,14 +72,14 @@ size_t area_of(const PixelWindow& window) {
   return static_cast<size_t>(size_of(window).x) * size_of(window).y;
 }
 
-/// Returns the start of each of `count` nearly equal parts of 0...length, and the end.
+/// Returns the start of each of `count` nearly equal parts of 0...length, and then the end.
 std::vector<uint32_t> divide(uint32_t length, uint32_t count) {
   std::vector<uint32_t> places;
   for (uint64_t i = 0; i <= count; ++i) places.push_back(static_cast<uint32_t>(i * length / count));
   return places;
 }
 
-/// Returns the driver_of of the device of a picture with these metadata.
+/// Returns the device and driver (driver_of) of a picture with these metadata.
 std::string driver_of(const Metadata& metadata) {
   std::string driver;
   for (const auto& [name, value] : metadata) {
@@ -105,7 +105,7 @@ void place(const std::vector<Value>& values, const PicturePart& part, std::vecto
   }
 }
 
-/// Parts of a picture that lie side by side.
+/// A row of parts of a picture that are side by side.
 struct RowOfParts {
   Image image;
   std::vector<Channel> channels;
@@ -122,7 +122,7 @@ struct RowOfParts {
   }
 };
 
-/// Checks that a part is of the same picture as the first; parts of another driver have other bits.
+/// Checks that a part belongs to the same picture as the first part. Parts of another driver have other bits.
 void check_same(const PicturePart& part, const PicturePart& first, const fs::path& file) {
   const auto is_same_channel = [](const Channel& a, const Channel& b) { return a.name == b.name; };
   const bool is_same = part.full_size == first.full_size && part.window.lo == first.window.lo &&
@@ -137,7 +137,7 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
   }
   for (size_t i = 0; i < part.metadata.size(); ++i) {
     const auto& [name, value] = part.metadata[i];
-    // Versions with the same results give the same pieces.
+    // Other versions of promin with the same version of results give the same pieces.
     const bool may_differ = is_error_metadata(name) || name == kVersionEntry;
     if (part.metadata[i] == first.metadata[i] || may_differ) continue;
     throw InputError({"job.device.other",
@@ -154,7 +154,7 @@ PicturePart without_values(PicturePart part) {
   return part;
 }
 
-/// Returns the whole picture's accuracy from those of its parts.
+/// Returns the accuracy of the whole picture from the accuracies of its parts.
 std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const size_t> pieces, const PicturePart& first) {
   if (!first.error) return std::nullopt;
   PictureError whole{.target = first.error->target};
@@ -166,8 +166,8 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
   return whole;
 }
 
-/// Writes one picture from its pieces, row by row, to files of these names with the number of its frame. Only a row of
-/// pieces is in memory at a time. Returns the accuracy of a picture with an error target.
+/// Writes one picture from its pieces to files of these names, with the number of its frame. It writes row by row, and
+/// only one row of pieces is in memory at a time. Returns the accuracy of a picture with an error target.
 std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const size_t> pieces,
                                          const std::vector<fs::path>& files, const ProgressCallback& progress) {
   PicturePart part = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
@@ -206,12 +206,12 @@ std::string name_frame(uint32_t frame) {
   return fmt::format("{}{:06}", kOfFrame, frame);
 }
 
-/// The first word of a piece's name identifies its frame; without frames it is always the same.
+/// Returns the first word of a piece's name, which identifies its frame. Without frames it is always the same.
 std::string frame_of(const std::string& piece) {
   return piece.starts_with(kOfFrame) ? piece.substr(0, piece.find('_')) : "";
 }
 
-/// The pieces of each picture that a job makes.
+/// Returns the pieces of each picture of a job.
 std::vector<std::vector<size_t>> find_pictures_of(const jobs::Job& job) {
   const std::vector<std::string>& names = job.manifest().pieces;
   std::vector<std::vector<size_t>> pictures;
@@ -232,7 +232,8 @@ std::vector<size_t> find_pieces_of(const jobs::Job& job, uint32_t frame) {
   return pieces;
 }
 
-/// Does the same for the given frames in their order. Throws UsageError if the job has no such frame.
+/// Returns the pieces of the pictures of the given frames, in their order. Throws UsageError if the job has no such
+/// frame.
 std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
                                                  const std::optional<std::vector<uint32_t>>& frames) {
   if (!frames) return find_pictures_of(job);

@@ -14,7 +14,7 @@
 
 namespace promin::work {
 
-/// Makes the pieces of a planned job with resources that are opened once. Only one thread at a time may use it; the
+/// Makes the pieces of a planned job. It opens the resources for this once. Only one thread at a time may use it. The
 /// plan and the device must outlive it.
 class PieceMaker {
  public:
@@ -24,23 +24,23 @@ class PieceMaker {
   virtual jobs::Content make(size_t piece, const ProgressCallback& progress) = 0;
 };
 
-/// A job that a specification describes: its inputs are read and hashed, but no device is open.
+/// A job that a specification describes. Its inputs are read and hashed, but no device is open.
 class PlannedJob {
  public:
   virtual ~PlannedJob() = default;
 
   const jobs::Manifest& manifest() const { return manifest_; }
-  /// Returns the text of the specification from which plan_job plans it again in any folder (write_spec_of_pieces).
+  /// Returns the text of a specification from which plan_job() plans the same job in any folder (write_spec_of_pieces).
   const std::string& spec() const { return spec_; }
-  /// Opens the resources for making about this number of pieces on a device. The tree is that of shared_tree_file, and
-  /// the call may wait for it. Throws Cancelled if `progress`, which is called meanwhile, returns false.
+  /// Opens the resources for making about this number of pieces on a device. The tree comes from shared_tree_file(),
+  /// and the call may wait for it. It calls `progress` meanwhile and throws Cancelled if `progress` returns false.
   virtual std::unique_ptr<PieceMaker> open(const gpu::Device& device, size_t pieces,
                                            const ProgressCallback& progress) = 0;
-  /// Compares an existing piece with one made again; messages name its file. Throws InputError if they are not the same
-  /// piece.
+  /// Compares an existing piece with the same piece made again. Messages name the piece's file. Throws InputError if
+  /// they are not the same piece.
   virtual PieceDifference compare(size_t piece, const jobs::Content& there, const jobs::Content& anew,
                                   const std::filesystem::path& file) = 0;
-  /// Stores information in the job's folder, after its creation, that saves other processes time.
+  /// Stores data in the job's folder that saves other processes time. To be called after the folder is created.
   virtual void remember() {}
 
  protected:

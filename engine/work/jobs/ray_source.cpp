@@ -33,7 +33,7 @@ class RayFile : public RaySource {
 
  private:
   std::filesystem::path file_;
-  // Taken before the reader is opened, so that the data read is not older.
+  // The stamp is taken before the reader is opened, so that the data read is not older than the stamp.
   std::optional<FileStamp> stamp_;
   RayReader reader_;
   std::mutex mutex_;

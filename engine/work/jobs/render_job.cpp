@@ -28,7 +28,7 @@ jobs::Manifest make_manifest(const RenderSpec& spec, const PictureRun& run, std:
   return manifest;
 }
 
-/// Pieces are parts of frames: of each frame all parts, frame after frame.
+/// A job whose pieces are parts of frames: all parts of the first frame, then all parts of the next frame, and so on.
 class PictureJob : public PlannedJob {
  public:
   PictureJob(const RenderSpec& spec, PictureRun run, const Messages& console)

@@ -10,7 +10,7 @@
 
 namespace promin::work {
 
-/// Returns the job of pictures that are prepared by this specification.
+/// Returns the job of the pictures of `run`, which were prepared from this specification.
 std::unique_ptr<PlannedJob> plan_pictures(const RenderSpec& spec, PictureRun run, const Messages& console);
 
 }  // namespace promin::work

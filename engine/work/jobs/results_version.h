@@ -4,9 +4,9 @@
 
 namespace promin::work {
 
-/// The version of the bits that promin computes. It is a part of a job's identity. Raise it in each change that gives
-/// any picture or hit other bits: tests/golden/results_test.cpp requires that if stored pictures or casts change. Jobs
-/// of other versions cannot continue.
+/// The version of the bits that promin computes. It is a part of a job's identity. Increase it in each change that
+/// changes bits of any picture or hit: tests/golden/results_test.cpp requires this if stored pictures or casts change.
+/// Jobs of other versions cannot be continued.
 inline constexpr int kResultsVersion = 1;
 
 }  // namespace promin::work

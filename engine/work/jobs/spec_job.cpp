@@ -21,11 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes the specification that of a process which works in this folder.
+/// Changes the specification to that of a process that works in this folder.
 template <typename Spec>
 Spec set_in(Spec spec, const fs::path& folder) {
   spec.job.folder = folder;
-  // The files are named when the pieces are merged.
+  // The output files are named later, when the pieces are merged.
   spec.job.share = jobs::Share{};
   return spec;
 }

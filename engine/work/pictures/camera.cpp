@@ -10,13 +10,14 @@ namespace {
 const dvec3 kStartLook(0.0, 0.0, -1.0);
 const dvec3 kStartUp(0.0, 1.0, 0.0);
 
-/// Unit vectors rounded to fp32 miss |v| = 1 and u.v = 0 by 1.2e-7 to 2.1e-7; a caller's printing may add as much.
+/// Largest error of orthonormal vectors. Unit vectors rounded to fp32 miss |v| = 1 and u.v = 0 by 1.2e-7 to 2.1e-7, and
+/// printing may add the same error.
 constexpr double kOrthonormalTolerance = 1e-6;
 
-/// If two directions differ by less, fp32 can no longer tell which way is up.
+/// Smallest sine of the angle between two directions. With a smaller one, fp32 cannot determine which direction is up.
 constexpr double kMinSine = 1e-6;
 
-/// GLM takes columns; the formulas are written in rows.
+/// Returns a matrix from its rows. GLM's constructor takes columns, but the formulas are written in rows.
 dmat3 matrix_from_rows(const dvec3& x, const dvec3& y, const dvec3& z) {
   return glm::transpose(dmat3(x, y, z));
 }
@@ -59,7 +60,7 @@ dmat3 make_rotation_z(double alpha) {
                           {0, 0, 1});
 }
 
-// Q's columns are the images of X, Y and Z, which start as right, up and -look.
+// The columns of Q are the images of X, Y and Z. Initially they are right, up and -look.
 FreeCamera::FreeCamera(const Camera& camera)
     : position_(camera.eye),
       rotation_(glm::cross(dvec3(camera.look), dvec3(camera.up)), dvec3(camera.up), -dvec3(camera.look)),
@@ -73,7 +74,7 @@ FreeCamera FreeCamera::from_pose(const vec3& eye, const vec3& look, const vec3& 
   if (is_orthonormal(look, up)) return FreeCamera(camera);
   const dvec3 unit_look = glm::normalize(dvec3(look));
   const dvec3 side = glm::cross(unit_look, glm::normalize(dvec3(up)));
-  // Written so that NaN, which zero and infinite directions give, is refused too.
+  // The condition is written so that NaN, from zero and infinite directions, is refused too.
   if (!(glm::length(side) >= kMinSine)) {
     throw UsageError({"camera.direction",
                       "the camera's direction of view and its up direction are zero, not finite or parallel", "",

@@ -8,14 +8,15 @@
 
 namespace promin {
 
-// The three rotations, angles in radians, right-handed: each turns anticlockwise for an eye on the positive axis.
+// The three rotations. Angles are in radians, and the rotations are right-handed: each is anticlockwise for an eye on
+// the positive axis.
 
-/// Mx(gamma): Y towards Z. A camera at the start pose looks up for gamma > 0.
+/// Mx(gamma) rotates Y towards Z. A camera in the start pose looks up for gamma > 0.
 dmat3 make_rotation_x(double gamma);
-/// My(beta): Z towards X. A camera at the start pose turns left for beta > 0.
+/// My(beta) rotates Z towards X. A camera in the start pose turns left for beta > 0.
 dmat3 make_rotation_y(double beta);
-/// Mz(alpha): X towards Y. A camera at the start pose rolls anticlockwise for alpha > 0, seen from behind it: its up
-/// tips to the left, and the picture turns clockwise.
+/// Mz(alpha) rotates X towards Y. A camera in the start pose rolls anticlockwise for alpha > 0, seen from behind the
+/// camera: its up vector tips to the left, and the picture rotates clockwise.
 dmat3 make_rotation_z(double alpha);
 
 /// The thesis's free camera (docs/model.md, "Rays and camera"): a position O and a rotation matrix Q.
@@ -25,20 +26,20 @@ dmat3 make_rotation_z(double alpha);
 /// angles are about the camera's own axes. Q stays orthonormal however long the camera is used.
 class FreeCamera {
  public:
-  /// At the origin, looking along -Z with +Y up; the projection is Camera's default.
+  /// Creates a camera at the origin that looks along -Z with +Y up and has Camera's default projection.
   FreeCamera() : FreeCamera(Camera{}) {}
 
   /// Uses this pose and projection. `look` and `up` are orthonormal up to fp32 rounding, as Camera requires.
   explicit FreeCamera(const Camera& camera);
 
-  /// Makes a camera of directions of any length. They are used as given, to the bit, where they are orthonormal to
-  /// rounding; otherwise up is made perpendicular to look. Throws UsageError if they are zero, not finite or parallel.
+  /// Returns a camera with directions of any length. If the directions are orthonormal up to rounding, they keep their
+  /// bits; otherwise `up` is made perpendicular to `look`. Throws UsageError if they are zero, not finite or parallel.
   static FreeCamera from_pose(const vec3& eye, const vec3& look, const vec3& up);
 
-  /// O <- O + ahead * look + up * up + right * right, in world units.
+  /// Moves the camera: O <- O + ahead * look + up * up + right * right, in world units.
   void move(double ahead, double up, double right);
 
-  /// Q <- Q M(alpha, beta, gamma), radians: rolls anticlockwise, turns left, looks up.
+  /// Rotates the camera: Q <- Q M(alpha, beta, gamma), in radians. It rolls anticlockwise, turns left and looks up.
   void rotate(double alpha, double beta, double gamma);
 
   const dvec3& position() const { return position_; }
@@ -47,7 +48,8 @@ class FreeCamera {
   dvec3 up() const;
   dvec3 right() const;
 
-  /// Returns pose and projection for the renderer. Values that were neither moved nor rotated keep their bits.
+  /// Returns pose and projection for the renderer. Position and directions keep their bits if the camera was neither
+  /// moved nor rotated.
   const Camera& camera() const { return camera_; }
 
  private:

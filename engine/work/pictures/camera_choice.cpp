@@ -16,7 +16,7 @@
 namespace promin::work {
 namespace {
 
-/// The field of view of a camera at the user's eye.
+/// The field of view, in degrees, of a camera at the user's eye.
 constexpr double kEyeFovDeg = 40.0;
 
 std::string list_cameras(const Scene& scene) {
@@ -28,7 +28,7 @@ std::string list_cameras(const Scene& scene) {
   return text;
 }
 
-/// The name is tried first, because a camera may be called "2".
+/// Finds a camera by name or number. The name is tried first, because a camera may be called "2".
 const Camera& find_camera(const Scene& scene, const std::string& selection) {
   if (scene.cameras.empty()) {
     throw UsageError({"camera.missing", "the scene has no cameras", scene.file.string(), "remove --camera"});
@@ -46,8 +46,8 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   return scene.cameras[index];
 }
 
-/// Returns the default up direction: +Y or, if that is the direction of view, the one that puts the front of the scene
-/// at the lower edge of a view from above.
+/// Returns the default up direction: +Y. If +Y is the direction of view, it is the direction that puts the front of the
+/// scene at the lower edge of a view from above.
 dvec3 default_up(const dvec3& direction) {
   constexpr double kLeastAcross = 1e-6;
   const double across = std::hypot(direction.x, direction.z);
@@ -55,7 +55,7 @@ dvec3 default_up(const dvec3& direction) {
   return dvec3(0.0, 0.0, direction.y < 0.0 ? -1.0 : 1.0);
 }
 
-/// Turns a camera; if `direction` is empty, it keeps its own.
+/// Turns a camera to a direction; if `direction` is empty, the camera keeps its own direction.
 void face(Camera& camera, const std::optional<dvec3>& direction, const std::optional<dvec3>& up) {
   if (!direction && !up) return;
   const dvec3 look = direction.value_or(dvec3(camera.look));
@@ -65,7 +65,8 @@ void face(Camera& camera, const std::optional<dvec3>& direction, const std::opti
   camera.up = posed.up;
 }
 
-/// From an eye in the scene to a point of the world. `eye` is the user's, if it is theirs.
+/// Returns the direction from an eye in the scene to a point of the world. If the user gave the eye, `eye` is its
+/// position in the world.
 dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Camera& camera, const dvec3& center) {
   const dvec3 direction = eye ? point - *eye : point - center - dvec3(camera.eye);
   if (direction != dvec3(0.0)) return direction;
@@ -73,7 +74,7 @@ dvec3 direction_to(const dvec3& point, const std::optional<dvec3>& eye, const Ca
       {"camera.point.eye", "--look-at is the position of the eye", "", "give another point, or --direction"});
 }
 
-/// Returns the user's direction; empty if none is given.
+/// Returns the direction that the user gave; empty if the user gave none.
 std::optional<dvec3> find_direction(const PoseOptions& pose, const Camera& camera, const dvec3& center) {
   if (pose.look_at) return direction_to(*pose.look_at, pose.eye, camera, center);
   return pose.direction;
@@ -90,14 +91,14 @@ Camera zoom(Camera camera, double factor) {
   return camera;
 }
 
-/// Moves the camera around the point that it looks at.
+/// Returns the camera moved around the point at which it looks.
 Camera turn(const Scene& scene, const Camera& camera, const PoseOptions& pose) {
   if (pose.orbit == Orbit()) return camera;
   const dvec3 target = pose.look_at ? *pose.look_at - scene.center : orbit_target(scene, camera);
   return orbit_camera(camera, target, pose.orbit, vec3(pose.up.value_or(dvec3(0.0, 1.0, 0.0))));
 }
 
-/// A camera at the user's eye.
+/// Returns a camera at the eye that the user gave.
 Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
   Camera camera;
   camera.name = "eye";
@@ -107,7 +108,7 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
   if (!direction) {
     const Bounds bounds = frame_of(scene);
     direction = middle_of(bounds) + scene.center - *pose.eye;
-    // The bounds of shapes are rounded to fp32.
+    // The tolerance is needed because the bounds of shapes are rounded to fp32.
     if (glm::length(*direction) <= 1e-6 * glm::length(dvec3(bounds.extent()))) {
       throw UsageError({"camera.eye.middle",
                         "--eye is at the middle of the scene, so promin cannot derive a direction of view", "",
@@ -120,7 +121,7 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
   return camera;
 }
 
-/// A camera that frames the scene.
+/// Returns a camera that frames the scene.
 Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio) {
   const bool is_turned = pose.looks() || pose.orbit != Orbit() || pose.fov_deg;
   FrameOptions options{.from = pose.from, .fit = pose.fit.value_or(kDefaultFit)};
@@ -148,7 +149,7 @@ const Camera* find_file_camera(const Scene& scene, const ViewOptions& options) {
 
 Framing choose_framing(const Scene& scene, const PoseOptions& pose) {
   if (pose.from) return *pose.from;
-  // A user who gives the covered part or a direction wants to see the whole scene.
+  // If the user gives the covered fraction or a direction, the whole scene must be visible.
   return pose.fit || pose.direction ? Framing::kThreeQuarter : framing_of(scene);
 }
 
@@ -172,7 +173,7 @@ Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pos
   if (pose.eye) camera.eye = vec3(*pose.eye - scene.center);
   face(camera, find_direction(pose, camera, scene.center), pose.up);
   if (pose.fov_deg) {
-    // With an eye and a direction it is a camera of the user's own.
+    // A camera with an eye and a direction from the user is the user's own camera.
     if (camera.projection == Projection::kOrthographic && !(pose.eye && pose.looks())) {
       console.note("the camera is orthographic; --fov makes it perspective");
     }
@@ -188,7 +189,7 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
   const float aspect_ratio = static_cast<float>(size.x) / static_cast<float>(size.y);
   if (std::ranges::any_of(cameras, [&](const Camera& camera) { return may_see(scene, camera, aspect_ratio); }))
     return "";
-  if (bounds_of(scene).is_empty()) return "";  // what has read it says so
+  if (bounds_of(scene).is_empty()) return "";  // The loader has already reported this.
   const dvec3 middle = middle_of(frame_of(scene)) + scene.center;
   return fmt::format(
       "the picture shows nothing of the scene; --look-at {:.6g} {:.6g} {:.6g} instead of a direction looks at its "
@@ -197,7 +198,7 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
 }
 
 std::string describe_small_model(const Scene& scene, const ViewOptions& options, const View& view) {
-  // An author's camera that shows the model this small surprises people who want to see the model.
+  // The largest fraction of the picture for which a note says that the author's camera shows the model small.
   constexpr double kSmall = 0.4;
   if (options.camera || options.pose.any() || find_file_camera(scene, options) == nullptr) return "";
   const double share =

@@ -11,32 +11,32 @@
 
 namespace promin::work {
 
-/// Returns the camera of the scene's file that the options name, else its first; null if the scene is framed or the
-/// user's own camera is used. Throws UsageError for an unknown camera.
+/// Returns the camera of the scene's file that the options name, or otherwise its first camera. Returns null if the
+/// scene is framed or the user's own camera is used. Throws UsageError for an unknown camera.
 const Camera* find_file_camera(const Scene& scene, const ViewOptions& options);
 
-/// Returns the side from which the scene is framed, if it is.
+/// Returns the side from which a camera frames the scene, if it frames the scene.
 Framing choose_framing(const Scene& scene, const PoseOptions& pose);
 
-/// Returns whether the camera frames the scene from a side that the user has not chosen.
+/// Returns whether the camera frames the scene from a side that the user did not choose.
 bool is_camera_assumed(const Scene& scene, const ViewOptions& options);
 
-/// Returns the camera if none of the scene's file is used: that of a path, one at the user's eye, or one that frames
-/// the scene in a picture of this aspect ratio. Throws UsageError for parallel directions.
+/// Returns the camera if no camera of the scene's file is used: the camera of a path, a camera at the user's eye, or a
+/// camera that frames the scene in a picture of this aspect ratio. Throws UsageError for parallel directions.
 Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_ratio);
 
-/// Returns a file's camera as changed by the options for a picture of this size, which shows at least what its author
-/// saw. An orthographic camera with a field of view becomes perspective, with a note. Throws UsageError for parallel
-/// directions.
+/// Returns a file's camera, changed by the options, for a picture of this size. The picture shows at least what the
+/// camera's author saw. An orthographic camera with a field of view becomes perspective, with a note. Throws UsageError
+/// for parallel directions.
 Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& pose, const uvec2& size,
                    const Messages& console);
 
-/// Returns a sentence if none of the cameras sees anything of the scene in pictures of this size, with options that
-/// show the scene. Returns an empty text if one of them may see something.
+/// Returns a sentence if no camera sees anything of the scene in pictures of this size; `options` suggest options that
+/// would show the scene. Returns an empty text if a camera may see something.
 std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size);
-/// Returns a sentence if the camera is the file's, unchanged, and shows the model small; else an empty text.
+/// Returns a sentence if the camera is the file's unchanged camera and shows the model small; otherwise an empty text.
 std::string describe_small_model(const Scene& scene, const ViewOptions& options, const View& view);
-/// Warns with that sentence.
+/// Warns with the sentence of describe_empty_pictures(), if there is one.
 void warn_of_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size,
                             const Messages& console);
 

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMaxTime = 1e9;
-/// Angles closer to 0 or 180 degrees show nothing with radians in fp32.
+/// The smallest distance of a field of view from 0 and 180 degrees. With a smaller one, fp32 radians show nothing.
 constexpr double kMinFovDeg = 1e-5;
 constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 const char* const kWriteAnew = "record the path again or correct the file";
@@ -54,7 +54,7 @@ dvec3 read_place(const json& v) {
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
-/// Refuses a frame without exactly one direction of view of its version.
+/// Refuses a frame that does not have exactly one of its version's directions of view.
 void check_look(const json& frame, int version, const std::string& place, LoadReport& report) {
   if (version == 1) {
     if (!frame.contains("look")) report.refuse("path.frame.wrong", "\"look\" is missing", place, kWriteAnew);
@@ -98,7 +98,7 @@ std::string write_vector(const vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x, v.y, v.z);
 }
 
-/// A position far from the origin needs more digits: as many as reproduce it.
+/// Returns the eye as text. A position far from the origin needs more digits: as many as reproduce it.
 std::string write_eye(const TimedCamera& frame) {
   if (frame.rest == dvec3(0.0)) return write_vector(frame.camera.eye);
   const dvec3 eye = frame.eye();
@@ -107,7 +107,7 @@ std::string write_eye(const TimedCamera& frame) {
 
 std::string write_frame(const TimedCamera& frame) {
   const Camera& camera = frame.camera;
-  // Nine digits of degrees also tell any two floats in radians apart.
+  // Nine digits of degrees distinguish any two floats in radians, too.
   const std::string projection =
       camera.projection == Projection::kPerspective
           ? fmt::format("\"fov_deg\": {:.9g}", glm::degrees(static_cast<double>(camera.yfov)))
@@ -116,14 +116,14 @@ std::string write_frame(const TimedCamera& frame) {
                      write_eye(frame), write_vector(camera.look), write_vector(camera.up), projection, camera.near);
 }
 
-/// FreeCamera's Q.
+/// Returns the rotation of a camera: the Q of FreeCamera.
 glm::dquat rotation_of(const Camera& camera) {
   return glm::normalize(glm::dquat(FreeCamera(camera).rotation()));
 }
 
-/// `share` is in (0, 1).
+/// Returns a camera between two cameras. `share` is in (0, 1).
 Camera interpolate(const Camera& from, const Camera& to, double share) {
-  // A camera that rests keeps its bits.
+  // A camera that does not move keeps its bits.
   if (shows_same(from, to)) return from;
   const auto mix = [&](const auto& a, const auto& b) { return a + share * (b - a); };
   const auto mix_real = [&](float a, float b) { return static_cast<float>(mix(double{a}, double{b})); };
@@ -202,7 +202,8 @@ Camera camera_at(const CameraPath& path, double time_s) {
 PathPictures::PathPictures(CameraPath path, std::optional<double> fps)
     : path_(std::move(path)), fps_(fps.value_or(path_.fps.value_or(kStored))), count_(path_.frames.size()) {
   if (fps_ == kStored) return;
-  // The last frame's time may be slightly before its picture's: 0.3 s at 10 per second.
+  // Tolerance for the number of pictures: rounding may put the last frame's time slightly before its picture's time,
+  // for example 0.3 s at 10 pictures per second.
   constexpr double kRounding = 1e-6;
   const double count = std::floor(path_.frames.back().time_s * fps_ + kRounding) + 1.0;
   if (count > static_cast<double>(kMaxCount)) {

@@ -15,7 +15,7 @@ namespace promin::work {
 
 /// One of the pictures that a command renders.
 struct PlannedFrame {
-  /// The index on a camera path; nullopt for the scene's cameras or the user's pose.
+  /// Index of the picture on a camera path; nullopt for the scene's cameras or the user's pose.
   std::optional<uint32_t> number;
   std::optional<Camera> camera;
   std::vector<std::filesystem::path> pictures;
@@ -23,8 +23,8 @@ struct PlannedFrame {
   std::shared_ptr<const PathPictures> path = nullptr;
 };
 
-/// Returns the requested frames: one, or those of the path. Throws InputError for a bad path, and UsageError for frames
-/// that it does not have or if several frames would be written to one file.
+/// Returns the frames that the options request: one frame, or frames of the path. Throws InputError for an invalid
+/// path. Throws UsageError if the path does not have a frame, or if several frames would be written to one file.
 std::vector<PlannedFrame> plan_frames(const RenderSpec& options);
 
 /// Sets the cameras of a path's frames for a scene with this center (Scene::center).

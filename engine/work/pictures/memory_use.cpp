@@ -14,7 +14,7 @@
 namespace promin::work {
 
 std::string describe_memory() {
-  // Pages: the size of the address space, then what is resident (proc_pid_statm(5)).
+  // The file has numbers of pages: first the address space, then the resident memory (proc_pid_statm(5)).
   std::ifstream statm("/proc/self/statm");
   double total_pages = 0.0;
   double resident_pages = 0.0;
@@ -25,7 +25,7 @@ std::string describe_memory() {
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  // In units of 1024 bytes.
+  // ru_maxrss is in units of 1024 bytes.
   return 1.024e-3 * static_cast<double>(usage.ru_maxrss);
 }
 

@@ -8,17 +8,17 @@
 
 namespace promin::work {
 
-/// Receives the sentences that work reports beside its results. This class ignores them, as Python does; a program
-/// prints them.
+/// Receives sentences that work reports in addition to its results. This class ignores them, as the Python module does;
+/// a program's class prints them.
 class Messages {
  public:
   virtual ~Messages() = default;
 
-  /// A note about an assumption that neither the scene nor the user has specified.
+  /// Receives a note about an assumption that neither the scene nor the user has made explicit.
   virtual void note(const std::string& /*text*/) const {}
   virtual void warn(const std::string& /*text*/) const {}
   virtual void warn(const Problem& /*problem*/) const {}
-  /// A line about a step, for users who want to see each.
+  /// Receives a line about a step, for users who want to see every step.
   virtual void detail(const std::string& /*text*/) const {}
 };
 

@@ -13,14 +13,15 @@
 namespace promin::work {
 namespace {
 
-/// The largest size of a band's values, of which a few copies exist at a time.
+/// The largest size of a band's values in bytes. A few copies of them exist at a time.
 constexpr size_t kBandBytes = size_t{12} << 20;
-/// The rows of a band are a multiple of an EXR's compression block, unless such a block is larger than that size.
+/// The number of rows of a band is a multiple of this, the size of an EXR's compression block, unless such a block
+/// exceeds kBandBytes.
 constexpr uint32_t kRowsOfBlock = 16;
-/// The number of rows in which films are traced.
+/// The number of rows that a film traces at least.
 constexpr uint32_t kLeastRows = 8;
 
-// Returns an AOV's channels, by the type of its values, which are moved away.
+// Returns an AOV's channels. The overloads differ in the type of its values, which are moved.
 
 void add_channels(const std::string& name, std::string_view /*components*/, std::vector<uint32_t> values,
                   std::vector<Channel>& channels) {
@@ -101,10 +102,10 @@ void PictureFiles::write_rows(Image rows, std::vector<Channel> channels) {
   wait();
   rows_ = std::move(rows);
   channels_ = std::move(channels);
-  // If no thread can be started, it runs when its result is awaited.
+  // If no thread can be started, the function runs when its result is awaited.
   writing_ = std::async([this] {
     for (PictureWriter& writer : writers_) writer.write_rows(rows_, channels_);
-    // The next band takes as much.
+    // The rows are freed, because the next band needs the same amount of memory.
     rows_ = {};
     channels_ = {};
   });

@@ -15,11 +15,12 @@
 
 namespace promin::work {
 
-/// Returns the channels of an EXR for a choice of AOVs, with their values. With `hides_unlit` those of Aovs::unlit are
-/// hidden. AOVs and channels of a wide picture take much memory, so each AOV is freed when its channels are made.
+/// Returns the channels of an EXR for a choice of AOVs, with their values. With `hides_unlit`, the channels of
+/// Aovs::unlit are hidden. AOVs and channels of a wide picture take much memory, so each AOV is freed when its channels
+/// are made.
 std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit);
 
-/// Channels and metadata of an EXR's header for these AOVs, without values.
+/// Channels and metadata for the header of an EXR with these AOVs. The channels have no values.
 struct AovHeader {
   std::vector<Channel> channels;
   Metadata metadata;
@@ -30,19 +31,19 @@ AovHeader describe_aovs(const Scene& scene, const AovSet& choice, bool hides_unl
 /// of four-byte values of a pixel.
 std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_count);
 
-/// The files of one picture, written band by band while the next band is traced. Without commit() nothing remains.
+/// The files of one picture. A band is written while the next band is traced. Without commit() no file remains.
 class PictureFiles {
  public:
-  /// Throws as write_image.
+  /// Throws the same errors as write_image().
   PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header);
   ~PictureFiles();
   PictureFiles(const PictureFiles&) = delete;
   PictureFiles& operator=(const PictureFiles&) = delete;
 
-  /// Adds the next rows. Returns before they are written, and throws exceptions from writing earlier rows.
+  /// Adds the next rows. Returns before they are written. Throws exceptions from writing earlier rows.
   void write_rows(Image rows, std::vector<Channel> channels);
   void commit();
-  /// Waits until all rows are written and their memory is free; throws exceptions from writing them.
+  /// Waits until all rows are written and their memory is free. Throws exceptions from writing them.
   void wait();
 
  private:

@@ -48,16 +48,16 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
   AssumedLight assumed = light_up(scene, view.look, surroundings);
-  if (options.aovs.alpha) assumed.has_background = false;  // no picture shows it
+  if (options.aovs.alpha) assumed.has_background = false;  // With alpha, no picture shows a background.
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
-  // With errors measured as displayed it affects the bits of an EXR, too.
+  // If errors are measured as displayed, the display also affects the bits of an EXR.
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||
                             (stats.view->error_target && stats.view->error_target->display);
   const std::string assumptions =
       describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
   if (!assumptions.empty()) console.note(assumptions);
-  // A job's pieces may be displayed later.
+  // The pieces of a job may be displayed later, so they keep this AOV.
   const bool keeps_unlit =
       (is_displayed || options.job.folder) && shows_unlit_apart(scene, scene.environment, view.look, stats.display);
   run.options.hides_unlit = keeps_unlit && !options.aovs.unlit;
@@ -82,11 +82,11 @@ TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t e
   choose_tree(options.tracing, result);
   result.texture_bytes = uint64_t{options.view.look.texture_memory_mib} << 20;
   if (options.has_all_features) result.more_features = all_features();
-  // A time limit begins with a picture of one sample a pixel.
+  // A run with a time limit begins with a picture of one sample per pixel.
   result.has_error_target = options.error.target && !options.error.time_limit_s;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
   result.aovs = options.aovs;
-  // The average only uses pixels with a hit.
+  // The average exposure only uses pixels with a hit, so it needs this AOV.
   if (options.view.look.averages_exposure) result.aovs.object = true;
   return result;
 }

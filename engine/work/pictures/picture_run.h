@@ -23,22 +23,22 @@
 
 namespace promin::work {
 
-// The steps of rendering that a single run and a job have in common.
+// Steps of rendering that a single run and a job have in common.
 
-/// Pictures ready to be traced: all inputs are read, but no device is open.
+/// Pictures that are ready to be traced. All inputs are read, but no device is open.
 struct PictureRun {
-  /// The options, with Aovs::unlit if displaying the pictures needs it.
+  /// The options. They include Aovs::unlit if the display of the pictures needs it.
   RenderSpec options;
   std::vector<PlannedFrame> frames;
-  /// Lit and framed.
+  /// The scene with its lights and its cameras.
   Scene scene;
   std::vector<SourceFile> sources;
-  /// Includes the view of all frames, except their cameras, and the display transform.
+  /// The statistics so far. They include the display transform and the view of all frames without their cameras.
   RunStats stats;
 };
 
-/// Loads the scene of checked options and decides open settings, with notes. Throws InputError, and UsageError for
-/// references to things that the scene lacks.
+/// Loads the scene of checked options and chooses open settings, with notes. Throws InputError. Throws UsageError if
+/// the options refer to something that the scene does not have.
 PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console);
 
 /// Returns the number of samples of all pictures together.
@@ -55,10 +55,10 @@ struct TracedFrame {
 TracedFrame trace(Renderer& renderer, const View& view, const RenderSpec& options, const std::optional<double>& limit_s,
                   const std::function<bool(double)>& on_progress);
 
-/// Returns the metadata, without times, so that equal pictures give equal files.
+/// Returns the metadata of a picture. They have no times, so that equal pictures give equal files.
 Metadata make_metadata(const RunStats& stats, const std::optional<uint32_t>& frame, const AovHeader& aovs);
 
-/// Returns the rendered window of the whole picture.
+/// Returns the rendered window of the whole picture: the crop, or the whole picture.
 PixelWindow window_of(const View& view);
 
 }  // namespace promin::work

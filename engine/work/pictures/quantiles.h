@@ -15,7 +15,8 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// Returns the smallest value that this fraction of the values, 0...1, does not exceed; 0 without values.
+/// Returns the smallest value that at least the fraction `share` (0...1) of the values does not exceed; 0 without
+/// values.
 inline double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

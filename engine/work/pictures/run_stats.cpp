@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Metadata of pictures with an error target: the mean number of samples, and the others' beginning.
+/// Names of the metadata of pictures with an error target: the mean number of samples, and the prefix of the other
+/// names.
 constexpr std::string_view kSamplesEntry = "promin:spp";
 constexpr std::string_view kErrorEntries = "promin:error_";
 

@@ -23,39 +23,39 @@ struct RunStats {
   size_t object_count = 0;
   size_t material_count = 0;
   size_t light_count = 0;
-  /// Only set for pictures.
+  /// The view; only set for pictures.
   std::optional<View> view;
   /// The display transform for 8-bit files.
   DisplayTransform display;
   SetupStats setup;
   RayCounts rays;
-  /// The accuracy of pictures with an error target: of each frame, or of the single picture.
+  /// The accuracies of pictures with an error target: one for each frame, or one for the single picture.
   std::vector<PictureError> errors;
-  /// The numbers of a camera path's frames; the rays are then those of all frames.
+  /// The numbers of the frames of a camera path. `rays` then counts the rays of all frames.
   std::vector<uint32_t> frames;
-  /// The time of each repetition; for a path, the median of each frame.
+  /// The time of each repetition in milliseconds; for a path, the median time of each frame.
   std::vector<double> trace_ms;
   double load_ms = 0.0;
   double write_ms = 0.0;
   double total_ms = 0.0;
 
-  /// Returns the median.
+  /// Returns the median of the times of tracing, in milliseconds.
   double median_trace_ms() const;
-  /// Returns all rays divided by the median trace time, or by the time of all frames; 0 if that was too short to
-  /// measure.
+  /// Returns the number of all rays divided by the median trace time, or by the time of all frames, in millions per
+  /// second; 0 if the time is too short to measure.
   double mrays_per_s() const;
 };
 
 /// Returns the mean number of samples per pixel of a picture with an error target.
 double mean_samples(const View& view, const PictureError& error);
 
-/// Sets the metadata of a picture with an error target and this number of pixels: replaces existing entries, or appends
-/// them.
+/// Sets the metadata of a picture with an error target and this number of pixels. Existing entries are replaced, and
+/// missing entries are added.
 void put_error(Metadata& metadata, const PictureError& error, uint64_t pixel_count);
-/// Returns whether put_error sets an entry of this name.
+/// Returns whether put_error() sets an entry of this name.
 bool is_error_metadata(std::string_view name);
 
-/// The metadata of a picture that names the version of the program.
+/// The name of the metadata entry with the version of the program.
 inline constexpr std::string_view kVersionEntry = "promin:version";
 
 /// Returns the metadata of an EXR about the run's view.

@@ -11,7 +11,8 @@
 
 namespace promin::work {
 
-/// Names of the kinds of objects in the plural: not drawn, or the alternatives of Geometry in their order.
+/// Names of the kinds of objects, in the plural: first objects that are not drawn, then the alternatives of Geometry in
+/// their order.
 inline constexpr auto kObjectNames = [] {
   std::array<std::string_view, 1 + std::variant_size_v<Geometry>> names{"not_drawn"};
   for (size_t i = 1; i < names.size(); ++i) names[i] = kGeometryNames[i - 1];
@@ -24,7 +25,7 @@ struct SceneCounts {
   std::array<uint64_t, kObjectNames.size()> objects{};
   uint64_t primitives = 0;
   uint64_t triangles = 0;
-  /// The size of vertices, triangles and shapes in the host's memory.
+  /// The size in bytes of vertices, triangles and shapes in the host's memory.
   uint64_t geometry_bytes = 0;
 };
 

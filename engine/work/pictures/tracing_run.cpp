@@ -19,7 +19,7 @@ namespace promin::work {
 void choose_threads(const TracingOptions& options) {
   if (!options.threads) return;
   limit_threads(*options.threads);
-  // Drivers read it when they start.
+  // Drivers read this variable when they start.
   setenv("LP_NUM_THREADS", std::to_string(*options.threads).c_str(), 1);
 }
 

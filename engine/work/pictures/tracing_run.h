@@ -11,18 +11,19 @@
 
 namespace promin::work {
 
-// The steps of every command that traces a scene. Each reports to the console and stores its times in the stats.
+// The steps of commands that trace a scene. Each step reports to the console and stores its times in the stats.
 
 /// Sets the number of threads of the program and of a CPU device from the options.
 void choose_threads(const TracingOptions& options);
 
-/// Reports the scene's files as load_scene does. Throws InputError.
+/// Loads the scene and reports its files. Throws InputError.
 Scene load_for(const TracingOptions& options, RunStats& stats, const Messages& console,
                std::vector<SourceFile>& sources);
-/// Returns the scene's files for check_overwrites, which before loading knows only the scene's main file.
+/// Returns the names of the scene's files for check_overwrites(), which knows only the main file before the scene is
+/// loaded.
 std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sources);
 
-/// Throws DeviceError.
+/// Opens the device of the options. Throws DeviceError.
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Messages& console);
 
 /// Stores the cost of setting up the scene.
@@ -31,7 +32,7 @@ void take_setup(const SetupStats& setup, RunStats& stats, const Messages& consol
 /// Reports the times of tracing and writing and the memory use, after stats.total_ms is set.
 void tell_end(const RunStats& stats, const Messages& console);
 
-/// Throws RunError if the validation layers have reported anything, so that nothing is written.
+/// Throws RunError if the validation layers have reported anything. No file is then written.
 void check_validation(const gpu::Device& device, const RunStats& stats);
 
 }  // namespace promin::work

@@ -18,13 +18,13 @@ namespace {
 
 constexpr uint32_t kDefaultHeight = 720;
 
-/// Returns the requested aspect ratio of the picture, as far as it is known.
+/// Returns the aspect ratio of the picture that the options request, as far as it is known.
 float aspect_ratio_of(const ViewOptions& options) {
   const uvec2 size = options.size.value_or(uvec2(0));
   return size.x > 0 && size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : kDefaultAspectRatio;
 }
 
-/// Returns the size with the missing side computed from the aspect ratio of the camera's default size.
+/// Returns the size with a missing side computed from the aspect ratio of the camera's default size.
 std::optional<uvec2> complete_size(const uvec2& sides, const std::optional<uvec2>& usual) {
   if (sides.x > 0 && sides.y > 0) return sides;
   if (!usual) return {};
@@ -93,7 +93,7 @@ void show_background(const BackgroundChoice& background, Environment& environmen
   environment.shows_sky = background.is_environment && environment.has_sky();
   environment.backdrop.reset();
   if (background.is_environment) {
-    // Without a sky the environment of the scene is its ambient light.
+    // If the scene has no sky, its environment is the ambient light.
     environment.background = environment.ambient;
   } else if (background.is_linear) {
     environment.background = background.color;

@@ -19,14 +19,14 @@
 namespace promin::work {
 namespace {
 
-/// An option, or a group that counts as one, with its name and whether it is given.
+/// An option, or a group of options that counts as one: whether it is given, and its name.
 using Given = std::pair<bool, std::string_view>;
 
 void refuse_if(ProblemCode code, bool holds, const std::string& what, const std::string& cure) {
   if (holds) throw UsageError({code, what, "", cure});
 }
 
-/// Refuses the first of the others that is given beside `name`.
+/// Refuses the first of the other options that is given in addition to `name`.
 void refuse_beside(std::string_view name, std::initializer_list<Given> others,
                    const std::string& cure = "remove one of them") {
   for (const auto& [is_given, other] : others) {
@@ -134,7 +134,7 @@ void check_target(const RenderSpec& options) {
   refuse_beside(name, {{view.samples_per_pixel.has_value(), "--spp"}},
                 "remove one of them; --min-spp and --max-spp limit the samples of --target-error");
   refuse_beside(name, {{is_debug, "--shading"}});
-  // Each repetition could reach another target, and so another picture.
+  // Each repetition could reach another target, and its picture would then differ.
   if (error.time_limit_s) refuse_beside("--time-limit", {{options.tracing.repeat_count > 1, "--repeat"}});
   refuse_if("usage.options.contradict", error.space == ErrorSpace::kDisplay && averages,
             "--error-in display and --exposure average contradict each other, because the average is known only after "
@@ -143,7 +143,7 @@ void check_target(const RenderSpec& options) {
   check_error_target(*error.error_target());
 }
 
-/// Refuses options that need an error target, or light.
+/// Refuses options that need an error target or light if the picture has none.
 void check_fixed_samples(const RenderSpec& options) {
   const ErrorOptions& error = options.error;
   const bool is_debug = shades_for_debugging(options);
@@ -225,7 +225,7 @@ void check_alpha(const RenderSpec& options) {
             "a .hdr cannot store the channel of --alpha", "write a .png or .exr");
 }
 
-/// Refuses options that only affect a PNG.
+/// Throws UsageError if options for a PNG are given without a PNG.
 void check_dither(const RenderSpec& options) {
   const ViewOptions& view = options.view;
   const auto& pictures = options.pictures;
@@ -237,7 +237,7 @@ void check_dither(const RenderSpec& options) {
 
 }  // namespace
 
-// The order is that of reporting.
+// The checks have the order in which contradictions are reported.
 void check_render_spec(const RenderSpec& options) {
   check_tracing_options(options.tracing);
   check_pose_options(options.view.pose, options.view.camera.has_value());

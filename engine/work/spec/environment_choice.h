@@ -12,39 +12,39 @@
 
 namespace promin::work {
 
-/// Ranges of the options.
+/// Ranges of the options' values.
 inline constexpr double kMaxRotationDeg = 3600.0;
 inline constexpr double kMaxIntensity = 1e15;
 
-/// The user's changes of a scene's environment.
+/// The changes of a scene's environment that the user requests.
 struct EnvironmentOptions {
   /// A panorama that replaces the scene's sky.
   std::optional<std::filesystem::path> panorama;
   /// Rotation of the sky about +Y, in degrees.
   double rotation_deg = 0.0;
-  /// Factor of the sky's radiance.
+  /// Factor by which the sky's radiance is multiplied.
   double intensity = 1.0;
   /// Rotation of the sky and of all lights without a position about +Y, in degrees.
   double light_rotation_deg = 0.0;
 };
 
-/// Rotates a sky, and lights that shine in one direction of the world, about +Y from +Z towards +X. An angle of 0
+/// Rotates a sky and the lights that shine in one direction of the world about +Y, from +Z towards +X. An angle of 0
 /// changes no bit.
 void turn_light(double degrees, Environment& environment, std::span<Light> lights);
 
-/// The options with the panorama already read, once for any number of scenes.
+/// The options with the panorama, which is read once for any number of scenes.
 class EnvironmentChoice {
  public:
   EnvironmentChoice() = default;
-  /// Reads the panorama. Throws InputError if it is not one.
+  /// Reads the panorama. Throws InputError if the file is not a panorama.
   explicit EnvironmentChoice(const EnvironmentOptions& options);
 
-  /// Returns warnings about the panorama.
+  /// Returns the warnings about the panorama.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// Replaces the scene's sky by the panorama. Call it before a default sky is added.
+  /// Replaces the scene's sky by the panorama, if one is given. Call it before a default sky is added.
   void replace_sky(Scene& scene) const;
-  /// Rotates the scene's sky and applies the factor; then rotates its light.
+  /// Rotates the scene's sky and multiplies its radiance by the factor, then rotates the lights.
   void adjust_sky(Scene& scene) const;
 
  private:

@@ -76,9 +76,10 @@ std::string describe_unmet(const PictureError& error) {
 
 namespace {
 
-/// Samples of `best` for pictures without an error target: with a debug shading or --exposure average.
+/// Number of samples of the quality `best` for pictures without an error target: pictures with a debug shading or
+/// --exposure average.
 constexpr uint32_t kBestSamples = 128;
-/// The error of `best`: one code of 8 bits in the shown colours.
+/// Target error of the quality `best`: one 8-bit code of the displayed colours.
 constexpr float kBestError = 1.0F / 256.0F;
 
 }  // namespace

@@ -19,17 +19,17 @@
 
 namespace promin::work {
 
-// Ranges of members, for options and JSON alike.
+// Ranges of members, for both options and JSON.
 
 inline constexpr uint32_t kMaxFrame = 9999999;
 inline constexpr double kMaxBackground = 1e9;
-/// Larger values would exceed the range of floats.
+/// The largest exposure in stops. With larger values, floats would overflow.
 inline constexpr double kMaxExposureEv = 64.0;
 inline constexpr uint32_t kMaxTextureMib = 8192;
-/// Seconds.
+/// The smallest time limit in seconds.
 inline constexpr double kMinTimeLimit = 1e-3;
 inline constexpr double kMaxTimeLimit = 1e6;
-/// Angles of 0 and 180 degrees show nothing.
+/// The smallest and the largest field of view in degrees. Angles of 0 and 180 degrees show nothing.
 inline constexpr double kMinFovDeg = 1e-3;
 inline constexpr double kMaxFovDeg = 180.0 - kMinFovDeg;
 inline constexpr double kMaxTurnDeg = 3600.0;
@@ -38,9 +38,10 @@ inline constexpr double kMaxZoom = 1e3;
 
 /// The background that camera rays see.
 struct BackgroundChoice {
-  /// Whether they see the environment; else the colour.
+  /// True if camera rays see the environment; otherwise they see the colour.
   bool is_environment = false;
-  /// Whether the colour is linear light, which is exposed and tone mapped; else it is displayed sRGB, 0 to 1.
+  /// True if the colour is linear light, which is exposed and tone mapped. Otherwise it is sRGB, 0 to 1, which is
+  /// displayed unchanged.
   bool is_linear = false;
   vec3 color{0.0F};
 
@@ -51,32 +52,32 @@ struct BackgroundChoice {
 struct LookOptions {
   LightChoice light = LightChoice::kAuto;
   std::optional<BackgroundChoice> background = std::nullopt;
-  /// Exposure in stops.
+  /// Exposure in stops; empty if it is chosen automatically.
   std::optional<float> exposure_ev = std::nullopt;
-  /// Whether the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
+  /// True if the exposure is computed from the picture (average_exposure_ev); `exposure_ev` is then empty.
   bool averages_exposure = false;
   std::optional<ToneMapping> tone_mapping = std::nullopt;
   bool dithers = false;
-  /// RendererOptions::texture_bytes in MiB.
+  /// The value of RendererOptions::texture_bytes, in MiB.
   uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
 };
 
 /// The user's choices of a camera's position, directions and lens. Positions are in the world. Directions need not be
 /// unit vectors.
 struct PoseOptions {
-  /// The side from which to frame the scene, even if it has cameras.
+  /// The side from which the scene is framed, even if the scene has cameras.
   std::optional<Framing> from = std::nullopt;
-  /// The part of the picture that a framed scene covers.
+  /// The fraction of the picture that a framed scene covers.
   std::optional<float> fit = std::nullopt;
   std::optional<dvec3> eye = std::nullopt;
-  /// At most one of these two.
+  /// At most one of the next two members may be set.
   std::optional<dvec3> look_at = std::nullopt;
   std::optional<dvec3> direction = std::nullopt;
   std::optional<dvec3> up = std::nullopt;
   Orbit orbit = {};
-  /// Magnifies the picture around its middle.
+  /// Factor by which the picture is magnified around its middle.
   double zoom = 1.0;
-  /// The vertical field of view, degrees in (0, 180).
+  /// The vertical field of view in degrees, in (0, 180).
   std::optional<double> fov_deg = std::nullopt;
   std::optional<double> near = std::nullopt;
 
@@ -86,10 +87,10 @@ struct PoseOptions {
 
 /// The user's choices of the view, from which make_view (view_setup.h) makes a View.
 struct ViewOptions {
-  /// Size in pixels; a side of 0 follows from the camera's aspect ratio.
+  /// Size in pixels; a side of 0 is computed from the camera's aspect ratio.
   std::optional<uvec2> size;
   std::optional<PixelWindow> crop;
-  /// Samples per pixel; the default of View if empty.
+  /// Samples per pixel; if empty, the default of View.
   std::optional<uint32_t> samples_per_pixel = std::nullopt;
   PixelFilter filter = PixelFilter::kBox;
   /// @cond
@@ -102,9 +103,9 @@ struct ViewOptions {
   LookOptions look;
   /// Indices of the scene's lights to switch off.
   std::vector<uint32_t> lights_off;
-  /// The name or number of a camera.
+  /// The name or number of a camera of the scene.
   std::optional<std::string> camera;
-  /// Whether to frame the scene, and ignore its cameras unless one is named.
+  /// True if a camera frames the scene. The scene's cameras are then ignored, unless one is named.
   bool frames_scene = false;
   /// A camera that replaces those of the scene.
   std::optional<Camera> given_camera;
@@ -112,34 +113,34 @@ struct ViewOptions {
   EnvironmentOptions environment;
 };
 
-/// A range of frame numbers from 0, both included.
+/// A range of frame numbers, counted from 0; both ends are included.
 struct FrameRange {
   uint32_t first = 0;
   uint32_t last = 0;
 };
 
-/// The default number of samples per pixel. Eight remove the stairs at edges and the noise of small mirrors, and cost
-/// about a second of two cores more at 640x480.
+/// The default number of samples per pixel. Eight samples remove the stairs at edges and the noise of small mirrors.
+/// They cost about one additional second on two cores at 640x480.
 inline constexpr uint32_t kDefaultSamples = 8;
 
-/// How good a picture is, for people who do not count samples.
+/// The quality of a picture, for people who do not want to choose a number of samples.
 enum class Quality : uint32_t { kDraft, kNormal, kHigh, kBest };
 
-/// Returns display names, indexed by Quality.
+/// Returns the names to display, indexed by Quality.
 std::span<const std::string_view> quality_names();
-/// The samples of Quality::kHigh.
+/// The number of samples of Quality::kHigh.
 inline constexpr uint32_t kHighSamples = 32;
 
-/// The space in which errors are measured: linear light, or as displayed.
+/// The space in which errors are measured: in linear light, or as displayed.
 enum class ErrorSpace : uint32_t { kLinear, kDisplay };
 
-/// Returns display names, indexed by ErrorSpace.
+/// Returns the names to display, indexed by ErrorSpace.
 std::span<const std::string_view> error_space_names();
 
-/// Returns the smallest target error as the text of a fraction.
+/// Returns the smallest target error as a text with a fraction.
 std::string least_error();
 
-/// The user's choices of accuracy. Open choices follow from the others.
+/// The user's choices of accuracy. Choices that the user leaves open are computed from the others.
 struct ErrorOptions {
   std::optional<float> target;
   /// Time limit in seconds.
@@ -152,7 +153,8 @@ struct ErrorOptions {
   bool is_given() const { return target || time_limit_s; }
   /// Returns the error target; empty for a fixed number of samples.
   std::optional<ErrorTarget> error_target() const;
-  /// Returns the error target, with this error if none is given. The display transform is not set yet (fit_to_display).
+  /// Returns the error target; if no error is given, it has this error. The display transform is not set yet
+  /// (fit_to_display).
   ErrorTarget target_or(float error) const;
 };
 
@@ -160,48 +162,49 @@ struct ErrorOptions {
 /// displayed, the transform.
 void fit_to_display(ErrorTarget& target, const DisplayTransform& display);
 
-/// Returns the options that give exactly this target.
+/// Returns the options that have exactly this target as their result.
 std::string describe_options(const ErrorTarget& target);
-/// Returns "error 0.015625", "error 0.015625 to 0.125" or one of these with " as shown": the errors reached, measured
-/// as for the target.
+/// Returns a text about the errors that were reached, in the measure of the target: "error 0.015625", "error 0.015625
+/// to 0.125", or one of these with " as shown".
 std::string describe_errors(float least, float most, const ErrorTarget& target);
 
-/// Returns " but for 750 pixels of at most 0.0161" for pixels that have missed a target; empty if there are none.
+/// Returns a text about pixels that have missed a target, such as " but for 750 pixels of at most 0.0161"; empty if
+/// there are none.
 std::string describe_unmet(const PictureError& error);
 
-/// The pictures that are requested of a scene. spec_json.h reads and writes it as JSON.
+/// A specification of pictures of a scene. spec_json.h reads and writes it as JSON.
 struct RenderSpec {
   TracingOptions tracing;
-  /// If the user names none, those of name_pictures.
+  /// The files of the pictures. If the user names none, name_pictures() determines them.
   std::vector<std::filesystem::path> pictures;
-  /// Whether to skip frames whose pictures exist.
+  /// True if frames whose pictures exist are skipped.
   bool skips_existing = false;
   ViewOptions view;
   std::optional<Quality> quality;
   ErrorOptions error;
   JobOptions job;
-  /// Further channels of an EXR in addition to R, G and B.
+  /// Channels of an EXR in addition to R, G and B.
   AovSet aovs;
-  /// Whether AovSet::unlit is only needed to display the pictures, which is known when the scene is read.
+  /// True if AovSet::unlit is only needed to display the pictures. This is known after the scene is read.
   bool hides_unlit = false;
   ExrOptions exr;
-  /// Whether the user has chosen the compression of EXRs, even if it is the default.
+  /// True if the user has chosen the compression of EXRs, even if it is the default.
   bool names_compression = false;
-  /// A camera path, and the frames to render; without `frames` all.
+  /// A camera path, and the frames to render; if `frames` is empty, all frames.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
-  /// The rate of pictures, as for PathPictures.
+  /// The number of pictures per second, in the form that PathPictures takes.
   std::optional<double> fps;
-  /// A pixel to explain in place of writing a picture.
+  /// A pixel to explain. No picture is written then.
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 };
 
-/// Sets samples or an error target from the quality.
+/// Sets the number of samples or the error target of the quality.
 void apply_quality(RenderSpec& options);
 
-/// Returns the pictures that a command writes: those named or, if none is and no pixel is explained, the scene's name
-/// with .exr and .png in the current folder, with #### for frames of a path.
+/// Returns the pictures that a command writes: the named ones. If none is named and no pixel is explained, they have
+/// the scene's name with .exr and .png in the current folder, with #### for frames of a path.
 std::vector<std::filesystem::path> name_pictures(const RenderSpec& options);
 
 }  // namespace promin::work

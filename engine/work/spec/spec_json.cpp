@@ -38,9 +38,9 @@ using Json = nlohmann::ordered_json;
 /// The version of the format.
 constexpr int kFormat = 1;
 
-// Values of members: how they are read and written. A reader throws WrongValue.
+// Functions that read and write values of members. A reader throws WrongValue.
 
-/// A refused value, as the end of a sentence about its member: "takes true or false, not 1".
+/// Thrown if a value is refused. The text is the end of a sentence about the member: "takes true or false, not 1".
 struct WrongValue {
   std::string what;
 };
@@ -59,12 +59,13 @@ Json write_number(Number value) {
   return Json::parse(fmt::format("{}", value));
 }
 
-/// The range applies to the number as it is stored, because the fewest digits of a float represent another double.
+/// Reads a number in a range. The range applies to the number as stored, because the shortest digits of a float
+/// represent another number in double.
 template <typename Number = double>
 Number read_real(const Json& json, Number min, Number max) {
   const double value = json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
   const auto stored = static_cast<Number>(value);
-  // Written so that a NaN is refused.
+  // The comparison is written so that a NaN is refused.
   if (!(stored >= min && stored <= max)) refuse_value(fmt::format("a number from {:g} to {:g}", min, max), json);
   return stored;
 }
@@ -82,7 +83,7 @@ const Json& read_array(const Json& json, size_t size, const std::string& takes) 
   return json;
 }
 
-/// Numbers in a range; the member's type says of which kind.
+/// Reads and writes numbers in a range. The member's type determines the kind of number.
 template <typename Number>
 struct NumberIn {
   Number min;
@@ -114,13 +115,13 @@ struct Text {
   }
 };
 
-/// The name of a file. read_member and write_fields change it to and from absolute paths.
+/// Reads and writes the name of a file. read_member() and write_fields() convert it to and from absolute paths.
 struct Path {
   Json write(const fs::path& value) const { return value.string(); }
   fs::path read(const Json& json) const { return Text().read(json); }
 };
 
-/// One file or a list of them.
+/// Reads and writes one file or a list of files.
 struct Paths {
   Json write(const std::vector<fs::path>& values) const {
     Json json = Json::array();
@@ -135,7 +136,7 @@ struct Paths {
   }
 };
 
-/// One of some names, the first `hidden` of which are not for users.
+/// Reads and writes one of some names. The first `hidden` names are not for users.
 template <typename Enum>
 struct NameOf {
   std::span<const std::string_view> names;
@@ -159,7 +160,7 @@ struct Vector {
   }
 };
 
-/// A pair of whole numbers.
+/// Reads and writes a pair of whole numbers.
 struct Pair {
   uint32_t min;
   uint32_t max;
@@ -201,7 +202,7 @@ struct Frames {
   }
 };
 
-/// A rate, or the word for the frames that a path stores.
+/// Reads and writes a rate, or the word for the frames that a path stores.
 struct Fps {
   static constexpr const char* kWord = "stored";
 
@@ -221,7 +222,7 @@ struct PowerOfTwo {
   }
 };
 
-/// Numbers of lights, each once and in ascending order.
+/// Reads and writes numbers of lights. Each occurs once, and they are in ascending order.
 struct Indices {
   Json write(const std::vector<uint32_t>& value) const { return value; }
   std::vector<uint32_t> read(const Json& json) const {
@@ -234,7 +235,8 @@ struct Indices {
   }
 };
 
-/// "environment", a displayed colour as a word or as three numbers, or linear light as {"linear": [R, G, B]}.
+/// Reads and writes a background: "environment", a displayed colour as a word or as three numbers, or linear light as
+/// {"linear": [R, G, B]}.
 struct Background {
   static constexpr const char* kEnvironment = "environment";
   static constexpr const char* kLinear = "linear";
@@ -264,17 +266,17 @@ struct Background {
   }
 };
 
-// The table.
+// The table of members follows.
 
-/// The treatment of a member by jobs and command lines.
+/// Properties of a member that matter for jobs and command lines.
 struct Traits {
-  /// A value that is equivalent to leaving the member out.
+  /// A value that has the same effect as leaving the member out.
   Json usual = {};
   bool affects_bits = true;
   bool is_file = false;
-  /// False for members that are chosen when pieces are merged.
+  /// True if pieces depend on the member; false for members that are chosen when pieces are merged.
   bool is_of_pieces = true;
-  /// The members that it replaces, if it is given in addition to a specification.
+  /// The members that this member replaces if it is given in addition to a specification.
   std::vector<std::string_view> replaces = {};
 };
 
@@ -283,10 +285,10 @@ const Traits kNoBits{.affects_bits = false};
 /// A member of a specification.
 template <typename Spec>
 struct Field {
-  /// As in JSON. The option's name has - in place of _.
+  /// The name in JSON. The option's name has - in place of _.
   std::string name;
   Traits traits;
-  /// Returns null for the default value.
+  /// Returns the member's value as JSON; null for the default value.
   std::function<Json(const Spec&)> write;
   std::function<void(const Json&, Spec&)> read;
   std::function<void(Spec&)> reset;
@@ -297,7 +299,7 @@ struct IsOptional : std::false_type {};
 template <typename T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 
-/// Returns a field whose value `get` returns by reference from a specification.
+/// Returns a field. `get` returns a reference to the member's value in a specification.
 template <typename Spec, typename Get, typename Codec>
 Field<Spec> make_field(std::string name, Get get, Codec codec, Traits traits) {
   Field<Spec> field{std::move(name), std::move(traits), {}, {}, {}};
@@ -318,7 +320,7 @@ Field<Spec> make_field(std::string name, Get get, Codec codec, Traits traits) {
   return field;
 }
 
-/// The place of a member in a specification.
+/// A function that returns the place of a member in a specification.
 #define PROMIN_AT(MEMBER)   \
   [](auto& spec) -> auto& { \
     return spec.MEMBER;     \
@@ -331,7 +333,7 @@ class Table {
   void add(std::string name, Get get, Codec codec, Traits traits = {}) {
     fields_.push_back(make_field<Spec>(std::move(name), get, codec, std::move(traits)));
   }
-  /// Adds a number; its type and whether it may be open are those of the member.
+  /// Adds a number. The member's type determines the kind of number and whether it may be empty.
   template <typename Get>
   void add_number(std::string name, Get get, double min, double max, Traits traits = {}) {
     using Value = std::decay_t<decltype(get(std::declval<Spec&>()))>;
@@ -347,7 +349,7 @@ class Table {
   void add_flag(std::string name, Get get, Traits traits = {}) {
     add(std::move(name), get, Flag(), std::move(traits));
   }
-  /// Adds a file, or a list of them.
+  /// Adds a file or a list of files.
   template <typename Get>
   void add_file(std::string name, Get get, Traits traits = {}) {
     using Value = std::decay_t<decltype(get(std::declval<Spec&>()))>;
@@ -393,7 +395,7 @@ void add_samples(Table<RenderSpec>& table) {
   table.add("error_in", PROMIN_AT(error.space), NameOf<ErrorSpace>{error_space_names()}, {.usual = "linear"});
 }
 
-/// --exposure sets two members.
+/// Returns the field of --exposure, which sets two members.
 Field<RenderSpec> make_exposure() {
   constexpr const char* kAverage = "average";
   return {"exposure",
@@ -461,7 +463,7 @@ void add_environment(Table<RenderSpec>& table) {
   table.add_number("light_rotation", PROMIN_AT(view.environment.light_rotation_deg), -kMaxRotationDeg, kMaxRotationDeg);
 }
 
-/// Cryptomatte is chosen like an AOV; alpha has a member of its own.
+/// The name of Cryptomatte, which is chosen like an AOV. Alpha has its own member.
 constexpr const char* kCryptomatte = "cryptomatte";
 
 Json write_aovs(const RenderSpec& spec) {
@@ -493,7 +495,7 @@ void read_aovs(const Json& json, RenderSpec& spec) {
   }
 }
 
-/// --compression is refused for pictures that are no EXR, even if it names the default.
+/// Returns the field of --compression. It is refused for pictures that are no EXR, even if it names the default.
 Field<RenderSpec> make_compression() {
   auto field = make_field<RenderSpec>("compression", PROMIN_AT(exr.compression),
                                       NameOf<ExrCompression>{exr_compression_names()}, {.usual = "zip"});
@@ -563,7 +565,7 @@ const std::vector<Field<Spec>>& fields_of() {
   return table.fields();
 }
 
-/// The key of the format's version.
+/// Returns the key of the format's version.
 const char* key_of(const RenderSpec* /*kind*/) {
   return "promin_render_spec";
 }
@@ -578,7 +580,7 @@ const Field<Spec>* find_field(std::string_view name) {
   return found == fields.end() ? nullptr : &*found;
 }
 
-/// Changes each text of a value that names files.
+/// Changes each text in a value that is the name of a file.
 void change_paths(Json& value, const std::function<std::string(const std::string&)>& change) {
   if (value.is_string() && value.get<std::string>() != kStandardInput) value = change(value.get<std::string>());
   if (!value.is_array()) return;
@@ -603,7 +605,7 @@ std::string write_fields(const Spec& spec, bool is_of_pieces) {
     if (field.traits.is_file) change_paths(value, make_absolute);
     json[field.name] = std::move(value);
   }
-  // Arrays of a few numbers stay on their lines.
+  // Arrays of a few numbers are written on one line.
   std::vector<std::string> lines;
   for (const auto& [name, value] : json.items()) lines.push_back(fmt::format(" \"{}\": {}", name, text_of(value)));
   return fmt::format("{{\n{}\n}}\n", fmt::join(lines, ",\n"));
@@ -630,7 +632,7 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
   }
 }
 
-/// A value as on a command line.
+/// Returns a value as it is written on a command line.
 std::string describe_value(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value == true) return "given";

@@ -14,34 +14,34 @@ struct Cone {
   dvec3 center{0.0};
   /// Direction from the bottom to the top, of any length except 0.
   dvec3 axis{0.0, 1.0, 0.0};
-  /// Distance of the two ends from the middle.
+  /// Distance of the two ends from `center`.
   double half_height = 0.25;
-  /// Radius at `center` - half_height along the axis, 0 or more; not both radii may be 0.
+  /// Radius at `center` - half_height along the axis, 0 or more. At least one of the two radii is larger than 0.
   double radius_bottom = 0.25;
-  /// Radius at the other end.
+  /// Radius at `center` + half_height along the axis.
   double radius_top = 0.0;
-  /// Whether it consists only of the side, without disks.
+  /// True if the cone consists only of its side, without disks.
   bool is_open = false;
 };
 
 namespace world {
-/// A cone in the world in the fp32 numbers that the device uses; error bounds refer to these. The disks lie at center
-/// -+ axis * half_height.
+/// A cone in the world, stored in the fp32 numbers that the device uses. Error bounds refer to these numbers. The disks
+/// lie at center -+ axis * half_height.
 struct Cone {
   /// Middle of the axis.
   vec3 center{0.0F};
-  /// A unit vector to fp32 rounding.
+  /// Direction from the bottom to the top; a unit vector up to fp32 rounding.
   vec3 axis{0.0F, 1.0F, 0.0F};
-  /// Distance of the two ends from the middle.
+  /// Distance of the two ends from `center`.
   float half_height = 0.25F;
   /// Radius at center - axis * half_height.
   float radius_bottom = 0.25F;
-  /// Radius at the other end.
+  /// Radius at center + axis * half_height.
   float radius_top = 0.0F;
-  /// Whether it consists only of the side, without disks.
+  /// True if the cone consists only of its side, without disks.
   bool is_open = false;
 
-  /// Returns whether both are equal.
+  /// Returns whether both cones are equal.
   bool operator==(const Cone&) const = default;
 };
 }  // namespace world

@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// An infinite plane. A transform must not make its normal degenerate.
+/// An infinite plane. A transform must not map its normal to 0.
 struct Plane {
   /// Any point of the plane.
   dvec3 point{0.0};
@@ -15,11 +15,11 @@ struct Plane {
 };
 
 namespace world {
-/// A plane in the world in the fp32 numbers that the device uses; error bounds refer to these.
+/// A plane in the world, stored in the fp32 numbers that the device uses. Error bounds refer to these numbers.
 struct Plane {
   /// Any point of the plane.
   vec3 point{0.0F};
-  /// A unit vector to fp32 rounding.
+  /// The plane's normal; a unit vector up to fp32 rounding.
   vec3 normal{0.0F, 1.0F, 0.0F};
 };
 }  // namespace world

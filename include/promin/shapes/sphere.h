@@ -8,18 +8,18 @@ namespace promin {
 
 /// A solid sphere. A transform must scale all directions equally. The radius lies between 1e-22 and 1e15 in the world.
 struct Sphere {
-  /// Its middle.
+  /// Centre of the sphere.
   dvec3 center{0.0};
-  /// Distance of the surface from the middle.
+  /// Distance of the surface from the centre.
   double radius = 0.5;
 };
 
 namespace world {
-/// A sphere in the world in the fp32 numbers that the device uses; error bounds refer to these.
+/// A sphere in the world, stored in the fp32 numbers that the device uses. Error bounds refer to these numbers.
 struct Sphere {
-  /// Its middle.
+  /// Centre of the sphere.
   vec3 center{0.0F};
-  /// Distance of the surface from the middle.
+  /// Distance of the surface from the centre.
   float radius = 0.5F;
 };
 }  // namespace world

@@ -22,20 +22,22 @@ from promin._scene import Scene
 
 
 class RaycastingScene:
-    """Meshes to cast rays at. Rays are (..., 6): origin, direction. Results have the leading shape."""
+    """Meshes to cast rays at. Rays are arrays (..., 6) of origin and direction. Results have the leading shape of the
+    rays."""
 
     INVALID_ID = 0xFFFFFFFF
-    """The geometry_ids and primitive_ids of a miss."""
+    """The value of geometry_ids and primitive_ids on a miss."""
 
     def __init__(self, nthreads: int = 0, device: Any = None) -> None:
-        """nthreads is ignored, here and below. device: as for `promin.Caster`; a device of Open3D is ignored."""
+        """nthreads is ignored here and in all other methods. device: an argument of `promin.Caster`; a device of Open3D
+        is ignored."""
         self._scene = Scene(center=(0, 0, 0))
         self._device: DeviceLike = None if type(device).__module__.startswith("open3d") else device
         self._caster: Caster | None = None
 
     def add_triangles(self, vertex_positions: Any, triangle_indices: Any = None) -> int:
-        """Adds a mesh, (n, 3) float32 vertices and (m, 3) indices, or an `open3d.t.geometry.TriangleMesh`; returns its
-        geometry id."""
+        """Adds a mesh and returns its geometry id. The mesh is (n, 3) float32 vertices and (m, 3) indices, or an
+        `open3d.t.geometry.TriangleMesh`."""
         if triangle_indices is None:
             mesh = vertex_positions
             vertex_positions, triangle_indices = mesh.vertex.positions, mesh.triangle.indices
@@ -45,8 +47,8 @@ class RaycastingScene:
         return number
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
-        """Returns the first hits: t_hit (infinite on a miss), geometry_ids, primitive_ids, primitive_uvs (..., 2),
-        primitive_normals (..., 3)."""
+        """Returns the nearest hits as a dict: t_hit (infinite on a miss), geometry_ids, primitive_ids, primitive_uvs
+        (..., 2), primitive_normals (..., 3)."""
         hits = self._open().cast(_split(rays))
         return {
             "t_hit": _give(hits["t"]),
@@ -57,7 +59,7 @@ class RaycastingScene:
         }
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Any:
-        """Returns whether anything is hit between tnear and tfar, as bool (...)."""
+        """Returns whether each ray hits anything between tnear and tfar, as bool (...)."""
         return _give(self._open().occluded((*_split(rays), tnear, tfar)))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
@@ -65,8 +67,9 @@ class RaycastingScene:
         return _give(self._open().count(_split(rays)))
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
-        """Returns all crossings: ray_splits (n + 1), where those of each of the n rays begin and those of the last ray
-        end; ray_ids, t_hit, geometry_ids, primitive_ids (h,), primitive_uvs (h, 2)."""
+        """Returns all crossings as a dict: ray_splits (n + 1), ray_ids, t_hit, geometry_ids, primitive_ids (h,),
+        primitive_uvs (h, 2). The crossings of ray i are those from ray_splits[i] up to, but without, ray_splits[i +
+        1]."""
         splits, hits = self._open().list(_split(rays))
         return {
             "ray_splits": _give(splits),
@@ -90,17 +93,18 @@ class RaycastingScene:
         self.compute_closest_points(query_points)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
-        """Returns 1 for points (..., 3) inside of closed meshes, else 0, as float32 (...). One ray per point is enough,
-        so nsamples is ignored."""
+        """Returns 1 for points (..., 3) inside closed meshes and 0 for other points, as float32 (...). One ray per
+        point is enough, so nsamples is ignored."""
         points = to_vectors(_to_numpy(query_points), "query_points")
         counts = self._open().count(points, PROBE)
         return _give((counts % 2).astype(np.float32))
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Any:
-        """Returns rays of a pinhole camera, (height_px, width_px, 6) float32, through the centres of pixels, with
-        directions that reach the plane z = 1: either (intrinsic_matrix (3, 3), extrinsic_matrix (4, 4), width_px,
-        height_px), or (fov_deg, center, eye, up, width_px, height_px), where the field of view is horizontal."""
+        """Returns the rays of a pinhole camera through the centres of pixels, (height_px, width_px, 6) float32. A
+        direction ends on the plane at the distance 1 in front of the camera. The arguments are either (intrinsic_matrix
+        (3, 3), extrinsic_matrix (4, 4), width_px, height_px), or (fov_deg, center, eye, up, width_px, height_px), where
+        the field of view is horizontal."""
         names: tuple[str, ...] = ("intrinsic_matrix", "extrinsic_matrix", "width_px", "height_px")
         if len(args) + len(kwargs) == 4:
             intrinsic, extrinsic, width, height = _arguments(names, args, kwargs)
@@ -121,7 +125,7 @@ class RaycastingScene:
 
     @staticmethod
     def create_rays_lookat(fov_deg: float, center: Any, eye: Any, up: Any, width_px: int, height_px: int) -> Any:
-        """The second form of create_rays_pinhole."""
+        """Has the arguments of the second form of create_rays_pinhole."""
         return RaycastingScene.create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px)
 
     def _open(self) -> Caster:
@@ -135,7 +139,7 @@ def _to_numpy(value: Any) -> Any:
 
 
 def _give(array: NDArray[Any]) -> Any:
-    """Returns the array, as a Tensor if the program has imported open3d."""
+    """Returns the array; returns a Tensor if the program has imported open3d."""
     array = np.ascontiguousarray(array)
     open3d = sys.modules.get("open3d")
     return array if open3d is None else open3d.core.Tensor.from_numpy(array)
@@ -161,7 +165,8 @@ def _arguments(names: tuple[str, ...], args: tuple[Any, ...], kwargs: dict[str, 
 
 
 def _look_at(center: NDArray[np.float64], eye: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the matrix from the world to a camera with x to the right, y down and z in the direction of view."""
+    """Returns the matrix from the world to a camera whose x axis points to the right, y downwards and z in the
+    direction of view."""
     z = center - eye
     z /= np.linalg.norm(z)
     x = np.cross(z, up)

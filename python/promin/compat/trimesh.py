@@ -34,8 +34,8 @@ class RayMeshIntersector:
     def intersects_location(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-        """Returns the hit points: locations (h, 3) float64 on the planes of the triangles, index_ray (h,) and index_tri
-        (h,)."""
+        """Returns the hits as a tuple: locations (h, 3) float64 on the planes of the triangles, index_ray (h,) and
+        index_tri (h,)."""
         triangles, rays, locations = self._intersect(ray_origins, ray_directions, multiple_hits)
         return locations, rays, triangles
 
@@ -48,23 +48,24 @@ class RayMeshIntersector:
         return_locations: bool = False,
     ) -> Any:
         """Returns the triangles that rays hit: index_tri (h,), index_ray (h,) and, with return_locations, locations (h,
-        3). They are sorted by ray and then by distance, at most max_hits for each ray."""
+        3). The hits are sorted by ray and then by distance. There are at most max_hits for each ray."""
         triangles, rays, locations = self._intersect(ray_origins, ray_directions, multiple_hits, max_hits)
         return (triangles, rays, locations) if return_locations else (triangles, rays)
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int64]:
-        """Returns the first triangle that each ray hits, -1 on a miss: (n,)."""
+        """Returns the index of the first triangle that each ray hits, (n,); -1 on a miss."""
         origins, directions = _check(ray_origins, ray_directions)
         caster, _ = self._caster()
         return np.asarray(caster.cast((origins, directions))["primitive"], np.int64)
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
-        """Returns whether each ray hits the mesh, as bool (n,). The same rays hit as in intersects_first."""
+        """Returns whether each ray hits the mesh, as bool (n,). The answer agrees with intersects_first."""
         return self.intersects_first(ray_origins, ray_directions) >= 0
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Returns whether points (n, 3) are inside a closed mesh, as bool (n,): the parity of the crossings of one ray.
-        It is exact unless the distance of the point from the surface is within the bound on hits (docs/accuracy.md)."""
+        """Returns whether points (n, 3) are inside a closed mesh, as bool (n,). The answer is the parity of the
+        crossings of one ray. It is exact unless the distance of the point from the surface is within the bound on hits
+        (docs/accuracy.md)."""
         places = to_vectors(points, "points")
         if places.ndim != 2:
             raise UsageError(f"points have the shape {places.shape}; give (n, 3)")
@@ -94,7 +95,7 @@ class RayMeshIntersector:
         """Returns a Caster for the current mesh, and the corners of its triangles."""
         vertices = np.asarray(self.mesh.vertices, np.float64)
         faces = np.asarray(self.mesh.faces).reshape(-1, 3)
-        # Meshes of trimesh are hashed by their content, others by their address.
+        # Meshes of trimesh have a hash of their content. Other meshes are hashed by their address.
         hashes: Any = type(self.mesh).__hash__
         key = (vertices.tobytes(), faces.tobytes()) if hashes is object.__hash__ else hash(self.mesh)
         if self._made is None or self._made[0] != key:
@@ -105,7 +106,7 @@ class RayMeshIntersector:
 
 
 def _check(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns both as (n, 3) float64, with directions of length 1."""
+    """Returns origins and directions as (n, 3) float64. The directions have length 1."""
     origins = to_vectors(ray_origins, "ray_origins").astype(np.float64)
     directions = to_vectors(ray_directions, "ray_directions").astype(np.float64)
     if origins.shape != directions.shape or origins.ndim != 2:

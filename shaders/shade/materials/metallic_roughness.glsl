@@ -4,25 +4,26 @@
 // holds the base colour and in w the weight of metal; b the dielectric's reflectance at normal incidence and in w at
 // grazing incidence; c.x the roughness.
 
-const float LEAST_COSINE = 0.0009765625;        // 2^-10, to the eye
-const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12: the light comes from behind, as seen from the eye
-const float LEAST_ALPHA = 0.002;                 // of sources, whose images would be points (glTF B.3.2 forbids 0)
+const float LEAST_COSINE = 0.0009765625;        // 2^-10, the smallest cosine to the eye
+const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12; below this, the light comes from behind, as seen from the eye
+const float LEAST_ALPHA = 0.002;                 // the smallest alpha for highlights of sources, which would otherwise
+                                                 // be points (glTF B.3.2 forbids 0)
 const float INVERSE_PI = 0.318309886;
 
 #include "shade/sheen.glsl"
 #include "shade/thin_film.glsl"
 #include "shade/anisotropy.glsl"
 
-// Between these roughnesses reflected objects fade until only the environment remains.
+// The range of roughness in which reflections of objects fade. Above it only the environment is reflected.
 const float SHARPEST_BLUR = 0.1;
-// A mirror ray of less weight is not traced.
+// The smallest weight of a mirror ray. Mirror rays with a smaller weight are not traced.
 const float LEAST_MIRROR_WEIGHT = 1.0 / 256.0;
 
-// Reflection by the lobe: K compensates for light that microfacets reflect more than once, and R is the part of the
+// Reflection by the lobe. K compensates for light that microfacets reflect more than once, R is the fraction of the
 // light from all directions that is reflected to the eye (Fdez-Aguera, "A Multiple-Scattering Microfacet Model for
 // Real-Time Image Based Lighting", JCGT 8(1)).
 struct Lobe {
-  vec3 f0;  // Fresnel's reflectance at normal incidence, and at grazing incidence
+  vec3 f0;  // Fresnel's reflectance at normal and at grazing incidence
   float f90;
   vec3 k;
   vec3 r;
@@ -47,8 +48,8 @@ Lobe metal_lobe(ShadingPoint point) {
   return make_lobe(has(FEATURE_IRIDESCENCE) ? point.thin_film.metal : base_color_of(point), 1.0, point.lobe_shares);
 }
 
-// Applies the film's colours to the reflectances of dielectric and metal, seen at the angle of this cosine. A surface
-// that reflects everything, such as glass beyond the critical angle, does so under a film too.
+// Changes the reflectances of dielectric and metal to those under the film, at an angle with this cosine. A surface
+// that reflects all light, such as glass beyond the critical angle, also does so under a film.
 void put_film(inout ShadingPoint point, float cosine) {
   ThinFilm film = point.thin_film;
   vec3 metal = base_color_of(point);
@@ -67,13 +68,14 @@ void put_film(inout ShadingPoint point, float cosine) {
   point.thin_film = film;
 }
 
-// Returns the part of the light that a sheen with this reflected part leaves for the layers below it.
+// Returns the fraction of the light that remains for the layers below a sheen. `share` is the fraction that the sheen
+// reflects.
 float left_below_sheen(Sheen sheen, float share) {
   precise float left = 1.0 - max_abs(sheen.color) * min(share, 1.0);
   return left;
 }
 
-// Returns the part of the light from all directions that is reflected to the eye below the sheen.
+// Returns the fraction of the light from all directions that the layers below the sheen reflect to the eye.
 vec3 reflectance_of(ShadingPoint point) {
   float metallic = point.material.a.w;
   precise vec3 sum = (1.0 - metallic) * dielectric_lobe(point).r + metallic * metal_lobe(point).r;
@@ -83,13 +85,13 @@ vec3 reflectance_of(ShadingPoint point) {
 
 bool scatters_through(ShadingPoint point) { return point.scattering.w > 0.0; }
 
-// Returns whether a light source in this direction lights the surface from its other side, through which it scatters
+// Returns whether a light source in this direction lights the other side of the surface, through which it scatters
 // light.
 bool lies_behind(ShadingPoint point, vec3 to_light) {
   return scatters_through(point) && dot3(point.geometric_normal, to_light) < 0.0;
 }
 
-// Returns the diffuse albedo: the part that the dielectric does not reflect.
+// Returns the diffuse albedo: the fraction of light that the dielectric does not reflect, times its colour.
 vec3 albedo_of(ShadingPoint point) {
   Lobe lobe = dielectric_lobe(point);
   precise vec3 albedo =
@@ -99,7 +101,7 @@ vec3 albedo_of(ShadingPoint point) {
   return albedo;
 }
 
-// Returns the same for light from the other side (KHR_materials_diffuse_transmission).
+// Returns the diffuse albedo for light from the other side (KHR_materials_diffuse_transmission).
 vec3 albedo_from_behind(ShadingPoint point) {
   Lobe lobe = dielectric_lobe(point);
   precise vec3 albedo = (1.0 - point.material.a.w) * (1.0 - max(lobe.r.x, max(lobe.r.y, lobe.r.z))) *
@@ -108,7 +110,7 @@ vec3 albedo_from_behind(ShadingPoint point) {
   return albedo;
 }
 
-// Returns the part of the reflection of a surface of this roughness that comes from a mirror ray; the remainder comes
+// Returns the fraction of the reflection that comes from a mirror ray, for a surface of this roughness. The rest comes
 // from the environment.
 float sharpness_of(float roughness) {
   precise float x = clamp((roughness - SHARPEST_BLUR) * (1.0 / (ROUGHEST_MIRROR - SHARPEST_BLUR)), 0.0, 1.0);
@@ -118,8 +120,8 @@ float sharpness_of(float roughness) {
 
 bool is_coated(ShadingPoint point) { return has(FEATURE_COATS) && point.coat.weight > 0.0; }
 
-// Returns the same for the material itself. A hit has one mirror ray, that of the coat if there is one; layers under
-// the coat with another normal see only the environment.
+// Returns the same fraction for the material without its coat. A hit has only one mirror ray; if there is a coat, it is
+// the coat's. Layers under the coat with another normal reflect only the environment.
 float sharpness_of(ShadingPoint point) {
   if (is_coated(point) && any(notEqual(point.normal, point.coat.normal))) return 0.0;
   return sharpness_of(point.material.c.x);
@@ -134,7 +136,8 @@ vec3 mirror_weight_metallic_roughness(ShadingPoint point) {
   return max_abs(weight) < LEAST_MIRROR_WEIGHT ? vec3(0.0) : weight;
 }
 
-// Returns the roughness of the smoother one of coat and material, or that of the coat if only the coat mirrors.
+// Returns the roughness of the coat or of the material, whichever is smoother. If only the coat has a mirror ray,
+// returns the coat's roughness.
 float mirror_roughness_metallic_roughness(ShadingPoint point) {
   if (!is_coated(point)) return point.material.c.x;
   bool is_one_normal = all(equal(point.normal, point.coat.normal));
@@ -145,7 +148,7 @@ vec3 mirror_normal_metallic_roughness(ShadingPoint point) {
   return is_coated(point) ? point.coat.normal : point.normal;
 }
 
-// Returns the direction from which a lobe receives most of its light; rough lobes lean towards the normal.
+// Returns the direction from which a lobe receives most of its light. For rough lobes it is nearer to the normal.
 vec3 direction_of_lobe(vec3 normal, vec3 geometric_normal, float roughness, vec3 direction) {
   vec3 mirrored = reflect_direction(direction, normal, geometric_normal);
   float alpha2 = roughness * roughness * roughness * roughness;
@@ -153,7 +156,7 @@ vec3 direction_of_lobe(vec3 normal, vec3 geometric_normal, float roughness, vec3
   return normalize3(leaning);
 }
 
-// Returns the environment that the coat reflects, without the part of its mirror ray.
+// Returns the light of the environment that the coat reflects, without the part that its mirror ray contributes.
 vec3 environment_in_coat(ShadingPoint point, vec3 direction, bool follows_mirror) {
   Coat coat = point.coat;
   vec3 around = environment_radiance(
@@ -196,8 +199,8 @@ vec3 emitted_light_metallic_roughness(ShadingPoint point) {
   return emitted;
 }
 
-// Returns the microfacets' density D for the half vector h, as k^2 / pi, because 1 - (N.H)^2 loses all digits in a
-// highlight, while |H - N| keeps them.
+// Returns the microfacets' density D for the half vector h. It is computed as k^2 / pi, because 1 - (N.H)^2 loses all
+// digits in a highlight, while |H - N| keeps them.
 float density_of(vec3 normal, vec3 h, float alpha) {
   precise vec3 apart = h - normal;
   precise float q = dot3(apart, apart);
@@ -207,8 +210,8 @@ float density_of(vec3 normal, vec3 h, float alpha) {
   return density;
 }
 
-// Smith's height-correlated masking and shadowing over 4 (N.L) (N.V) (Heitz, "Understanding the Masking-Shadowing
-// Function", JCGT 3(2)).
+// Returns Smith's height-correlated masking and shadowing divided by 4 (N.L) (N.V) (Heitz, "Understanding the
+// Masking-Shadowing Function", JCGT 3(2)).
 float visibility_of(float v, float l, float alpha) {
   precise float a2 = alpha * alpha;
   precise float v_part = l * sqrt(a2 + (1.0 - a2) * v * v);
@@ -217,8 +220,8 @@ float visibility_of(float v, float l, float alpha) {
   return visibility;
 }
 
-// Returns the part of a source's light that facets of this roughness reflect to the eye, without Fresnel's factor: D, V
-// and N.L. h is the half vector.
+// Returns the fraction of a source's light that facets of this roughness reflect to the eye, without Fresnel's factor:
+// D times V times N.L. h is the half vector.
 float facet_scale(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosine) {
   float alpha = max(roughness * roughness, LEAST_ALPHA);
   float v = max(dot3(normal, to_eye), LEAST_COSINE);
@@ -227,8 +230,8 @@ float facet_scale(vec3 normal, float roughness, vec3 h, vec3 to_eye, float cosin
 }
 
 // Returns a source's contribution with a sheen: the sheen's own light, and the light of the layers below, reduced by
-// the sheen on the way in and on the way out. At grazing angles, where the sheen's curves would reflect more than
-// arrives, everything is scaled down by that excess. h is the half vector.
+// the sheen on the way in and on the way out. At grazing angles the sheen's curves would reflect more light than
+// arrives; the whole sum is then divided by this excess. h is the half vector.
 vec3 contribution_with_sheen(ShadingPoint point, vec3 h, vec3 to_eye, float cosine, LightRecord light, vec3 rest) {
   Sheen sheen = point.sheen;
   if (max_abs(sheen.color) == 0.0 || !(cosine > 0.0)) return rest;
@@ -238,7 +241,7 @@ vec3 contribution_with_sheen(ShadingPoint point, vec3 h, vec3 to_eye, float cosi
   return all;
 }
 
-// Returns a source's contribution to the layers under the coat, or to all without a coat.
+// Returns a source's contribution to the layers under the coat, or to the whole material if it has no coat.
 vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
   precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
   precise vec3 sum = to_eye + to_light;
@@ -277,7 +280,7 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   return reflected;
 }
 
-// Returns the contribution of a source behind the surface, under the coat: transmitted light is scattered, without a
+// Returns the contribution, under the coat, of a source behind the surface. Transmitted light is scattered and has no
 // highlight.
 vec3 contribution_from_behind(ShadingPoint point, vec3 to_light, LightRecord light) {
   precise float cosine = -dot3(point.normal, to_light);

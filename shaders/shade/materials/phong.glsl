@@ -16,7 +16,7 @@ vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float co
     precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
     precise float highlight = dot3(mirrored, to_eye);
     if (highlight > 0.0) {
-      // Unit vectors give at most 1; more is a rounding error.
+      // The cosine of unit vectors is at most 1. A larger value is a rounding error.
       contribution +=
           point.material.c.xyz * light.specular.xyz * power(min(highlight, 1.0), point.material.c.w);
     }
@@ -26,7 +26,8 @@ vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float co
 
 vec3 mirror_weight_phong(ShadingPoint point) { return HAS_FACES ? point.glass.mirror : point.material.d.xyz; }
 
-// A perfect mirror, whose rays see the unblurred environment, or the background if there is none.
+// Returns the roughness with which mirror rays see the environment. Phong mirrors are perfect: their rays see the
+// unblurred environment, or the background if there is no environment.
 float mirror_roughness_phong(ShadingPoint point) { return perfect_mirror_roughness(); }
 
 vec3 mirror_normal_phong(ShadingPoint point) { return point.normal; }

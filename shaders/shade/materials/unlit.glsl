@@ -7,7 +7,7 @@ vec3 own_light_unlit(ShadingPoint point, vec3 direction, bool follows_mirror) {
   return own;
 }
 
-// All of its light is emitted.
+// Returns the emitted light, which is all of the material's light.
 vec3 emitted_light_unlit(ShadingPoint point) { return own_light_unlit(point, vec3(0.0), false); }
 
 vec3 contribution_unlit(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {

@@ -7,8 +7,8 @@ vec3 box_center(Primitive p) { return p.a.xyz; }
 vec3 box_half_size(Primitive p) { return vec3(p.a.w, p.b.xy); }
 vec3 box_turn(Primitive p) { return vec3(p.b.zw, uintBitsToFloat(p.c.x)); }
 
-// v turned by the unit quaternion (turn, w): v + 2 turn x (turn x v + w v). |turn| < 0.53 makes the root accurate to u,
-// so that the error of a component is at most 5 u |v|; without a turn it is 0.
+// Returns v rotated by the unit quaternion (turn, w): v + 2 turn x (turn x v + w v). Because |turn| < 0.53, the square
+// root is accurate to u and the error of a component is at most 5 u |v|. Without a rotation the error is 0.
 vec3 turned(vec3 v, vec3 turn, float w) {
   precise vec3 inner = cross3(turn, v) + w * v;
   precise vec3 result = v + 2.0 * cross3(turn, inner);
@@ -25,9 +25,9 @@ float component(vec3 v, uint axis) { return axis == 0u ? v.x : (axis == 1u ? v.y
 // Returns the number of a face: twice its axis, plus 1 on the positive side.
 uint face_of(uint axis, bool is_positive) { return 2u * axis + (is_positive ? 1u : 0u); }
 
-// Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986, from the closest approach to the centre, where rounding
-// is small beside the box. The rotation is the same for the origin and all three slabs, so its rounding only rotates
-// and moves the box as a whole.
+// Returns the ends of a box with the method of Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986. It starts
+// from the closest approach to the centre, where rounding is small compared with the box. The rotation is the same for
+// the origin and all three slabs, so its rounding only rotates and moves the box as a whole.
 Inside ends_of_box(Ray ray, Primitive p) {
   vec3 given_size = box_half_size(p);
   float largest = max_abs(given_size);

@@ -6,13 +6,13 @@
 #include "trace/primitives/frustum.glsl"
 
 struct Capsule {
-  vec3 center;  // halfway between the centres of the spheres
+  vec3 center;  // the point halfway between the centres of the spheres
   vec3 axis;
-  float half_height;  // from there to either
+  float half_height;  // distance from `center` to either sphere's centre
   float radius_bottom;
   float radius_top;
-  bool has_side;      // neither sphere holds the other
-  float side_middle;  // of the frustum, along the axis from the centre
+  bool has_side;      // false if one sphere contains the other
+  float side_middle;  // middle of the frustum, along the axis from the centre
 };
 
 Capsule capsule_of(Primitive p) {
@@ -26,9 +26,10 @@ Capsule capsule_of(Primitive p) {
   return Capsule(p.a.xyz, p.b.xyz, half_height, bottom, top, has_side, middle);
 }
 
-// Its generators make an angle with the axis whose sine is s = (bottom - top) / height. It touches the spheres at s
-// times their radii along the axis, where its radii are theirs times the cosine. The square of the cosine is computed
-// from its factors, because if one sphere almost contains the other, the remaining height is small.
+// Returns the side of the capsule, a frustum. The sine of the angle between its generators and the axis is s = (bottom
+// - top) / height. The frustum touches the spheres at s times their radii along the axis; its radii there are the
+// spheres' radii times the cosine. The square of the cosine is computed from its factors, because the remaining height
+// is small if one sphere almost contains the other.
 Frustum side_of(Capsule c, vec3 center) {
   precise float difference = c.radius_bottom - c.radius_top;
   precise float height = 2.0 * c.half_height;
@@ -50,7 +51,7 @@ Inside hull_of(Inside a, Inside b) {
                 takes_exit ? b.exit : a.exit, takes_exit ? b.exit_part : a.exit_part);
 }
 
-// Returns the approach to the point from which `from_point` leads to the ray's origin.
+// Returns the approach to a point. `from_point` leads from this point to the ray's origin.
 Approach approach_from(Ray ray, vec3 from_point) {
   ray.origin = from_point;
   return approach(ray, vec3(0.0));
@@ -68,8 +69,8 @@ Inside inside_end(Ray ray, vec3 from_center, float radius, uint part) {
   return Inside(entry, part, exit, part);
 }
 
-// The centres of the parts are never rounded in the world, but only relative to the ray's origin: a capsule far from
-// the world's origin is as exact as one near it.
+// The centres of the parts are never rounded in the world, but only relative to the ray's origin. A capsule far from
+// the world's origin is therefore as exact as one near it.
 Inside ends_of_capsule(Ray ray, Primitive p) {
   Capsule c = capsule_of(p);
   precise vec3 from_center = ray.origin - c.center;
@@ -87,10 +88,10 @@ Inside ends_of_capsule(Ray ray, Primitive p) {
 
 Crossing intersect_capsule(Ray ray, Primitive p) { return nearest_crossing(ray, ends_of_capsule(ray, p)); }
 
-// Returns the part to which a point of the surface belongs. This may differ from the part that the ray hit: where two
-// parts touch, rounding selects either of them in a strip as wide as the square root of the rounding error, and their
-// normals diverge faster than their surfaces. The sphere of the hull that touches the surface there has its centre at
-// `foot` on the axis.
+// Returns the part to which a point of the surface belongs. This part may differ from the part that the ray hit. Where
+// two parts touch, rounding selects either of them in a strip whose width is the square root of the rounding error, and
+// there the normals differ more than the surfaces. The sphere of the hull that touches the surface there has its centre
+// at `foot` on the axis.
 uint capsule_part(Capsule c, Frustum side, vec3 from_center) {
   if (!c.has_side) return c.radius_bottom >= c.radius_top ? PART_BOTTOM : PART_TOP;
   precise float z = dot3(from_center, c.axis);

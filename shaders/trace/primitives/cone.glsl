@@ -11,8 +11,8 @@ Frustum cone_of(Primitive p) {
   return Frustum(p.a.xyz, p.b.xyz, p.b.w, radius, slope, is_frustum_open(p));
 }
 
-// See intersect_frustum. o + t d lies within 4.1 u (|o - c| + size) of the surface, measured for half angles of 0.1 to
-// 89.9 degrees.
+// Returns the crossing with a cone; see intersect_frustum. o + t d lies within 4.1 u (|o - c| + size) of the surface,
+// measured for half angles of 0.1 to 89.9 degrees.
 Crossing intersect_cone(Ray ray, Primitive p) { return intersect_frustum(ray, cone_of(p)); }
 Inside ends_of_cone(Ray ray, Primitive p) { return ends_of_frustum(ray, cone_of(p)); }
 

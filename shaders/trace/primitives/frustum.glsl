@@ -12,9 +12,9 @@ struct Frustum {
   vec3 center;
   vec3 axis;
   float half_height;
-  float radius;  // at the centre
-  float slope;   // change of radius per height; 0 for a cylinder
-  bool is_open;  // whether it has only the side, no ends; false if no shape of the scene is open
+  float radius;  // radius at the centre
+  float slope;   // change of the radius per height; 0 for a cylinder
+  bool is_open;  // whether it has only the side and no ends; false if the scene has no open shape
 };
 
 // The rounding error of z, as a multiple of the solid's size.
@@ -22,10 +22,11 @@ const float SLAB_DOUBT = 8.0 * UNIT_ROUNDOFF;
 
 bool is_frustum_open(Primitive p) { return has(FEATURE_OPEN_SHAPES) && (p.c.x & SHAPE_IS_OPEN) != 0u; }
 
-// The method is that of Haines et al., Ray Tracing Gems ch. 7, re-centred twice: around the closest approach to the
-// centre, then on the ray near axis and apex. o + t d lies within 4.1 u S of the surface (measured over 9e6 rays;
-// docs/accuracy.md, BK), also through apexes and along generators. Results that differ from the exact one occur only
-// within 0.92 u S of an edge (B2); the largest distance is for a view along a needle from far away (row 54).
+// Returns the interval inside a frustum. The method is that of Haines et al., Ray Tracing Gems ch. 7, with two changes
+// of the origin: to the closest approach to the centre, then to a point of the ray near axis and apex. o + t d lies
+// within 4.1 u S of the surface (measured over 9e6 rays; docs/accuracy.md, BK), also through apexes and along
+// generators. Results differ from the exact one only within 0.92 u S of an edge (B2). This largest distance was found
+// for a view along a needle from far away (row 54).
 Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   float scale = power_of_two_inverse(max(f.half_height, f.radius));
   precise vec3 offset = near.offset * scale;
@@ -35,7 +36,7 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   precise vec3 radial_direction = ray.direction - dz * f.axis;
   precise float radial2 = dot3(radial_direction, radial_direction);
 
-  // The cap slab. A ray perpendicular to the axis hits its planes at +-infinity, or nowhere.
+  // Computes the slab between the caps. A ray perpendicular to the axis hits its planes at +-infinity, or nowhere.
   float safe_dz = abs(dz) < TWO_POW_MINUS_80 ? (dz < 0.0 ? -TWO_POW_MINUS_80 : TWO_POW_MINUS_80) : dz;
   precise float inverse_dz = 1.0 / safe_dz;
   float entry_z = dz < 0.0 ? half_height : -half_height;
@@ -45,22 +46,24 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
   uint entry_cap = dz < 0.0 ? PART_TOP : PART_BOTTOM;
   uint exit_cap = dz < 0.0 ? PART_BOTTOM : PART_TOP;
 
-  // Solve from the point inside the slab that is nearest to axis and apex, where distance^2 + radius^2 is smallest.
-  // There the rounding errors of these two are small compared with the values at the hit. Elsewhere, for a ray along a
-  // generator or the axis near an apex, they would be large compared with the radius at the hit.
+  // The quadratic is solved from the point in the slab that is nearest to axis and apex, where distance^2 + radius^2 is
+  // smallest. There the rounding errors of these two are small compared with their values at the hit. At other points,
+  // for a ray along a generator or along the axis near an apex, the errors would be large compared with the radius at
+  // the hit.
   precise vec3 radial_offset = offset - z * f.axis;
   precise float widening = f.slope * dz;  // growth of the solid's radius per t along the ray
   precise float spread2 = radial2 + widening * widening;
   precise float widest = radius + abs(f.slope) * half_height;
   precise float inward = -(dot3(radial_offset, radial_direction) + (radius + f.slope * z) * widening);
   precise float t_nearest = spread2 > 0.0 ? inward / spread2 : 0.0;
-  // The slab's ends are as uncertain as z; for a ray in an apex's plane they may lie anywhere along it.
+  // The slab's ends have the same relative error as z. For a ray in the plane of an apex they may lie anywhere on the
+  // ray.
   precise float doubt = SLAB_DOUBT * (half_height + widest) * abs(inverse_dz);
   precise float t_base = min(max(t_nearest, slab_entry - doubt), slab_exit + doubt);
-  // In the solid distance^2 + radius^2 is at most twice the largest radius^2, and it has grown by spread2 t^2 since
-  // t_nearest; the same amount again allows for rounding. A ray that enters the slab farther away, for example just
-  // beyond a rim in its plane, is not in the solid. Solving from there, where rounding dominates the side, could place
-  // it inside at any t.
+  // Inside the solid, distance^2 + radius^2 is at most twice the largest radius^2. It has increased by spread2 t^2
+  // since t_nearest. The limit is doubled to allow for rounding. A ray that enters the slab farther away, for example
+  // just beyond a rim in its plane, is not in the solid. A solution from there, where rounding dominates, could put the
+  // ray inside at any t.
   precise float way = t_base - t_nearest;
   precise float growth = spread2 * way * way;
   precise float most_growth = 4.0 * widest * widest;
@@ -89,7 +92,7 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
       side_entry = min(t0, q == 0.0 ? 0.0 : t1);
       side_exit = max(t0, q == 0.0 ? 0.0 : t1);
     } else if (a < 0.0) {
-      // The ray is steeper than the cone: it is inside from the root on the true nappe in the direction in which the
+      // The ray is steeper than the cone. It is inside from the root on the real nappe, in the direction in which the
       // cone widens. The other root lies on the mirror nappe, which the slab excludes.
       if (q == 0.0) t1 = 0.0;
       if (widening > 0.0) {
@@ -98,8 +101,8 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
         side_exit = min(t0, t1);
       }
     } else if (b < 0.0) {
-      // The ray is parallel to a generator: 2 b t + c has one root, on either nappe; the slab again excludes the
-      // mirrored one.
+      // The ray is parallel to a generator. 2 b t + c has one root, on one of the nappes; the slab excludes the root on
+      // the mirrored nappe.
       side_entry = t0;
     } else if (b > 0.0) {
       side_exit = t0;
@@ -107,11 +110,11 @@ Inside inside_frustum(Ray ray, Approach near, Frustum f) {
       return NOWHERE;
     }
   } else if (!(base_distance <= base_radius)) {
-    return NOWHERE;  // the ray is parallel to a cylinder's axis, beside it
+    return NOWHERE;  // the ray is parallel to a cylinder's axis and outside it
   }
 
-  // The caps start from the same base as the side: rounding of base_z moves the solid as a whole, and a rim stays in
-  // place however flat its angle.
+  // The caps are computed from the same base as the side. Rounding of base_z therefore moves the solid as a whole, and
+  // a rim keeps its place at any angle.
   precise float cap_entry = (entry_z - base_z) * inverse_dz;
   precise float cap_exit = (-entry_z - base_z) * inverse_dz;
   bool enters_side = side_entry > cap_entry;
@@ -150,7 +153,7 @@ Inside ends_of_frustum(Ray ray, Frustum f) {
   return inside;
 }
 
-// A point of the surface, relative to the centre, with its normal.
+// A point of the surface relative to the centre, and its normal.
 struct SideOrCap {
   vec3 offset;
   vec3 normal;
@@ -163,8 +166,8 @@ SideOrCap on_frustum(Frustum f, vec3 from_center, uint part, vec3 direction) {
   vec3 normal;
   if (part == PART_SIDE) {
     vec3 outward = normalize3(radial);
-    // At an apex, and where u S is as large as the radius, rounding may leave no radial direction. Then the axis serves
-    // as the normal, or on a cylinder the direction back along the ray.
+    // At an apex, and if u S is as large as the radius, rounding may leave no radial direction. The normal is then the
+    // axis or, on a cylinder, the direction back along the ray.
     precise vec3 across = cross3(f.axis, outward);
     bool is_lost = dot3(across, across) < 0.5;
     if (is_lost) outward = vec3(0.0);

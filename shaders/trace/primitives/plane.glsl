@@ -10,14 +10,14 @@ vec3 plane_normal(Primitive p) { return p.b.xyz; }
 Crossing intersect_plane(Ray ray, Primitive p) {
   vec3 normal = plane_normal(p);
   precise float t = dot3(normal, plane_point(p) - ray.origin) / dot3(normal, ray.direction);
-  // A parallel ray gives an infinity or NaN here, and misses.
+  // For a ray parallel to the plane, t is infinite or NaN here, and the ray misses.
   if (!(t > ray.tmin && t < INFINITY)) return NO_CROSSING;
   return Crossing(t, 0.0, 0.0, PART_SIDE);
 }
 
-// Only the error perpendicular to the plane needs the lift, and for an axis-aligned plane it is very small. By running
-// error analysis n.(position - point) is off by at most u sum |n_i| (4 |from_point_i| + |position_i|), and rounding the
-// lifted origin adds up to |position_i| again.
+// Computes the hit point and its lift. Only the error perpendicular to the plane matters, which is very small for an
+// axis-aligned plane. According to a running error analysis, the error of n.(position - point) is at most u sum |n_i|
+// (4 |from_point_i| + |position_i|), and rounding the lifted origin adds up to |position_i| again.
 SurfacePoint plane_surface(Ray ray, Primitive p, Hit hit) {
   vec3 normal = plane_normal(p);
   precise vec3 along_ray = ray.origin + hit.t * ray.direction;

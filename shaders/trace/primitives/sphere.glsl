@@ -7,7 +7,7 @@ vec3 sphere_center(Primitive p) { return p.a.xyz; }
 float sphere_radius(Primitive p) { return p.a.w; }
 
 // Returns the square of half the chord in units of `scale`, a power of two near 1 / radius, so that nothing relevant
-// overflows or underflows. Negative if there is no chord.
+// overflows or underflows. The result is negative if there is no chord.
 float chord_square(Ray ray, Approach near, float given_radius, float scale) {
   precise vec3 offset = near.offset * scale;
   precise float radius = given_radius * scale;

@@ -15,10 +15,10 @@ float dot2(vec2 a, vec2 b) {
   return sum;
 }
 
-// A triangle in a plane that the ray pierces at the plane's origin.
+// A triangle projected to a plane, such that the ray passes through the plane's origin.
 struct ShearedTriangle {
-  bool may_be_met;  // as far as the areas tell; cross_triangle decides
-  float least;      // the least of the areas; negative where one has another sign than the determinant
+  bool may_be_met;  // whether the ray may hit it, as far as the areas show; cross_triangle decides
+  float least;      // the smallest area; negative if an area and the determinant have different signs
   float determinant;
   vec2 a;
   vec2 b;
@@ -35,23 +35,23 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise vec2 b2 = b.xy - ray.shear.xy * b.z;
   precise vec2 c2 = c.xy - ray.shear.xy * c.z;
 
-  // Each area is the difference of two rounded products: its sign is that of the exact difference, or it is 0, which
-  // counts as inside because an edge belongs to the triangle. Outside of the triangle the areas have both signs, so one
-  // of them has another sign than their sum.
+  // Each area is the difference of two rounded products. Its sign is that of the exact difference, or it is 0, which
+  // counts as inside because an edge belongs to the triangle. Outside the triangle the areas have both signs, so one of
+  // them has a different sign than their sum.
   precise float u = c2.x * b2.y - c2.y * b2.x;
   precise float v = a2.x * c2.y - a2.y * c2.x;
   precise float w = b2.x * a2.y - b2.y * a2.x;
   precise float determinant = u + v + w;
   float least = lesser(lesser(times_sign_of(u, determinant), times_sign_of(v, determinant)),
                        times_sign_of(w, determinant));
-  // The triangle is not seen edge-on, and the inverse of its area is still a float.
+  // True if the triangle is not seen edge-on, and the inverse of its area is a float.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
 
-// Returns the sign of the area over the edge between two corners if a ray hits the edge: as if all rays were shifted by
-// an infinitely small step to the right, and by its square down (Edelsbrunner and Muecke, "Simulation of Simplicity",
-// ACM TOG 1990). In the opposite direction along the edge the sign is the opposite.
+// Returns the sign of the area over the edge between two corners if a ray hits the edge. All rays count as shifted by
+// an infinitely small step to the right, and by the square of this step downwards (Edelsbrunner and Muecke, "Simulation
+// of Simplicity", ACM TOG 1990). In the opposite direction along the edge the sign is the opposite.
 bool leads_up(vec2 from, vec2 to) { return to.y > from.y || (to.y == from.y && to.x > from.x); }
 
 // Returns whether the ray hits an edge that does not belong to this triangle, so that it hits only one of the triangles
@@ -67,10 +67,11 @@ bool is_on_open_edge(ShearedTriangle sheared) {
          is_left_open(sheared.areas.z, sheared.a, sheared.b, sheared.determinant);
 }
 
-// The point of the weights should be the origin of the sheared plane. For slivers and for triangles seen edge-on the
-// weights consist mostly of rounding errors, but the error lies along the triangle, so a step along its longest side
-// moves the point back. If that leads out of the triangle, the point becomes the nearest one of the side that it would
-// cross. Without this such a hit could be anywhere on the triangle, and finding it would depend on the tree.
+// Returns corrected weights. The point that the weights describe should be the origin of the sheared plane. For slivers
+// and for triangles seen edge-on the weights consist mostly of rounding errors, but the error lies along the triangle,
+// so a step along its longest side moves the point back. If the step leads out of the triangle, the point becomes the
+// nearest point of the side that it would cross. Without this correction such a hit could be anywhere on the triangle,
+// and whether a ray finds it would depend on the tree.
 vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   precise vec2 ab = b - a;
   precise vec2 bc = c - b;
@@ -81,7 +82,7 @@ vec3 center_weights(vec3 weights, vec2 a, vec2 b, vec2 c) {
   vec2 longest = is_ab ? ab : (is_bc ? bc : ca);
   vec3 step = is_ab ? vec3(-1.0, 1.0, 0.0) : (is_bc ? vec3(0.0, -1.0, 1.0) : vec3(1.0, 0.0, -1.0));
   precise vec2 point = weights.x * a + weights.y * b + weights.z * c;
-  // It is at least the determinant, so it is not 0.
+  // The square is at least the determinant, so it is not 0.
   float longest_square = is_ab ? squares.x : (is_bc ? squares.y : squares.z);
   precise float shift = dot2(point, longest) / longest_square;
   precise vec3 centered = weights - shift * step;
@@ -104,7 +105,7 @@ bool is_beyond_corners(vec2 a, vec2 b, vec2 c) {
          (a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || (a.y < 0.0 && b.y < 0.0 && c.y < 0.0);
 }
 
-// `tmin` and `shear_z` are the ray's.
+// Returns the crossing with a triangle. `tmin` and `shear_z` are the ray's.
 Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
   if (!sheared.may_be_met || is_beyond_corners(sheared.a, sheared.b, sheared.c)) return NO_CROSSING;
   precise float inverse = 1.0 / sheared.determinant;
@@ -116,22 +117,23 @@ Crossing cross_triangle(ShearedTriangle sheared, float shear_z, float tmin) {
   return Crossing(t, weights.y, weights.z, PART_SIDE);
 }
 
-// The result of a glance at a triangle that may be hit, without computing the position: a hit, no hit, or uncertain.
+// The result of a glance at a triangle that may be hit: a hit, no hit, or uncertain. The position is not computed.
 struct Glance {
   bool is_met;
   bool is_missed;
 };
 
 // The range in which neither these numbers nor their products overflow or underflow, also on devices that flush
-// denormals.
+// denormals to zero.
 const float LEAST_SURE = 7.88860905e-31;  // 2^-100
 const float MOST_SURE = 1.26765060e+30;   // 2^100
 
-// Let W be the sum of the areas' six products, D the determinant, at most W, and Z the sum of the depths' magnitudes.
-// The rounding error of the areas is 2 u W in all. The error of cross_triangle's weights is 12 u W / D, for which it
-// moves them by 27 u W / D along the longest side, so none becomes negative if the smallest area exceeds 64 u W. Its t
-// is then within 44 u Z W / D of the exact one, and the t computed here within 8 u Z W / D. cross_triangle therefore
-// agrees wherever the glance is certain. The largest difference of the two in about 10^7 triangles was 5 u Z W / D.
+// Returns the result of a glance. Let W be the sum of the areas' six products, D the determinant, at most W, and Z the
+// sum of the depths' magnitudes. The rounding error of all areas together is 2 u W. The error of cross_triangle's
+// weights is 12 u W / D, and its correction moves the weights by 27 u W / D along the longest side. No weight becomes
+// negative if the smallest area exceeds 64 u W. Its t is then within 44 u Z W / D of the exact one, and the t computed
+// here within 8 u Z W / D. cross_triangle therefore agrees with the glance if the glance is certain. The largest
+// difference of the two in about 10^7 triangles was 5 u Z W / D.
 Glance glance_at(ShearedTriangle sheared, float shear_z, float tmin, float tmax) {
   vec2 a = sheared.a;
   vec2 b = sheared.b;
@@ -147,7 +149,7 @@ Glance glance_at(ShearedTriangle sheared, float shear_z, float tmin, float tmax)
   precise float t = sum * times_sign_of(shear_z, sheared.determinant);
   precise float after = t - tmin * area;
   precise float before = tmax * area - t;
-  // A NaN makes this false.
+  // If a number is NaN, the condition is false.
   bool is_sure = sheared.least > rounding && rounding >= LEAST_SURE && error >= LEAST_SURE && error <= MOST_SURE;
   return Glance(is_sure && after > error && before > error, is_sure && (after < -error || before < -error));
 }
@@ -156,8 +158,8 @@ Crossing intersect_triangle(Ray ray, Primitive p) {
   return cross_triangle(shear_triangle(ray, p), ray.shear.z, ray.tmin);
 }
 
-// Returns the unit normal by the winding. The edges are scaled first, so that the product of the smallest admissible
-// ones does not underflow.
+// Returns the unit normal that follows from the winding. The edges are scaled first, so that the product of the
+// smallest allowed edges does not underflow.
 vec3 triangle_normal(Primitive p) {
   precise vec3 edge1 = corner1(p) - corner0(p);
   precise vec3 edge2 = corner2(p) - corner0(p);
@@ -167,7 +169,8 @@ vec3 triangle_normal(Primitive p) {
   return normalize3(cross3(scaled1, scaled2));
 }
 
-// P is computed from the corners and not from the ray, so that its error does not grow with the ray's length.
+// The point is computed from the corners and not from the ray, so that its error does not increase with the ray's
+// length.
 SurfacePoint triangle_surface(Ray ray, Primitive p, Hit hit) {
   precise vec3 edge1 = corner1(p) - corner0(p);
   precise vec3 edge2 = corner2(p) - corner0(p);

@@ -1,14 +1,15 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""A fake of promin.jobs: pieces are files of bytes that follow from a scene, which is a JSON file:
+"""A fake of promin.jobs. Its pieces are files whose bytes depend on a scene, which is a JSON file:
 
     {"pieces": 20, "ms": 5, "bytes": 1000, "names": "y" or "frames", "per_frame": 2, "seed": 1,
      "gate": a file for which makers wait, "crashes": [numbers whose maker is killed], "fails": [numbers that raise]}
 
-A job of "cast" takes the rays' file as well. Of the environment FAKE_FINGERPRINT is the bits that a process gives,
-FAKE_DIFFERENCE is how far its pieces are from others' where their bits differ (within the bounds up to 0.004),
-FAKE_NO_DEVICE takes its device, FAKE_GPUS are the names of its GPUs, FAKE_SALT changes its bytes as a faulty machine
-would, FAKE_LOG names a file that is told of each piece that is traced."""
+A job of "cast" also reads the file of rays. Variables of the environment set the behaviour of a process:
+FAKE_FINGERPRINT is its fingerprint, which determines its bits. FAKE_DIFFERENCE is the difference of its pieces from
+those of other fingerprints (within the bounds up to 0.004). FAKE_NO_DEVICE removes its device. FAKE_GPUS are the names
+of its GPUs. FAKE_SALT changes its bytes as a faulty machine would. FAKE_LOG names a file that gets a line for each
+piece that is traced."""
 
 from __future__ import annotations
 
@@ -143,7 +144,7 @@ class Job:
         return Piece(number, name, str(self._root / "pieces" / f"{name}.piece"), 1.0 + number % 3)
 
     def _read(self, number: int) -> tuple[str, str, bytes]:
-        """State, why, content."""
+        """Returns the state, the reason and the content of a piece."""
         try:
             data = Path(self.pieces[number].file).read_bytes()
         except FileNotFoundError:

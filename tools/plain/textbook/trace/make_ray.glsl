@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// make_ray.glsl without what makes it robust: boxes as they are.
+// This is make_ray.glsl without the parts that make it robust: boxes keep their exact size.
 
-// Rays start where they start.
+// The textbook's rays are never moved: they start at their own origin.
 bool is_far_away(Ray ray) { return false; }
 float distance_to_tree(Ray ray) { return 0.0; }
 float shift_to_tree(Ray ray) {
-  // A variable here and below, because versions 12 and 15 of glslang die over some results without.
+  // The variable here, and others below, are needed because versions 12 and 15 of glslang crash on some results without
+  // one.
   float shift = 0.0;
   return shift;
 }
@@ -18,14 +19,14 @@ float shifted_tmin(float tmin, float shift) {
 
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
-  // The scale is the interface's, not a matter of robustness: cast.glsl gives t in its units.
+  // The interface needs this scale, not robustness: cast.glsl gives t in its units.
   float scale = power_of_two_inverse(max_abs(direction));
   ray.origin = origin;
   ray.direction = direction * scale;
   ray.tmin = max(tmin, 0.0) / scale;
   ray.tmax = tmax / scale;
   ray.inverse_length2 = 1.0 / dot(ray.direction, ray.direction);
-  // Not 1 / 0, for the sake of the quantised boxes, which would be 0 * infinity there.
+  // This is not 1 / 0, because a quantised box would multiply it: 0 * infinity.
   vec3 signs = mix(vec3(1.0), vec3(-1.0), lessThan(ray.direction, vec3(0.0)));
   ray.inverse_direction = 1.0 / (signs * max(abs(ray.direction), vec3(1e-18)));
   ray.near_origin = origin;

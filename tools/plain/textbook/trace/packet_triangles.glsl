@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// packet_triangles.glsl without glances: the textbook's triangle is met or not.
+// This is packet_triangles.glsl without the fast test: the textbook's test alone decides whether a ray hits a
+// triangle.
 
 void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) {
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// The intersections of the textbook (docs/model.md), as written there, in world space and without care for rounding:
-// the methods that promin's own are measured against.
+// The intersections of the textbook (docs/model.md), as written there, in world space and without care for rounding.
+// promin's own methods are compared with them.
 
 struct SurfacePoint {
   vec3 position;
@@ -14,7 +14,7 @@ vec3 corner1(Primitive p) { return vec3(p.a.w, p.b.xy); }
 vec3 corner2(Primitive p) { return vec3(p.b.zw, uintBitsToFloat(p.c.x)); }
 vec3 triangle_normal(Primitive p) { return normalize(cross(corner1(p) - corner0(p), corner2(p) - corner0(p))); }
 
-// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+// The method is that of Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 Crossing intersect_triangle(Ray ray, Primitive p) {
   vec3 direction = ray.direction;
   vec3 edge1 = corner1(p) - corner0(p);
@@ -29,7 +29,7 @@ Crossing intersect_triangle(Ray ray, Primitive p) {
   return Crossing(inverse * dot(edge2, q), u, v, PART_SIDE);
 }
 
-// The roots of a t^2 + 2 b t + c.
+// Returns the roots of a t^2 + 2 b t + c.
 vec2 solve(float a, float b, float c) {
   float root = sqrt(b * b - a * c);
   return vec2(-b - root, -b + root) / a;
@@ -43,7 +43,7 @@ Crossing intersect_sphere(Ray ray, Primitive p) {
   return Crossing(t.x > ray.tmin ? t.x : t.y, 0.0, 0.0, PART_SIDE);
 }
 
-// n . p = D: the form that needs no point of the plane.
+// Solves n . p = D, the form that needs no point of the plane.
 Crossing intersect_plane(Ray ray, Primitive p) {
   vec3 normal = p.b.xyz;
   float t = (dot(normal, p.a.xyz) - dot(normal, ray.origin)) / dot(normal, ray.direction);
@@ -54,7 +54,7 @@ void keep_nearer(Ray ray, float t, uint part, bool is_there, inout Crossing near
   if (is_there && t > ray.tmin && (nearest.t < 0.0 || t < nearest.t)) nearest = Crossing(t, 0.0, 0.0, part);
 }
 
-// |P - C - m V| = r + s m between two disks; the thesis' cylinder with s = 0, its cone with one radius 0.
+// Solves |P - C - m V| = r + s m between two disks; s = 0 gives the thesis' cylinder, one radius of 0 its cone.
 Crossing intersect_frustum(Ray ray, vec3 center, vec3 axis, float half_height, float bottom, float top, bool is_open) {
   vec3 direction = ray.direction;
   float s = (top - bottom) / (2.0 * half_height);
@@ -91,7 +91,7 @@ Crossing intersect_cone(Ray ray, Primitive p) {
   return intersect_frustum(ray, p.a.xyz, p.b.xyz, p.b.w, p.a.w, cone_top(p), (p.c.x & SHAPE_IS_OPEN) != 0u);
 }
 
-// Slabs, in the frame that the rotation matrix of the box's quaternion leads to.
+// Tests slabs, in the frame that the rotation matrix of the box's quaternion leads to.
 mat3 box_axes(Primitive p) {
   vec3 q = vec3(p.b.zw, uintBitsToFloat(p.c.x));
   float w = sqrt(1.0 - dot(q, q));
@@ -125,7 +125,7 @@ Crossing intersect_box(Ray ray, Primitive p) {
   return Crossing(takes_near ? near : far, 0.0, 0.0, takes_near ? near_face : far_face);
 }
 
-// Both spheres, and the cone that touches them between the circles where it does.
+// Tests both spheres, and the cone between the circles where it touches them.
 Crossing intersect_capsule(Ray ray, Primitive p) {
   vec3 direction = ray.direction;
   vec3 axis = p.b.xyz;
