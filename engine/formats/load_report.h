@@ -67,7 +67,8 @@ class LoadReport {
   /// refuse it.
   void warn(const Fault& fault);
   /// Warns once for all faults of a kind. The warning has the place of the first fault and the number of the others:
-  /// "line 12: a face has fewer than 3 corners, and 11 more; promin omits the face". A strict report refuses each fault.
+  /// "line 12: a face has fewer than 3 corners, and 11 more; promin omits the face". A strict report refuses each
+  /// fault.
   void repair(const Fault& fault);
 
   /// Records that a visible part of the scene cannot be drawn.

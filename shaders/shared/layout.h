@@ -239,11 +239,11 @@ struct ViewConstants {
   vec4 background;       // w = SHOWS_*: what camera rays that leave the scene show
   vec4 backdrop_top;     // w = factor of the backdrop's colours in mirrors and behind glass
   vec4 backdrop_bottom;  // w = number of rows of the picture
-  vec4 backdrop_rise;   // upward vector of length 1 / (height of the picture at distance 1) (orthographic: in the
-                        // world); w = 1 for an orthographic camera
-  vec4 tree_bounds;     // center and max-norm radius of the tree's primitives
-  vec4 film_center;     // x, y = half the picture's size in pixels
-  uvec4 first_index;    // first index in its view of shading data: x = materials, y = lights, z = normals, w = colours
+  vec4 backdrop_rise;    // upward vector of length 1 / (height of the picture at distance 1) (orthographic: in the
+                         // world); w = 1 for an orthographic camera
+  vec4 tree_bounds;      // center and max-norm radius of the tree's primitives
+  vec4 film_center;      // x, y = half the picture's size in pixels
+  uvec4 first_index;     // first index in its view of shading data: x = materials, y = lights, z = normals, w = colours
   uvec4 first_lookup;   // x = table of lobes, y = sky, as texels of shading data; z = side of the sky's sharpest level;
                         // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading data; w = words of
