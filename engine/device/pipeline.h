@@ -25,6 +25,8 @@ struct BoundBuffer {
   const Buffer* buffer = nullptr;
   /// The view, if the buffer is read as texels.
   const vk::raii::BufferView* view = nullptr;
+  /// True if Buffer::make_word_view() has made the view.
+  bool has_word_view = false;
 };
 
 /// A compiled compute shader with entry point "main" and one descriptor set. It is not bound to buffers.

@@ -33,7 +33,8 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
 
 /// Sets packets of 4 rays. Packets of 1, 2, 3, 4, 6 and 8 rays and of 2, 4 and 8 pixels were measured on two versions
 /// of Mesa, and no other size was faster on both (docs/performance_log.md).
-void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
+void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
+  profile.compiles_on_second_device = traits.core_count > 1;
   profile.pixel_packet_size = 4;
   // Compiling the showcase for packets takes 0.9 s longer with 22.3.6 and 2.6 s with 25.0.7, once on a machine; tracing
   // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md). This number of samples

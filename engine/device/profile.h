@@ -50,6 +50,9 @@ struct DeviceProfile {
   // Settings for dividing work into dispatches and workgroups. The target duration of a dispatch in milliseconds. At
   // the end of each dispatch, the threads of a CPU driver wait for the slowest one.
   double target_dispatch_ms = 25.0;
+  /// True if the driver compiles a kernel in one thread at the kernel's first dispatch, keeps the result in a cache on
+  /// the disk, and the host has another core. Kernels then compile on two devices at the same time (side_compiler.h).
+  bool compiles_on_second_device = false;
   /// Number of seconds after which a device that does not answer counts as lost.
   double most_silence_s = 120.0;
   /// Largest number of rows of workgroups in a dispatch (trace/kernels/group_rows.h).

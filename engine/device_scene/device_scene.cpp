@@ -201,7 +201,7 @@ std::vector<gpu::BoundBuffer> DeviceScene::geometry() const {
 std::vector<gpu::BoundBuffer> DeviceScene::shading() const {
   return {{layout::BINDING_SHADING, vk::DescriptorType::eStorageBuffer, &*shading_},
           {layout::BINDING_SHADING_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &shading_texels_},
-          {layout::BINDING_TEXTURE_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &image_texels_}};
+          {layout::BINDING_TEXTURE_TEXELS, vk::DescriptorType::eUniformTexelBuffer, &*shading_, &image_texels_, true}};
 }
 
 gpu::Buffer DeviceScene::make_shading_buffer(uint64_t tail_end) const {

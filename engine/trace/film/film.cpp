@@ -238,6 +238,8 @@ void Film::warm_up() {
   one_pixel.max_depth = 0;
   TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, piece_options(one_pixel.max_depth));
   const TileSample piece = picture.next(1.0);
+  std::optional<gpu::SideCompiler> largest;
+  if (side_kernel() != nullptr) largest.emplace(*device_, *side_kernel());
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     record_begin(commands, picture);
     record(commands, piece);
@@ -245,8 +247,10 @@ void Film::warm_up() {
     // contain any number, for example a number of turns for the check of loops that would take minutes.
     if (!stream_) return;
     stream_->record_begin(commands, *buffer_, stream_shape(capacity_, 0));
-    stream_->record_warm_up(commands);
+    stream_->record_small_warm_up(commands);
   });
+  largest.reset();
+  if (stream_) device_->run([&](const auto& commands) { stream_->record_large_warm_up(commands); });
 }
 
 uint32_t Film::most_layers() const {

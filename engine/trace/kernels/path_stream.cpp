@@ -86,13 +86,17 @@ PathStream::PathStream(const gpu::Device& device, FeatureMask features,
                        std::span<const gpu::SpecializationConstant> constants,
                        std::span<const gpu::BoundBuffer> buffers, const PictureShaders& shaders)
     : most_group_rows_(device.profile().most_group_rows),
+      largest_{shaders.follow_paths, with_query(constants, false), {buffers.begin(), buffers.end()}},
       place_(device, k_place_rays_spirv, constants, buffers),
       list_(device, k_list_rays_spirv, constants, buffers),
       shadow_(device, shaders.trace_shadow_rays, with_query(constants, !needs_nearest_blocker(features)), buffers),
-      follow_(device, shaders.follow_paths, with_query(constants, false), buffers) {}
+      follow_(device, largest_.spirv, largest_.constants, buffers) {}
 
 void PathStream::bind(const gpu::BoundBuffer& buffer) {
   for (gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_, &follow_}) pipeline->bind(buffer);
+  for (gpu::BoundBuffer& bound : largest_.buffers) {
+    if (bound.binding == buffer.binding) bound = buffer;
+  }
 }
 
 void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film,
@@ -127,11 +131,16 @@ void PathStream::record_turns(const vk::raii::CommandBuffer& commands, const gpu
   }
 }
 
-void PathStream::record_warm_up(const vk::raii::CommandBuffer& commands) const {
-  for (const gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_, &follow_}) {
+void PathStream::record_small_warm_up(const vk::raii::CommandBuffer& commands) const {
+  for (const gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_}) {
     wait_for_last(commands);
     pipeline->dispatch(commands, uvec2(1));
   }
+}
+
+void PathStream::record_large_warm_up(const vk::raii::CommandBuffer& commands) const {
+  wait_for_last(commands);
+  follow_.dispatch(commands, uvec2(1));
 }
 
 }  // namespace promin

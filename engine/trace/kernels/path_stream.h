@@ -6,6 +6,7 @@
 #include <span>
 
 #include "device/pipeline.h"
+#include "device/side_compiler.h"
 #include "scene/features.h"
 #include "shared/layout.h"
 #include "trace/kernels/picture_shaders.h"
@@ -61,12 +62,16 @@ class PathStream {
   /// through.
   void record_turns(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film, const StreamShape& shape,
                     uint32_t steps) const;
-  /// Records a workgroup of each kernel, after record_begin() and a dispatch whose constants are in the film's head.
-  /// The workgroups have no work, but drivers compile the kernels now.
-  void record_warm_up(const vk::raii::CommandBuffer& commands) const;
+  /// Records a workgroup of each kernel except the largest, and of the largest kernel, after record_begin() and a
+  /// dispatch whose constants are in the film's head. The workgroups have no work, but drivers compile the kernels now.
+  void record_small_warm_up(const vk::raii::CommandBuffer& commands) const;
+  void record_large_warm_up(const vk::raii::CommandBuffer& commands) const;
+  /// Returns the source of the largest kernel. It is valid until bind().
+  const gpu::KernelSource& largest_kernel() const { return largest_; }
 
  private:
   uint32_t most_group_rows_;
+  gpu::KernelSource largest_;
   gpu::ComputePipeline place_;
   gpu::ComputePipeline list_;
   gpu::ComputePipeline shadow_;
