@@ -48,7 +48,7 @@ double within(double angle, double size_deg) {
 
 /// What comes from a direction of the sky as it is before it is turned: +Z is 0, +X a quarter to the right of a viewer
 /// who stands there and looks at the scene.
-struct Radiance {
+struct SkyRadiance {
   const dvec3& d;
 
   dvec3 operator()(const std::monostate&) const { return dvec3(0); }
@@ -107,7 +107,7 @@ dvec3 radiance_of(const Environment& environment, const dvec3& direction) {
   const double sine = std::sin(static_cast<double>(environment.rotation));
   const double cosine = std::cos(static_cast<double>(environment.rotation));
   const dvec3 in_sky(direction.x * cosine - direction.z * sine, direction.y, direction.x * sine + direction.z * cosine);
-  return static_cast<double>(environment.intensity) * std::visit(Radiance{in_sky}, environment.sky);
+  return static_cast<double>(environment.intensity) * std::visit(SkyRadiance{in_sky}, environment.sky);
 }
 
 /// Coefficients of the bands by what they multiply, and the constants of docs/model.md.

@@ -29,7 +29,7 @@ namespace {
 using test::has_same_bits;
 
 /// A mirroring ball on a floor, with a light.
-Scene make_scene() {
+Scene make_library_scene() {
   Mesh floor;
   floor.positions = {{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}};
   floor.triangles = {{0, 2, 1}, {0, 3, 2}};
@@ -43,7 +43,7 @@ Scene make_scene() {
   return scene;
 }
 
-View make_view(const Scene& scene, uint32_t size = 64) {
+View make_library_view(const Scene& scene, uint32_t size = 64) {
   View view;
   view.camera = frame_scene(scene, 1.0F);
   view.size = {size, size};
@@ -52,8 +52,8 @@ View make_view(const Scene& scene, uint32_t size = 64) {
 
 class LibraryTest : public test::DeviceTest {
  protected:
-  const Scene scene_ = make_scene();
-  const View view_ = make_view(scene_);
+  const Scene scene_ = make_library_scene();
+  const View view_ = make_library_view(scene_);
 };
 
 TEST_F(LibraryTest, WrongViewsAreRefusedAndTheRendererStays) {
@@ -224,7 +224,7 @@ TEST_F(LibraryTest, ABrokenOffConstructorLeavesTheDeviceUsable) {
 }
 
 TEST_F(LibraryTest, ABrokenOffPictureStopsAtTheNextDispatchAndTheRendererStays) {
-  const View view = make_view(scene_, 256);
+  const View view = make_library_view(scene_, 256);
   // Little enough a dispatch that there are several.
   TunedRendererOptions options;
   options.blocks_per_dispatch = 1;

@@ -46,7 +46,7 @@ uvec2 size_for(const world::Scene& scene) {
 }
 
 /// The view that `promin render` has of a scene, with the lights that stand in.
-View view_of(world::Scene& scene) {
+View camera_view_of(world::Scene& scene) {
   View view;
   view.size = size_for(scene);
   view.camera = scene.cameras.empty() ? look_from_front(scene, 4.0F / 3.0F) : scene.cameras.front();
@@ -116,7 +116,7 @@ std::vector<std::string> scene_names() {
 
 TEST_P(OraclePictureTest, AgreesWithTheOracle) {
   world::Scene scene = world::flatten(load_scene(fs::path(PROMIN_SCENES_DIR) / GetParam()));
-  View view = view_of(scene);
+  View view = camera_view_of(scene);
   oracle::PictureBounds bounds;
   if (std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); })) {
     view.max_depth = kMaxDepthOfGlass;

@@ -21,7 +21,7 @@ namespace {
 /// A material's factor is a product of two of these, and fp32 and validate() allow up to 1e15.
 constexpr double kMostFactor = 1e7;
 /// A view this close to parallel with its up vector has no top.
-constexpr double kLeastSine = 1e-6;
+constexpr double kLeastViewSine = 1e-6;
 
 /// What a view is made of.
 constexpr std::string_view kViewParts[] = {"from", "at", "up", "angle", "hither", "resolution"};
@@ -271,7 +271,7 @@ class NffParser {
     const dvec3 look = glm::normalize(*at - *from);
     const dvec3 side = glm::cross(look, glm::normalize(*up));
     // Written so that NaN, which coinciding points give, is refused too.
-    if (!(glm::length(side) >= kLeastSine)) {
+    if (!(glm::length(side) >= kLeastViewSine)) {
       return leave_out("nff.view.direction",
                        "has from and at in the same place, or an up that is 0 or parallel to the view");
     }

@@ -50,10 +50,6 @@ struct OrderedRays {
   }
 };
 
-bool asks_for_crossings(HitQuery query) {
-  return query == HitQuery::kCount || query == HitQuery::kAll;
-}
-
 /// Returns a callback for the progress of `count` rays from the first on as a part of all.
 ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t count, size_t all) {
   if (!progress) return {};
