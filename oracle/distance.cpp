@@ -10,14 +10,14 @@
 namespace promin::oracle {
 namespace {
 
-using Corners = std::array<Vector, 3>;
+using CornerPlaces = std::array<Vector, 3>;
 
-Corners corners_of(const Mesh& mesh, int32_t triangle) {
+CornerPlaces corners_of(const Mesh& mesh, int32_t triangle) {
   const glm::uvec3& t = mesh.triangles[static_cast<size_t>(triangle)];
   return {Vector(mesh.positions[t.x]), Vector(mesh.positions[t.y]), Vector(mesh.positions[t.z])};
 }
 
-Vector normal_of(const Corners& c) {
+Vector normal_of(const CornerPlaces& c) {
   return glm::cross(c[1] - c[0], c[2] - c[0]);
 }
 
@@ -38,7 +38,7 @@ struct Bound {
   }
   BoundingSphere operator()(const world::Box& b) const { return {Vector(b.center), glm::length(Vector(b.half_size))}; }
   BoundingSphere operator()(const Mesh& mesh) const {
-    const Corners corners = corners_of(mesh, primitive);
+    const CornerPlaces corners = corners_of(mesh, primitive);
     const Vector center = (corners[0] + corners[1] + corners[2]) / Real(3);
     Real radius = 0;
     for (const Vector& corner : corners) radius = std::max(radius, glm::distance(center, corner));
@@ -178,7 +178,7 @@ struct SignedDistance {
   }
 
   Real operator()(const Mesh& mesh) const {
-    const Corners c = corners_of(mesh, primitive);
+    const CornerPlaces c = corners_of(mesh, primitive);
     const Vector normal = glm::normalize(normal_of(c));
     bool is_above = true;
     Real to_edges = kInfinity;

@@ -14,10 +14,10 @@
 namespace promin::oracle {
 namespace {
 
-constexpr Real kPi = std::numbers::pi_v<Real>;
+constexpr Real kRealPi = std::numbers::pi_v<Real>;
 
 /// The smallest cosine to the eye in the visibility term. Vertex normals may point away from the eye.
-constexpr Real kLeastCosine = 0x1p-10L;
+constexpr Real kLeastLobeCosine = 0x1p-10L;
 /// The smallest alpha for highlights. Sources are points, so a smooth surface would otherwise not show them.
 constexpr Real kLeastAlphaOfSources = 0.002L;
 /// The roughness up to which a mirror ray contributes all reflected light, and the roughness from which it contributes
@@ -34,7 +34,7 @@ Real fifth_power(Real x) {
 /// Returns D. The sum below is another form of glTF's (N.H)^2 (alpha^2 - 1) + 1, with less rounding.
 Real density_of_sine_square(Real sine_square, Real alpha) {
   const Real sum = alpha * alpha * (1 - sine_square) + sine_square;
-  return alpha * alpha / (kPi * sum * sum);
+  return alpha * alpha / (kRealPi * sum * sum);
 }
 
 /// Returns the fraction of the reflected light that a mirror ray contributes.
@@ -50,7 +50,7 @@ Real alpha_of_sources_of(Real roughness) {
 /// Returns the radiance of a source's light that facets with a reflectance of 1 reflect. The source causes an
 /// irradiance of 1 perpendicular to its direction.
 Real facet_radiance(const LobeAngles& angles, Real alpha) {
-  return angles.l * visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) *
+  return angles.l * visibility(std::max(angles.v, kLeastLobeCosine), angles.l, alpha) *
          microfacet_density(angles.theta, alpha);
 }
 
@@ -130,7 +130,7 @@ LobeShares look_up_lobe_shares(Real v, Real roughness) {
 
 Real look_up_sheen_share(Real v, Real roughness) {
   static const LobeTable kTable(make_sheen_table());
-  return 2 * kTable.look_up(std::max(v, kLeastCosine), roughness).all;
+  return 2 * kTable.look_up(std::max(v, kLeastLobeCosine), roughness).all;
 }
 
 LobeShares integrate_lobe_shares(Real v, Real roughness) {
@@ -164,7 +164,7 @@ LobeShares integrate_lobe_shares(Real v, Real roughness) {
     });
   };
   // First come the whole rings, then the rings that the horizon cuts.
-  const Real whole = kPi / 2 - tilt;
+  const Real whole = kRealPi / 2 - tilt;
   integrate(make_panels(0, whole, alpha / 4, false), add_ring);
   integrate(make_panels(whole, whole + 2 * tilt, std::min(alpha, tilt) / 4, false), add_ring);
   return sum;
@@ -216,7 +216,7 @@ Real integrate_sheen_share(Real v, Real roughness) {
     const Real across = std::sqrt(1 - l * l);
     Real density = 0;
     for (int i = 0; i < kAzimuths; ++i) {
-      const double azimuth = static_cast<double>(kPi) * (i + 0.5) / kAzimuths;
+      const double azimuth = static_cast<double>(kRealPi) * (i + 0.5) / kAzimuths;
       // The azimuth is counted from the eye's. The computation in double is exact enough and much faster.
       const double forth = static_cast<double>(sine) + static_cast<double>(across) * std::cos(azimuth);
       const double aside = static_cast<double>(across) * std::sin(azimuth);
@@ -225,7 +225,7 @@ Real integrate_sheen_share(Real v, Real roughness) {
       density += std::pow(across2 / (across2 + up * up), static_cast<double>(1 / (2 * alpha)));
     }
     // The factor 2 stands for both halves of the ring.
-    density *= (2 + 1 / alpha) / (2 * kPi) * 2 * kPi / kAzimuths;
+    density *= (2 + 1 / alpha) / (2 * kRealPi) * 2 * kRealPi / kAzimuths;
     sum += density * sheen_visibility(v, l, alpha) * l * 3 * place * place / kRings;
   }
   return sum;
@@ -282,9 +282,9 @@ Vector under_film(const MetallicRoughness& material, const Vector& f0, Real f90,
 /// Returns the eye's sensitivity, from section "Spectral sensitivity" of Belcour and Barla's model in the extension's
 /// text.
 Vector sensitivity(Real path_difference, const Vector& shift) {
-  const Real phase = 2 * kPi * path_difference * 1e-9L;
+  const Real phase = 2 * kRealPi * path_difference * 1e-9L;
   const auto lobe = [&](Real value, Real place, Real variance, Real shifted) {
-    return value * std::sqrt(2 * kPi * variance) * std::cos(place * phase + shifted) *
+    return value * std::sqrt(2 * kRealPi * variance) * std::cos(place * phase + shifted) *
            std::exp(-phase * phase * variance) / 1.0685e-7L;
   };
   const Real x = lobe(5.4856e-13L, 1.6810e6L, 4.3278e9L, shift.x) + lobe(9.7470e-14L, 2.2399e6L, 4.5282e9L, shift.x);
@@ -312,7 +312,7 @@ Vector film_reflectance(const Vector& f0, Real ior, Real thickness, Real cosine)
     const Real root = std::sqrt(std::clamp(f0[i], Real(0), Real(0.9999L)));
     const Real base = (1 + root) / (1 - root);
     r23[i] = schlick(square((base - film) / (base + film)), cosine_inside);
-    shift[i] = base < film ? 2 * kPi : kPi;
+    shift[i] = base < film ? 2 * kRealPi : kRealPi;
   }
   const Vector round_trip = glm::clamp(r12 * r23, Vector(1e-5L), Vector(0.9999L));
   const Vector body = square(1 - r12) * r23 / (Real(1) - round_trip);
@@ -374,8 +374,8 @@ Vector Lobe::highlight(const GrainWays& ways, const GrainAlphas& alphas) const {
   const Vector half = glm::normalize(ways.to_eye + ways.to_light);
   const Vector f(ab * half.x, at * half.y, at * ab * half.z);
   const Real w2 = at * ab / glm::dot(f, f);
-  const Real density = at * ab * w2 * w2 / kPi;
-  const Real v = std::max(ways.to_eye.z, kLeastCosine);
+  const Real density = at * ab * w2 * w2 / kRealPi;
+  const Real v = std::max(ways.to_eye.z, kLeastLobeCosine);
   const Real l = std::max(ways.to_light.z, Real(0));
   const Real to_eye = l * glm::length(Vector(at * ways.to_eye.x, ab * ways.to_eye.y, v));
   const Real to_light = v * glm::length(Vector(at * ways.to_light.x, ab * ways.to_light.y, l));
@@ -420,8 +420,8 @@ Real Sheen::left(Real cosine_to_light) const {
 
 Vector Sheen::highlight(const LobeAngles& angles) const {
   const Real alpha = sheen_alpha_of(roughness_);
-  const Real density = (2 + 1 / alpha) * std::pow(std::sin(angles.theta), 1 / alpha) / (2 * kPi);
-  const Real sent = density * sheen_visibility(std::max(angles.v, kLeastCosine), angles.l, alpha) * angles.l;
+  const Real density = (2 + 1 / alpha) * std::pow(std::sin(angles.theta), 1 / alpha) / (2 * kRealPi);
+  const Real sent = density * sheen_visibility(std::max(angles.v, kLeastLobeCosine), angles.l, alpha) * angles.l;
   return color_ * (sent / std::max(share_, Real(1)));
 }
 

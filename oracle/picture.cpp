@@ -29,7 +29,7 @@ Real lift_of(const world::Shape& shape, const Ray& ray, const Hit& hit, const Ve
                      glm::distance(position, bound.center) + bound.radius);
 }
 
-struct Corners {
+struct TriangleCorners {
   glm::uvec3 indices;
   std::array<Real, 3> weights;
 
@@ -42,7 +42,7 @@ struct Corners {
 };
 
 /// Sets the vertex normals on the side that is visible: they face the ray as the triangle's plane does.
-void apply_vertex_normals(const Mesh& mesh, const Corners& corners, Real side, SurfacePoint& point) {
+void apply_vertex_normals(const Mesh& mesh, const TriangleCorners& corners, Real side, SurfacePoint& point) {
   const Vector sum = side * corners.interpolate<Vector>(mesh.normals);
   if (sum == Vector(0)) return;
   point.normal = glm::normalize(sum);
@@ -271,7 +271,8 @@ class Tracer {
     point.material = &material_of(scene_, hit);
     point.on_triangle = triangle_point(ray, hit, way.cone, error);
     if (const Mesh* mesh = point.on_triangle.mesh) {
-      const Corners corners{mesh->triangles[static_cast<size_t>(hit.primitive)], {1 - hit.u - hit.v, hit.u, hit.v}};
+      const TriangleCorners corners{mesh->triangles[static_cast<size_t>(hit.primitive)],
+                                    {1 - hit.u - hit.v, hit.u, hit.v}};
       if (!mesh->normals.empty()) apply_vertex_normals(*mesh, corners, point.side, point);
       if (!mesh->colors.empty()) point.vertex_color = corners.interpolate<Texel>(mesh->colors);
     }
@@ -292,7 +293,8 @@ class Tracer {
     const Shown shown = textures_.look_up(slots_of(material)[kBaseSlot], at);
     Real factor = material.alpha;
     if (at.mesh != nullptr && !at.mesh->colors.empty()) {
-      const Corners corners{at.mesh->triangles[static_cast<size_t>(at.triangle)], {1 - at.u - at.v, at.u, at.v}};
+      const TriangleCorners corners{at.mesh->triangles[static_cast<size_t>(at.triangle)],
+                                    {1 - at.u - at.v, at.u, at.v}};
       factor *= corners.interpolate<Texel>(at.mesh->colors).a;
     }
     return {factor * shown.value.a, factor * shown.error.a};
@@ -328,7 +330,8 @@ class Tracer {
       const TrianglePoint at = triangle_point(ray, hit, {}, error_at(scene_, ray, hit, of_ray));
       tint = Vector(model->base_color);
       if (at.mesh != nullptr && !at.mesh->colors.empty()) {
-        const Corners corners{at.mesh->triangles[static_cast<size_t>(at.triangle)], {1 - at.u - at.v, at.u, at.v}};
+        const TriangleCorners corners{at.mesh->triangles[static_cast<size_t>(at.triangle)],
+                                      {1 - at.u - at.v, at.u, at.v}};
         tint *= Vector(corners.interpolate<Texel>(at.mesh->colors));
       }
       const Slots slots = slots_of(material);

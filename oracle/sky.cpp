@@ -50,7 +50,7 @@ double within(double angle, double size_deg) {
 
 /// Returns the radiance from a direction of the sky before the sky is rotated: azimuth 0 is +Z, and +X is a quarter to
 /// the right for a viewer who stands at +Z and looks at the scene.
-struct Radiance {
+struct SkyRadiance {
   const dvec3& d;
 
   dvec3 operator()(const std::monostate&) const { return dvec3(0); }
@@ -109,7 +109,7 @@ dvec3 radiance_of(const Environment& environment, const dvec3& direction) {
   const double sine = std::sin(static_cast<double>(environment.rotation));
   const double cosine = std::cos(static_cast<double>(environment.rotation));
   const dvec3 in_sky(direction.x * cosine - direction.z * sine, direction.y, direction.x * sine + direction.z * cosine);
-  return static_cast<double>(environment.intensity) * std::visit(Radiance{in_sky}, environment.sky);
+  return static_cast<double>(environment.intensity) * std::visit(SkyRadiance{in_sky}, environment.sky);
 }
 
 /// Returns the functions of the bands, indexed like the coefficients, with the constants of docs/model.md.

@@ -122,7 +122,7 @@ std::string describe_memory(const TreeView& tree) {
                      per_primitive(nodes + records), per_primitive(nodes), per_primitive(records));
 }
 
-void print_info(const std::filesystem::path& path) {
+void print_bvh_info(const std::filesystem::path& path) {
   const BvhFile file(path);
   const TreeView& tree = file.tree();
   print_row("file", fmt::format("{}, {} bytes", path.string(), file.size_bytes()));
@@ -181,7 +181,7 @@ Command add_bvh_info_command(CLI::App& program) {
   const auto options = std::make_shared<BvhOptions>();
   OptionTable table(command);
   add_file_row(table, *options);
-  return {&command, [options] { print_info(options->file); }};
+  return {&command, [options] { print_bvh_info(options->file); }};
 }
 
 Command add_verify_command(CLI::App& program) {

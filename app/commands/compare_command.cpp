@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "core/count_of.h"
+#include "core/json_text.h"
 #include "core/srgb.h"
 #include "image/compare_channels.h"
 #include "options/help.h"
@@ -86,7 +87,7 @@ nlohmann::json number_or_null(double number) {
   return std::isfinite(number) ? nlohmann::json(number) : nlohmann::json(nullptr);
 }
 
-void print_json(const PictureDifference& difference, const std::vector<ChannelDifference>& others) {
+void print_comparison_json(const PictureDifference& difference, const std::vector<ChannelDifference>& others) {
   nlohmann::ordered_json json = {{"pixels", difference.pixel_count},
                                  {"mean", difference.mean},
                                  {"rmse", difference.rmse},
@@ -102,7 +103,7 @@ void print_json(const PictureDifference& difference, const std::vector<ChannelDi
                                     {"largest_at", {other.largest_at.x, other.largest_at.y}},
                                     {"different", other.different_count}};
   }
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json_text(json, 2));
 }
 
 /// Prints the difference of a picture or of one of its channels.
@@ -140,7 +141,7 @@ void print_channels(const std::vector<ChannelDifference>& others, double fail) {
   promin::app::print_rows("channels", lines);
 }
 
-void print_rows(const PictureDifference& difference, double fail) {
+void print_difference(const PictureDifference& difference, double fail) {
   print_row("mean", fmt::format("{:.6g}", difference.mean));
   print_row("RMSE", fmt::format("{:.6g}", difference.rmse));
   print_row("PSNR", fmt::format("{:.6g} dB", difference.psnr_db));
@@ -199,9 +200,9 @@ void compare(const CompareOptions& options) {
   const std::vector<ChannelDifference> others = compare_other_channels(options.first, options.second, fail);
   if (options.difference) write_difference(*options.difference, first, second, difference);
   if (options.prints_json) {
-    print_json(difference, others);
+    print_comparison_json(difference, others);
   } else if (!options.is_quiet) {
-    print_rows(difference, fail);
+    print_difference(difference, fail);
     print_channels(others, fail);
   }
   if (!options.fail) return;

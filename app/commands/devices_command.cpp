@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/json_text.h"
 #include "device/driver_files.h"
 #include "options/arguments.h"
 #include "promin/device_info.h"
@@ -17,7 +18,7 @@
 namespace promin::app {
 namespace {
 
-void print_json(const std::vector<gpu::DeviceInfo>& devices) {
+void print_devices_json(const std::vector<gpu::DeviceInfo>& devices) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const gpu::DeviceInfo& device : devices) {
     list.push_back({{"index", device.index},
@@ -30,7 +31,7 @@ void print_json(const std::vector<gpu::DeviceInfo>& devices) {
                     {"lacks", device.lacks},
                     {"is_default", device.is_default}});
   }
-  fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(list, 1));
 }
 
 /// Help about the environment variables that select the CPU driver.
@@ -52,7 +53,7 @@ void print_devices(bool is_json) {
     throw DeviceError(gpu::explain_missing_driver());
   }
   if (is_json) {
-    print_json(devices);
+    print_devices_json(devices);
     return;
   }
   size_t name_width = 4;

@@ -197,7 +197,7 @@ LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
   return lit;
 }
 
-void print_json(Scene scene, const EnvironmentChoice& surroundings) {
+void print_scene_json(Scene scene, const EnvironmentChoice& surroundings) {
   nlohmann::json json = json_of(scene);
   const LitScene lit = light_and_pack(scene, surroundings);
   const DisplayTransform display = display_of(scene);
@@ -265,7 +265,7 @@ void print_info(const InfoOptions& options) {
   const EnvironmentChoice surroundings(options.environment);
   add_warnings_of_pictures(scene, surroundings);
   if (options.is_json) {
-    print_json(std::move(scene), surroundings);
+    print_scene_json(std::move(scene), surroundings);
   } else {
     print_table(std::move(scene), options.file, surroundings);
   }

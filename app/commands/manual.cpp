@@ -24,7 +24,7 @@ std::vector<const CLI::App*> with_commands(const CLI::App& program) {
 }
 
 /// Returns the names of an option, such as "-o" and "--output", the short ones first.
-std::vector<std::string> names_of(const CLI::Option& option) {
+std::vector<std::string> names_of_option(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -82,7 +82,7 @@ std::string man_options(const CLI::App& app) {
     page += fmt::format(".TP\n.I {}\n{}\n", roff(option->get_name(true)), roff(option->get_description()));
   }
   for (const CLI::Option* option : options_of(app)) {
-    const std::string names = fmt::format("{}", fmt::join(names_of(*option), ", "));
+    const std::string names = fmt::format("{}", fmt::join(names_of_option(*option), ", "));
     const std::string values = takes_values(*option) ? " \\fI" + roff(option->get_type_name()) + "\\fR" : "";
     page += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", roff(names), values, roff(option->get_description()));
   }
@@ -138,7 +138,7 @@ std::string make_man(const CLI::App& program) {
 std::string bash_words(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(app)) {
-    for (std::string& name : names_of(*option)) names.push_back(std::move(name));
+    for (std::string& name : names_of_option(*option)) names.push_back(std::move(name));
   }
   return fmt::format("{}", fmt::join(names, " "));
 }
@@ -156,7 +156,7 @@ std::string make_bash(const CLI::App& program) {
     for (const CLI::Option* option : options_of(*app)) {
       const std::vector<std::string> words = words_of(*option);
       if (!takes_values(*option) || words.empty()) continue;
-      for (const std::string& each : names_of(*option)) {
+      for (const std::string& each : names_of_option(*option)) {
         cases += fmt::format("    {}:{}) words='{}' ;;\n", pattern, each, fmt::join(words, " "));
       }
     }
@@ -204,7 +204,7 @@ std::string zsh_arguments(const CLI::App& app, const std::string& indent) {
       const std::string action = words.empty() ? "_files" : fmt::format("({})", fmt::join(words, " "));
       values += fmt::format(":{}:{}", zsh_text(option->get_type_name()), action);
     }
-    for (const std::string& each : names_of(*option)) {
+    for (const std::string& each : names_of_option(*option)) {
       lines += fmt::format(" \\\n{}'*{}[{}]{}'", indent, each, zsh_text(option->get_description()), values);
     }
   }

@@ -8,54 +8,57 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/json_text.h"
+
 namespace promin::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Returns the number, or null for infinity, because JSON has no infinity.
-Json json_of(float value) {
-  return std::isfinite(value) ? Json::parse(fmt::format("{:.9g}", value)) : Json(nullptr);
+OrderedJson json_of_part(float value) {
+  return std::isfinite(value) ? read_ordered_json(fmt::format("{:.9g}", value)) : OrderedJson(nullptr);
 }
 
-Json json_of(const vec3& v) {
-  return Json::array({json_of(v.x), json_of(v.y), json_of(v.z)});
+OrderedJson json_of_part(const vec3& v) {
+  return OrderedJson::array({json_of_part(v.x), json_of_part(v.y), json_of_part(v.z)});
 }
 
 /// Returns a position of the scene in world coordinates, with the nine digits of fp32, or with all digits far from the
 /// origin.
-Json json_of_place(const vec3& place, const Scene& scene) {
-  if (scene.center == dvec3(0.0)) return json_of(place);
+OrderedJson json_of_place(const vec3& place, const Scene& scene) {
+  if (scene.center == dvec3(0.0)) return json_of_part(place);
   const dvec3 world = scene.center + dvec3(place);
-  return Json::array({world.x, world.y, world.z});
+  return OrderedJson::array({world.x, world.y, world.z});
 }
 
-Json json_of(const Ray& ray, const Scene& scene) {
+OrderedJson json_of_part(const Ray& ray, const Scene& scene) {
   return {{"origin", json_of_place(ray.origin, scene)},
-          {"direction", json_of(ray.direction)},
-          {"tmin", json_of(ray.tmin)},
-          {"tmax", json_of(ray.tmax)}};
+          {"direction", json_of_part(ray.direction)},
+          {"tmin", json_of_part(ray.tmin)},
+          {"tmax", json_of_part(ray.tmax)}};
 }
 
-/// Writes the members that every hit has, also a blocker's. json_of(ExplainedRay) adds the members of hits on the path.
-Json json_of(const Hit& hit) {
+/// Writes the members that every hit has, also a blocker's. json_of_part(ExplainedRay) adds the members of hits on the
+/// path.
+OrderedJson json_of_part(const Hit& hit) {
   if (hit.object < 0) return nullptr;
   return {{"object", hit.object},
           {"primitive", hit.primitive},
-          {"t", json_of(hit.t)},
-          {"u", json_of(hit.u)},
-          {"v", json_of(hit.v)}};
+          {"t", json_of_part(hit.t)},
+          {"u", json_of_part(hit.u)},
+          {"v", json_of_part(hit.v)}};
 }
 
-Json json_of(const ExplainedSource& source, const Scene& scene) {
-  Json json = {{"light", source.light},
-               {"name", scene.lights[source.light].name},
-               {"visible", source.is_visible()},
-               {"contribution", json_of(source.contribution)},
-               {"shadow_ray", nullptr}};
+OrderedJson json_of_part(const ExplainedSource& source, const Scene& scene) {
+  OrderedJson json = {{"light", source.light},
+                      {"name", scene.lights[source.light].name},
+                      {"visible", source.is_visible()},
+                      {"contribution", json_of_part(source.contribution)},
+                      {"shadow_ray", nullptr}};
   if (source.shadow_ray) {
-    json["shadow_ray"] = json_of(*source.shadow_ray, scene);
-    json["shadow_ray"]["blocker"] = json_of(source.blocker);
+    json["shadow_ray"] = json_of_part(*source.shadow_ray, scene);
+    json["shadow_ray"]["blocker"] = json_of_part(source.blocker);
   }
   return json;
 }
@@ -74,26 +77,26 @@ std::string_view name_of(RayKind kind) {
   return "";
 }
 
-Json json_of(const ExplainedRay& ray, const Scene& scene) {
-  Json json = {{"kind", name_of(ray.kind)}, {"parent", nullptr}};
+OrderedJson json_of_part(const ExplainedRay& ray, const Scene& scene) {
+  OrderedJson json = {{"kind", name_of(ray.kind)}, {"parent", nullptr}};
   if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
-  json.update(json_of(ray.ray, scene));
-  json["weight"] = json_of(ray.weight);
-  json["hit"] = json_of(ray.hit);
+  json.update(json_of_part(ray.ray, scene));
+  json["weight"] = json_of_part(ray.weight);
+  json["hit"] = json_of_part(ray.hit);
   if (ray.hit.object >= 0) {
     json["hit"].update({{"object_name", scene.objects[static_cast<size_t>(ray.hit.object)].name},
                         {"position", json_of_place(ray.position, scene)},
-                        {"normal", json_of(ray.hit.normal)},
-                        {"shading_normal", json_of(ray.shading_normal)},
-                        {"lift", json_of(ray.lift)},
-                        {"coverage", json_of(ray.coverage)},
+                        {"normal", json_of_part(ray.hit.normal)},
+                        {"shading_normal", json_of_part(ray.shading_normal)},
+                        {"lift", json_of_part(ray.lift)},
+                        {"coverage", json_of_part(ray.coverage)},
                         {"material", ray.material},
                         {"material_name", scene.materials[ray.material].name}});
   }
-  json["own"] = json_of(ray.own);
-  json["sources"] = Json::array();
-  for (const ExplainedSource& source : ray.sources) json["sources"].push_back(json_of(source, scene));
-  json["radiance"] = json_of(ray.radiance);
+  json["own"] = json_of_part(ray.own);
+  json["sources"] = OrderedJson::array();
+  for (const ExplainedSource& source : ray.sources) json["sources"].push_back(json_of_part(source, scene));
+  json["radiance"] = json_of_part(ray.radiance);
   return json;
 }
 
@@ -148,17 +151,17 @@ std::string text_of(const ExplainedRay& ray, size_t depth, const Scene& scene) {
 }  // namespace
 
 std::string explain_json(const Explanation& explanation, const Scene& scene) {
-  Json samples = Json::array();
+  OrderedJson samples = OrderedJson::array();
   for (const ExplainedSample& sample : explanation.samples) {
-    Json rays = Json::array();
-    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of(ray, scene));
-    samples.push_back({{"rays", rays}, {"radiance", json_of(sample.radiance())}});
+    OrderedJson rays = OrderedJson::array();
+    for (const ExplainedRay& ray : sample.rays) rays.push_back(json_of_part(ray, scene));
+    samples.push_back({{"rays", rays}, {"radiance", json_of_part(sample.radiance())}});
   }
-  const Json json = {{"pixel", {explanation.pixel.x, explanation.pixel.y}},
-                     {"samples", samples},
-                     {"sum", json_of(explanation.sum)},
-                     {"color", json_of(explanation.color)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const OrderedJson json = {{"pixel", {explanation.pixel.x, explanation.pixel.y}},
+                            {"samples", samples},
+                            {"sum", json_of_part(explanation.sum)},
+                            {"color", json_of_part(explanation.color)}};
+  return json_text(json, 2) + "\n";
 }
 
 std::string explain_text(const Explanation& explanation, const Scene& scene) {

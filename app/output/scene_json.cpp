@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/hash.h"
+#include "core/json_text.h"
 #include "output/work_names.h"
 #include "scene/members.h"
 #include "work/pictures/scene_counts.h"
@@ -197,7 +198,7 @@ Json json_of(const Scene& scene) {
 }
 
 std::string write_json(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace promin::app

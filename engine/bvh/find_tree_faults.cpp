@@ -19,13 +19,13 @@ namespace {
 using layout::Node;
 using layout::Primitive;
 
-constexpr uint32_t kChunkSize = 4096;
+constexpr uint32_t kCheckedChunkSize = 4096;
 
 /// The two sides of a box along an axis: below its lower plane, or above its upper plane.
-enum class Side { kBelow, kAbove };
+enum class BoxSide { kBelow, kAbove };
 
-bool is_beyond(double coordinate, double plane, Side side) {
-  return side == Side::kBelow ? coordinate < plane : coordinate > plane;
+bool is_beyond(double coordinate, double plane, BoxSide side) {
+  return side == BoxSide::kBelow ? coordinate < plane : coordinate > plane;
 }
 
 // This code is separate from bvh/clip_triangle on purpose: the code that cuts primitives for builders must not check
@@ -33,17 +33,17 @@ bool is_beyond(double coordinate, double plane, Side side) {
 
 /// The two parts of a polygon that is cut at a plane; either may be missing.
 template <typename Piece>
-struct Cut {
+struct PieceCut {
   std::optional<Piece> beyond;
   std::optional<Piece> within;
 };
 
 /// The corners of a convex, planar polygon, in order.
-using Polygon = std::vector<dvec3>;
+using CutPolygon = std::vector<dvec3>;
 
-Cut<Polygon> cut_at(const Polygon& polygon, int axis, double plane, Side side) {
-  Polygon beyond;
-  Polygon within;
+PieceCut<CutPolygon> cut_at(const CutPolygon& polygon, int axis, double plane, BoxSide side) {
+  CutPolygon beyond;
+  CutPolygon within;
   for (size_t i = 0; i < polygon.size(); ++i) {
     const dvec3& a = polygon[i];
     const dvec3& b = polygon[(i + 1) % polygon.size()];
@@ -55,15 +55,15 @@ Cut<Polygon> cut_at(const Polygon& polygon, int axis, double plane, Side side) {
     beyond.push_back(crossing);
     within.push_back(crossing);
   }
-  Cut<Polygon> cut;
+  PieceCut<CutPolygon> cut;
   if (!beyond.empty()) cut.beyond = std::move(beyond);
   if (!within.empty()) cut.within = std::move(within);
   return cut;
 }
 
-Cut<ExactBounds> cut_at(const ExactBounds& box, int axis, double plane, Side side) {
-  Cut<ExactBounds> cut;
-  const bool is_below = side == Side::kBelow;
+PieceCut<ExactBounds> cut_at(const ExactBounds& box, int axis, double plane, BoxSide side) {
+  PieceCut<ExactBounds> cut;
+  const bool is_below = side == BoxSide::kBelow;
   const double outer = is_below ? box.lo[axis] : box.hi[axis];
   const double inner = is_below ? box.hi[axis] : box.lo[axis];
   if (!is_beyond(outer, plane, side)) return {{}, box};
@@ -80,8 +80,8 @@ void subtract(const Piece& piece, const ExactBounds& box, std::vector<Piece>& le
   const size_t first = left.size();
   Piece rest = piece;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const Side side : {Side::kBelow, Side::kAbove}) {
-      Cut<Piece> cut = cut_at(rest, axis, side == Side::kBelow ? box.lo[axis] : box.hi[axis], side);
+    for (const BoxSide side : {BoxSide::kBelow, BoxSide::kAbove}) {
+      PieceCut<Piece> cut = cut_at(rest, axis, side == BoxSide::kBelow ? box.lo[axis] : box.hi[axis], side);
       if (!cut.within) {
         // The box contains no part of the piece, so the piece stays whole.
         left.resize(first);
@@ -107,7 +107,7 @@ bool is_covered(const Piece& piece, std::span<const ExactBounds> boxes, double t
   return pieces.empty();
 }
 
-Polygon polygon_of(const Primitive& p) {
+CutPolygon polygon_of(const Primitive& p) {
   const std::array corners = triangle_corners(p);
   return {corners.begin(), corners.end()};
 }
@@ -141,12 +141,12 @@ class Inspection {
   TreeFaults run(const TreeFaultOptions& options) {
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     group_slots();
-    const size_t chunk_count = (size_t{tree_.primitive_count} + kChunkSize - 1) / kChunkSize;
+    const size_t chunk_count = (size_t{tree_.primitive_count} + kCheckedChunkSize - 1) / kCheckedChunkSize;
     std::vector<TreeFaults> of_chunks(chunk_count);
     SharedProgress progress(options.progress, static_cast<double>(chunk_count));
     for_each_index(chunk_count, options.thread_count, [&](size_t chunk) {
-      const auto begin = static_cast<uint32_t>(chunk * kChunkSize);
-      const uint32_t end = begin + std::min(kChunkSize, tree_.primitive_count - begin);
+      const auto begin = static_cast<uint32_t>(chunk * kCheckedChunkSize);
+      const uint32_t end = begin + std::min(kCheckedChunkSize, tree_.primitive_count - begin);
       for (uint32_t i = begin; i < end; ++i) inspect(i, of_chunks[chunk]);
       progress.add(1.0);
     });

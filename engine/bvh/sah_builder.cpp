@@ -11,14 +11,14 @@
 #include "core/shared_progress.h"
 
 // The builder has two phases. The first phase splits the top of the tree breadth first: the ranges of one level are cut
-// into chunks, which all threads bin and scatter. The second phase builds each range below kSubtreeSize as a subtree in
-// one task; the subtrees are appended to the top in their order. The tree does not depend on the assignment of work to
-// threads: chunks and subtrees have fixed sizes, and their results are merged in order.
+// into chunks, which all threads bin and scatter. The second phase builds each range below kSahSubtreeSize as a subtree
+// in one task; the subtrees are appended to the top in their order. The tree does not depend on the assignment of work
+// to threads: chunks and subtrees have fixed sizes, and their results are merged in order.
 namespace promin {
 namespace {
 
-constexpr uint32_t kChunkSize = 8192;
-constexpr uint32_t kSubtreeSize = 16384;
+constexpr uint32_t kSahChunkSize = 8192;
+constexpr uint32_t kSahSubtreeSize = 16384;
 
 /// The records [begin, end) of a node that has not been made. `node` is its index and `depth` its depth (1 for the
 /// root).
@@ -138,8 +138,8 @@ struct Halving {
   uint32_t middle = 0;
 
   explicit Halving(const Range& whole) : range(whole), grid(whole.extent.centers, whole.count()) {
-    for (uint32_t begin = range.begin; begin < range.end; begin += std::min(kChunkSize, range.end - begin)) {
-      chunks.emplace_back(begin, begin + std::min(kChunkSize, range.end - begin), grid);
+    for (uint32_t begin = range.begin; begin < range.end; begin += std::min(kSahChunkSize, range.end - begin)) {
+      chunks.emplace_back(begin, begin + std::min(kSahChunkSize, range.end - begin), grid);
     }
   }
   void choose_split();
@@ -206,7 +206,7 @@ class SahBuild {
 
   /// Adds a range. A large range is split with the next level; a small or deep range becomes a subtree.
   void add_range(const Range& range, Record* records, std::vector<Range>& level) {
-    if (range.count() > kSubtreeSize && range.depth < kMaxSahDepth) {
+    if (range.count() > kSahSubtreeSize && range.depth < kMaxSahDepth) {
       level.push_back(range);
     } else {
       subtrees_.push_back({range, records});
@@ -226,11 +226,11 @@ class SahBuild {
 
 Range SahBuild::make_root() {
   const auto count = static_cast<uint32_t>(boxes_.size());
-  std::vector<Extent> extents((count + kChunkSize - 1) / kChunkSize);
+  std::vector<Extent> extents((count + kSahChunkSize - 1) / kSahChunkSize);
   for_each_index(extents.size(), thread_count_, [&](size_t chunk) {
-    const auto begin = static_cast<uint32_t>(chunk * kChunkSize);
+    const auto begin = static_cast<uint32_t>(chunk * kSahChunkSize);
     Extent extent;
-    for (uint32_t i = begin; i < begin + std::min(kChunkSize, count - begin); ++i) {
+    for (uint32_t i = begin; i < begin + std::min(kSahChunkSize, count - begin); ++i) {
       records_[i] = Record(boxes_[i], i);
       extent.extend(records_[i]);
     }

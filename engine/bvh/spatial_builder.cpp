@@ -16,8 +16,8 @@
 namespace promin {
 namespace {
 
-constexpr size_t kChunkSize = 4096;
-constexpr size_t kSubtreeSize = 16384;
+constexpr size_t kSpatialChunkSize = 4096;
+constexpr size_t kSpatialSubtreeSize = 16384;
 
 /// If the children of the best object split overlap by less than this fraction of the root's area, the builder does not
 /// consider planes through primitives (Stich et al., section 4.2; there 1e-5).
@@ -278,7 +278,7 @@ class SpatialBuild {
 template <typename Part, typename Work>
 std::vector<Part> make_parts_of(std::span<const Record> records, unsigned thread_count, const Part& initial,
                                 const Work& work) {
-  return make_parts(records.size(), kChunkSize, thread_count, initial,
+  return make_parts(records.size(), kSpatialChunkSize, thread_count, initial,
                     [&](size_t begin, size_t end, Part& part) { work(records.subspan(begin, end - begin), part); });
 }
 
@@ -347,7 +347,7 @@ void SpatialBuild::build(Task root, unsigned thread_count, Bvh& bvh, std::vector
   while (!open.empty()) {
     Task task = std::move(open.back());
     open.pop_back();
-    if (subtrees != nullptr && task.count() <= kSubtreeSize) {
+    if (subtrees != nullptr && task.count() <= kSpatialSubtreeSize) {
       subtrees->push_back(std::move(task));
       continue;
     }

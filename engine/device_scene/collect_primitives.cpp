@@ -20,7 +20,7 @@ namespace {
 using namespace layout;
 
 /// The number of triangles that a thread processes at a time.
-constexpr size_t kChunkSize = 16384;
+constexpr size_t kTriangleChunkSize = 16384;
 
 uint32_t bits_of(float value) {
   return std::bit_cast<uint32_t>(value);
@@ -28,7 +28,7 @@ uint32_t bits_of(float value) {
 
 /// Packs the corners in the form that shaders/trace/primitives/triangle.glsl and triangle_corners read: corner0,
 /// corner1 and corner2.
-Primitive pack(const TrianglePart& part) {
+Primitive pack_part(const TrianglePart& part) {
   const auto& [a, b, c] = part;
   return {vec4(a.position, b.position.x), vec4(b.position.y, b.position.z, c.position.x, c.position.y),
           uvec4(bits_of(c.position.z), 0, KIND_TRIANGLE, 0)};
@@ -145,7 +145,7 @@ class Collector {
     result_.bounded.resize(first + count);
     result_.bounded_surfaces.resize(first + count);
     result_.boxes.resize(first + count);
-    for_each_chunk(mesh.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+    for_each_chunk(mesh.triangles.size(), kTriangleChunkSize, 0, [&](size_t begin, size_t end) {
       auto skipped = std::lower_bound(degenerate.begin(), degenerate.end(), begin);
       for (size_t i = begin; i < end; ++i) {
         if (skipped != degenerate.end() && *skipped == i) {
@@ -156,7 +156,7 @@ class Collector {
         const uvec3& corners = mesh.triangles[i];
         const TrianglePart whole = whole_triangle(mesh, triangle);
         const size_t place = first + i - static_cast<size_t>(skipped - degenerate.begin());
-        Primitive primitive = pack(whole);
+        Primitive primitive = pack_part(whole);
         primitive.c.y = result_.order + triangle;
         primitive.c.w = hashes_of(object_, triangle);
         result_.bounded[place] = primitive;
@@ -185,7 +185,7 @@ class Collector {
           vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
         }
         if (parts_.size() > 1) add_part(part, &part == parts_.data());
-        add_bounded(pack(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
+        add_bounded(pack_part(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
       }
     }
   }

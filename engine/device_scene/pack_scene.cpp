@@ -50,7 +50,7 @@ std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
 using namespace layout;
 
 /// The number of triangles or references that a thread processes at a time.
-constexpr size_t kChunkSize = 16384;
+constexpr size_t kPackChunkSize = 16384;
 
 /// Time that a process waits for a shared tree that another process is building and that may hang.
 constexpr std::chrono::minutes kMostWait{10};
@@ -66,7 +66,7 @@ Bounds clip(const Primitive& p, const Bounds& window) {
 UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> bounded) {
   UnsetVector<uint32_t> references = bvh.references;
   const auto is_before = [&](uint32_t a, uint32_t b) { return bounded[a].c.z < bounded[b].c.z; };
-  for_each_chunk(bvh.nodes.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+  for_each_chunk(bvh.nodes.size(), kPackChunkSize, 0, [&](size_t begin, size_t end) {
     for (const BvhNode& node : std::span(bvh.nodes).subspan(begin, end - begin)) {
       if (node.count == 0) continue;
       const auto first = references.begin() + node.first;
@@ -115,7 +115,7 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
   surfaces.resize(references.size());
   packed.primitives.resize(references.size());
-  for_each_chunk(references.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+  for_each_chunk(references.size(), kPackChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       packed.primitives[i] = collected.bounded[references[i]];
       surfaces[i] = collected.bounded_surfaces[references[i]];
@@ -206,7 +206,7 @@ void share_tree(PackedScene& packed, const world::Scene& scene, const Collected&
 
 /// Packs a scene with the tree that `make_tree` makes.
 template <typename MakeTree>
-PackedScene pack(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
+PackedScene pack_world(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
   Collected collected = collect_primitives(scene);
   PackedScene packed;
   packed.copies = drop_copies(scene, collected);
@@ -243,19 +243,19 @@ TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& o
 
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options,
                        uint64_t texture_bytes) {
-  return pack(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
+  return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
     build_tree(packed, scene, collected, builder, options);
   });
 }
 
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {
-  return pack(scene, texture_bytes,
-              [&](PackedScene& packed, const Collected& /*collected*/) { read_tree(packed, bvh_file); });
+  return pack_world(scene, texture_bytes,
+                    [&](PackedScene& packed, const Collected& /*collected*/) { read_tree(packed, bvh_file); });
 }
 
 PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
                                std::string_view builder, const BuildOptions& options, uint64_t texture_bytes) {
-  return pack(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
+  return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
     if (packed.bounded_count < kLeastShared) return build_tree(packed, scene, collected, builder, options);
     share_tree(packed, scene, collected, builder, options, bvh_file);
   });

@@ -14,14 +14,11 @@
 #include "core/srgb.h"
 #include "image/difference_of.h"
 #include "image/flip.h"
+#include "image/name_size.h"
 #include "promin/error.h"
 
 namespace promin {
 namespace {
-
-std::string name_size(const uvec2& size) {
-  return std::to_string(size.x) + "x" + std::to_string(size.y);
-}
 
 void check_sizes(const Image& reference, const Image& test) {
   if (reference.size != test.size) {

@@ -9,6 +9,7 @@
 #include "image/channel_file.h"
 #include "image/difference_of.h"
 #include "image/exr_parts.h"
+#include "image/name_size.h"
 
 namespace promin {
 namespace {
@@ -47,10 +48,6 @@ std::string name_missing(const fs::path& file, const std::vector<const FileChann
   for (size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i) names += " " + missing[i]->name;
   if (missing.size() > kMostNamed) names += " and " + std::to_string(missing.size() - kMostNamed) + " more";
   return names;
-}
-
-std::string name_size(const uvec2& size) {
-  return std::to_string(size.x) + "x" + std::to_string(size.y);
 }
 
 /// Returns pairs of channels with equal names, in the order of the first file.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include "promin/cryptomatte.h"
+#include "core/json_text.h"
 
 #include <algorithm>
 #include <bit>
@@ -90,7 +91,7 @@ void add_layer(const std::string& layer, const std::vector<std::string>& names,
   result.metadata.emplace_back(key + "name", layer);
   result.metadata.emplace_back(key + "hash", "MurmurHash3_32");
   result.metadata.emplace_back(key + "conversion", "uint32_to_float32");
-  result.metadata.emplace_back(key + "manifest", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  result.metadata.emplace_back(key + "manifest", json_text(json));
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ class ByteStream final : public Imf::OStream {
   PictureBytes& bytes_;
 };
 
-struct FileChannel {
+struct ExrChannel {
   std::string name;
   Imf::PixelType type = Imf::FLOAT;
   /// Index of the channel among a pixel's words.
@@ -65,9 +65,9 @@ bool takes_half(const Channel& channel) {
   return std::ranges::find(kInFull, group) == kInFull.end();
 }
 
-std::vector<FileChannel> list_channels(const PictureHeader& header) {
+std::vector<ExrChannel> list_channels(const PictureHeader& header) {
   const Imf::PixelType color = header.exr.is_half ? Imf::HALF : Imf::FLOAT;
-  std::vector<FileChannel> result = {{"R", color, 0}, {"G", color, 1}, {"B", color, 2}};
+  std::vector<ExrChannel> result = {{"R", color, 0}, {"G", color, 1}, {"B", color, 2}};
   size_t word = result.size();
   for (const Channel& channel : header.channels) {
     const bool is_half = header.exr.is_half && takes_half(channel);
@@ -78,9 +78,9 @@ std::vector<FileChannel> list_channels(const PictureHeader& header) {
   return result;
 }
 
-size_t count_pixel_bytes(const std::vector<FileChannel>& channels) {
+size_t count_pixel_bytes(const std::vector<ExrChannel>& channels) {
   size_t bytes = 0;
-  for (const FileChannel& channel : channels) bytes += bytes_of(channel.type);
+  for (const ExrChannel& channel : channels) bytes += bytes_of(channel.type);
   return bytes;
 }
 
@@ -132,7 +132,7 @@ int grow_pool(unsigned count) {
   return std::min(Imf::globalThreadCount(), wanted);
 }
 
-Imf::Header make_header(const PictureHeader& header, const std::vector<FileChannel>& channels,
+Imf::Header make_header(const PictureHeader& header, const std::vector<ExrChannel>& channels,
                         Imf::Compression compression) {
   const IMATH_NAMESPACE::V2i size(static_cast<int>(header.size.x), static_cast<int>(header.size.y));
   const CropPlacement whole{uvec2(0), header.size};
@@ -144,7 +144,7 @@ Imf::Header make_header(const PictureHeader& header, const std::vector<FileChann
   result.compression() = compression;
   Imf::addCapDate(result, "");
   for (const auto& [name, value] : header.metadata) result.insert(name, Imf::StringAttribute(value));
-  for (const FileChannel& channel : channels) result.channels().insert(channel.name, Imf::Channel(channel.type));
+  for (const ExrChannel& channel : channels) result.channels().insert(channel.name, Imf::Channel(channel.type));
   return result;
 }
 
@@ -157,12 +157,12 @@ half to_half(uint32_t word) {
 }
 
 /// Returns the channels of some pixels in the format of the file.
-std::vector<char> pick(const std::vector<FileChannel>& channels, size_t word_count, std::span<const uint32_t> words) {
+std::vector<char> pick(const std::vector<ExrChannel>& channels, size_t word_count, std::span<const uint32_t> words) {
   const size_t stride = count_pixel_bytes(channels);
   const size_t pixel_count = words.size() / word_count;
   std::vector<char> picked(pixel_count * stride);
   char* to = picked.data();
-  for (const FileChannel& channel : channels) {
+  for (const ExrChannel& channel : channels) {
     for (size_t i = 0; i < pixel_count; ++i) {
       const uint32_t word = words[i * word_count + channel.word];
       if (channel.type == Imf::HALF) {
@@ -196,7 +196,7 @@ class ExrEncoder::Impl {
 
   void write_rows(std::span<const uint32_t> words) {
     const size_t row_count = words.size() / (word_count_ * size_.x);
-    const auto is_word = [](const FileChannel& channel) { return channel.type != Imf::HALF; };
+    const auto is_word = [](const ExrChannel& channel) { return channel.type != Imf::HALF; };
     if (channels_.size() == word_count_ && std::ranges::all_of(channels_, is_word)) {
       encode(row_count, reinterpret_cast<const char*>(words.data()));
     } else {
@@ -226,7 +226,7 @@ class ExrEncoder::Impl {
   void encode(size_t row_count, const char* native) {
     const IMATH_NAMESPACE::V2i origin(static_cast<int>(lo_.x), static_cast<int>(lo_.y + row_));
     Imf::FrameBuffer frame;
-    for (const FileChannel& channel : channels_) {
+    for (const ExrChannel& channel : channels_) {
       frame.insert(channel.name,
                    Imf::Slice::Make(channel.type, native, origin, size_.x, static_cast<int64_t>(row_count),
                                     pixel_bytes_, pixel_bytes_ * size_.x));
@@ -244,7 +244,7 @@ class ExrEncoder::Impl {
   size_t word_count_;
   PictureBytes& bytes_;
   ByteStream stream_;
-  std::vector<FileChannel> channels_;
+  std::vector<ExrChannel> channels_;
   size_t pixel_bytes_;
   size_t row_ = 0;
   std::optional<Imf::OutputFile> output_;

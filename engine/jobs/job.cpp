@@ -17,6 +17,7 @@
 #include <variant>
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "core/stopwatch.h"
 #include "core/utf8.h"
 #include "jobs/sha256.h"
@@ -75,7 +76,7 @@ fs::path manifest_file(const fs::path& folder) {
 }
 
 std::string text_of(const Manifest& manifest) {
-  return json_of(manifest).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json_of(manifest), 1) + "\n";
 }
 
 /// Reads the manifest of a folder that has one. Throws InputError.
@@ -89,7 +90,7 @@ Manifest read_manifest(const fs::path& folder) {
   const std::vector<std::byte> bytes = read_file(file);
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   try {
-    const Json json = Json::parse(text);
+    const Json json = read_ordered_json(text);
     const int format = json.at("promin_job").get<int>();
     if (format < kFormat) {
       throw InputError({"job.version.old",
@@ -186,7 +187,7 @@ std::optional<Header> read_header(std::string_view text) {
   if (text.substr(0, end_of_magic) != kMagic) return {};
   const size_t end = text.substr(0, kMostHeaderBytes).find('\n', end_of_magic + 1);
   if (end == std::string_view::npos) return {};
-  Json json = Json::parse(text.substr(end_of_magic + 1, end - end_of_magic - 1), nullptr, false);
+  Json json = read_ordered_json_or_discard(text.substr(end_of_magic + 1, end - end_of_magic - 1));
   if (!json.is_object()) return {};
   return Header{std::move(json), end + 1};
 }
@@ -264,7 +265,7 @@ Json begin_line(const char* event, size_t piece, const Manifest& manifest, const
 }
 
 std::string text_of_line(const Json& line) {
-  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(line) + "\n";
 }
 
 /// Returns the version of the maker of pieces: if the job states the version of a function, that version, otherwise
@@ -394,7 +395,7 @@ Receipt Job::write(size_t piece, const Content& content, double ms, const Maker&
                        {"sha256", receipt.sha256},
                        {"description", content.description},
                        {"description_sha256", sha256_of(content.description)}};
-  const std::string head = fmt::format("{}\n{}\n", kMagic, header.dump(-1, ' ', false, Json::error_handler_t::replace));
+  const std::string head = fmt::format("{}\n{}\n", kMagic, json_text(header));
   write_file(file_of(piece), {std::as_bytes(std::span(head)), content.bytes});
   flush_folder(folder_ / "pieces");
   Json line = begin_line("done", piece, manifest_, maker);

@@ -3,8 +3,10 @@
 #include "jobs/known_hashes.h"
 
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/json_text.h"
 #include "promin/error.h"
 
 namespace promin::jobs {
@@ -16,7 +18,8 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 KnownHashes::KnownHashes(const fs::path& folder) : file_(folder / "hashes.json") {
-  const Json json = Json::parse(std::ifstream(file_), nullptr, false);
+  std::ifstream stream(file_);
+  const Json json = read_ordered_json_or_discard(std::string(std::istreambuf_iterator<char>(stream), {}));
   if (!json.is_object()) return;
   try {
     for (const auto& [path, entry] : json.items()) {
@@ -53,7 +56,7 @@ void KnownHashes::save() {
                   {"sha256", entry.sha256}};
   }
   try {
-    write_text_file(file_, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_text_file(file_, json_text(json, 1) + "\n");
   } catch (const RunError&) {
     // Later processes then read the file and hash it themselves.
     return;

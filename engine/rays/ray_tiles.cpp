@@ -17,7 +17,7 @@ constexpr uint32_t kTileWidth = 8;
 constexpr uint32_t kPacketSize = RayTiler::kPacketSize;
 
 /// The number of pairs of neighbouring rays in a sample. Their median distance is called a step here.
-constexpr size_t kSamplePairs = 255;
+constexpr size_t kSampleSteps = 255;
 /// The search for the end of a row tests one ray in kStride. If this ray is less than kFarSteps from the previous
 /// tested ray, the row does not end between them.
 constexpr size_t kStride = 16;
@@ -99,13 +99,13 @@ class Rows {
 
  private:
   float measure_square_step() const {
-    std::array<float, kSamplePairs> steps{};
-    for (size_t i = 0; i < kSamplePairs; ++i) {
+    std::array<float, kSampleSteps> steps{};
+    for (size_t i = 0; i < kSampleSteps; ++i) {
       const size_t first = sampled_pair(i, rays_.size());
       const float step = square_distance(place_of(first), place_of(first + 1));
       steps[i] = step >= 0.0F ? step : 0.0F;
     }
-    const auto median = steps.begin() + kSamplePairs / 2;
+    const auto median = steps.begin() + kSampleSteps / 2;
     std::nth_element(steps.begin(), median, steps.end());
     return *median;
   }

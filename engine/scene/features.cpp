@@ -130,10 +130,6 @@ FeatureMask feature_of(LightKind kind) {
   return {};
 }
 
-bool falls_off(const Light& light) {
-  return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
-}
-
 }  // namespace
 
 FeatureMask geometry_features(std::span<const world::Object> objects) {

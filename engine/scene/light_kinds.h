@@ -19,4 +19,9 @@ constexpr bool has_place(LightKind kind) {
   return false;
 }
 
+/// Returns whether the light grows weaker with distance.
+inline bool falls_off(const Light& light) {
+  return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
+}
+
 }  // namespace promin

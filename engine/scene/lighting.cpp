@@ -67,10 +67,6 @@ double luminance_of(const vec3& color) {
   return glm::dot(dvec3(color), dvec3(0.2126, 0.7152, 0.0722));
 }
 
-bool falls_off(const Light& light) {
-  return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
-}
-
 /// Returns the illuminance in the middle of the scene, as exposure_of() defines it.
 double illuminance_of(const Scene& scene) {
   dvec3 center(0.0);

@@ -11,7 +11,7 @@ namespace promin {
 namespace {
 
 /// The number of vertices that a thread processes at a time.
-constexpr size_t kChunkSize = 16384;
+constexpr size_t kVertexChunkSize = 16384;
 
 /// The edges, grouped by the lower of their two vertices.
 class EdgeBuckets {
@@ -68,7 +68,7 @@ void join(EdgeBuckets& buckets, std::span<uint32_t> bucket, std::vector<uint32_t
 std::vector<uint32_t> find_edge_neighbors(std::span<const uint32_t> vertices, uint32_t vertex_count) {
   EdgeBuckets buckets(vertices, vertex_count);
   std::vector<uint32_t> neighbors(vertices.size(), kNoCorner);
-  for_each_chunk(vertex_count, kChunkSize, 0, [&](size_t begin, size_t end) {
+  for_each_chunk(vertex_count, kVertexChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t vertex = begin; vertex < end; ++vertex) join(buckets, buckets.bucket(vertex), neighbors);
   });
   return neighbors;

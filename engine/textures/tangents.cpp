@@ -14,7 +14,7 @@ namespace promin {
 namespace {
 
 /// The number of triangles or groups that a thread processes at a time.
-constexpr size_t kChunkSize = 16384;
+constexpr size_t kTangentChunkSize = 16384;
 constexpr uint32_t kNoGroup = kNoCorner;
 /// The largest number of triangles, because corners are numbered in 32 bits.
 constexpr size_t kMostTriangles = (size_t{kNoCorner} - 1) / 3;
@@ -51,7 +51,7 @@ class TangentSource {
 
   template <typename Task>
   void for_each_triangle(const Task& task) const {
-    for_each_chunk(mesh_.triangles.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+    for_each_chunk(mesh_.triangles.size(), kTangentChunkSize, 0, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) task(static_cast<uint32_t>(i));
     });
   }
@@ -254,7 +254,7 @@ dvec3 weighted_tangent(const TangentSource& source, uint32_t corner) {
 
 std::vector<vec4> make_tangents(const TangentSource& source, const Groups& groups, const SortedCorners& sorted) {
   std::vector<vec4> tangents(groups.hands.size());
-  for_each_chunk(tangents.size(), kChunkSize, 0, [&](size_t begin, size_t end) {
+  for_each_chunk(tangents.size(), kTangentChunkSize, 0, [&](size_t begin, size_t end) {
     for (size_t group = begin; group < end; ++group) {
       dvec3 sum(0.0);
       double length = 0.0;

@@ -17,7 +17,7 @@ namespace nb = nanobind;
 namespace promin::python {
 namespace {
 
-nb::dict describe(const gpu::DeviceInfo& info) {
+nb::dict describe_device(const gpu::DeviceInfo& info) {
   nb::dict result;
   result["index"] = info.index;
   result["name"] = info.name;
@@ -42,11 +42,11 @@ std::shared_ptr<OpenDevice> open(const std::optional<std::string>& selection) {
 void bind_device(nb::module_& module) {
   nb::class_<OpenDevice>(module, "Device")
       .def_static("open", &open, nb::arg("selection").none())
-      .def("info", [](const OpenDevice& device) { return describe(gpu::info_of(device.get())); })
+      .def("info", [](const OpenDevice& device) { return describe_device(gpu::info_of(device.get())); })
       .def("choice", [](const OpenDevice& device) { return gpu::choice_of(device.get()); });
   module.def("list_devices", [] {
     nb::list result;
-    for (const gpu::DeviceInfo& info : gpu::list_devices()) result.append(describe(info));
+    for (const gpu::DeviceInfo& info : gpu::list_devices()) result.append(describe_device(info));
     return result;
   });
 }

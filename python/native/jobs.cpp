@@ -44,7 +44,7 @@ const work::Messages& no_messages() {
   return messages;
 }
 
-nb::dict describe(const jobs::Receipt& receipt) {
+nb::dict describe_receipt(const jobs::Receipt& receipt) {
   nb::dict record;
   record["number"] = receipt.number;
   record["name"] = receipt.name;
@@ -59,7 +59,7 @@ nb::dict describe(const jobs::Receipt& receipt) {
   return record;
 }
 
-size_t check(const Job& job, size_t piece) {
+size_t check_piece(const Job& job, size_t piece) {
   if (piece < job.piece_count()) return piece;
   throw UsageError({"job.piece.unknown",
                     "the job has no piece " + std::to_string(piece) + " of " + std::to_string(job.piece_count()),
@@ -86,7 +86,7 @@ Job create_with(const fs::path& folder, const std::string& kind, const Pairs& op
   });
 }
 
-nb::dict describe(const Job& job) {
+nb::dict describe_job(const Job& job) {
   const jobs::Manifest& manifest = job.manifest();
   nb::list files;
   for (const jobs::InputFile& file : manifest.files) {
@@ -105,7 +105,7 @@ nb::dict describe(const Job& job) {
 std::pair<std::string, std::string> state_of(const Job& job, size_t piece) {
   return unlocked([&]() -> std::pair<std::string, std::string> {
     std::string why;
-    switch (job.state_of(check(job, piece), &why)) {
+    switch (job.state_of(check_piece(job, piece), &why)) {
       case jobs::PieceState::kDone:
         return {"done", ""};
       case jobs::PieceState::kMissing:
@@ -118,17 +118,19 @@ std::pair<std::string, std::string> state_of(const Job& job, size_t piece) {
 }
 
 nb::tuple read(const Job& job, size_t piece) {
-  const jobs::Content content = unlocked([&] { return job.read(check(job, piece)); });
+  const jobs::Content content = unlocked([&] { return job.read(check_piece(job, piece)); });
   return nb::make_tuple(content.description, nb::bytes(content.bytes.data(), content.bytes.size()));
 }
 
-nb::dict write(const Job& job, size_t piece, const std::string& description, const nb::bytes& data, double ms,
-               const std::string& made_on, const std::string& fingerprint) {
+nb::dict write_piece(const Job& job, size_t piece, const std::string& description, const nb::bytes& data, double ms,
+                     const std::string& made_on, const std::string& fingerprint) {
   jobs::Content content{description, {}};
   content.bytes.resize(data.size());
   // An empty array may have no address.
   if (data.size() > 0) std::memcpy(content.bytes.data(), data.c_str(), data.size());
-  return describe(unlocked([&] { return job.write(check(job, piece), content, ms, {made_on, fingerprint}); }));
+  return describe_receipt(unlocked([&] {
+    return job.write(check_piece(job, piece), content, ms, {made_on, fingerprint});
+  }));
 }
 
 void merge(const Job& job, const std::vector<fs::path>& outputs, bool is_mixed,
@@ -219,7 +221,7 @@ SharedPlan plan_again(const Job& job, const nb::object& source) {
 std::optional<std::pair<std::string, uint64_t>> stored(const Job& job, size_t piece) {
   return unlocked([&]() -> std::optional<std::pair<std::string, uint64_t>> {
     try {
-      const jobs::Content content = job.read(check(job, piece));
+      const jobs::Content content = job.read(check_piece(job, piece));
       return std::pair(hash_of(content), uint64_t{content.bytes.size()});
     } catch (const InputError&) {
       return {};
@@ -244,7 +246,7 @@ class Runner {
   }
 
   nb::dict run(size_t piece, const std::string& fingerprint, const nb::object& progress) {
-    check(job_, piece);
+    check_piece(job_, piece);
     work::PieceMaker& maker = maker_->get();
     std::optional<jobs::Receipt> receipt;
     run_watched(progress, [&](const ProgressCallback& tell) {
@@ -255,11 +257,11 @@ class Runner {
       is_checked_ = true;
       receipt = jobs::make_piece(job_, piece, own, make);
     });
-    return describe(*receipt);
+    return describe_receipt(*receipt);
   }
 
   std::string recompute(size_t piece, const nb::object& progress) {
-    check(job_, piece);
+    check_piece(job_, piece);
     work::PieceMaker& maker = maker_->get();
     std::string hash;
     run_watched(progress, [&](const ProgressCallback& tell) {
@@ -270,7 +272,7 @@ class Runner {
   }
 
   nb::dict compare(size_t piece, const nb::object& progress) {
-    check(job_, piece);
+    check_piece(job_, piece);
     work::PieceMaker& maker = maker_->get();
     bool is_equal = false;
     work::PieceDifference difference;
@@ -317,31 +319,31 @@ void bind_jobs(nb::module_& module) {
   nb::class_<Job>(module, "Job")
       .def_static("create_with", &create_with)
       .def_static("open", [](const fs::path& folder) { return unlocked([&] { return Job::open(folder); }); })
-      .def("describe", [](const Job& job) { return describe(job); })
+      .def("describe", [](const Job& job) { return describe_job(job); })
       .def("spec", [](const Job& job) { return work::read_job_spec(job); })
       .def("file_of",
            [](const Job& job, size_t piece) {
              // Decoded like os.fsdecode, because the folder's name need not be UTF-8.
-             return nb::steal<nb::str>(PyUnicode_DecodeFSDefault(job.file_of(check(job, piece)).c_str()));
+             return nb::steal<nb::str>(PyUnicode_DecodeFSDefault(job.file_of(check_piece(job, piece)).c_str()));
            })
       .def("state_of", &state_of)
-      .def("sha256",
-           [](const Job& job, size_t piece) { return unlocked([&] { return hash_of(job.read(check(job, piece))); }); })
+      .def("sha256", [](const Job& job,
+                        size_t piece) { return unlocked([&] { return hash_of(job.read(check_piece(job, piece))); }); })
       .def("stored", &stored)
       .def("read", &read)
-      .def("write", &write)
+      .def("write", &write_piece)
       .def("tell_begun",
            [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint) {
-             job.tell_begun(check(job, piece), {made_on, fingerprint});
+             job.tell_begun(check_piece(job, piece), {made_on, fingerprint});
            })
       .def("tell_failed",
            [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint,
               const std::string& why) {
-             job.tell_failed(check(job, piece), {made_on, fingerprint}, why);
+             job.tell_failed(check_piece(job, piece), {made_on, fingerprint}, why);
            })
       .def("tell_stopped",
            [](const Job& job, size_t piece, const std::string& made_on, const std::string& fingerprint) {
-             job.tell_stopped(check(job, piece), {made_on, fingerprint});
+             job.tell_stopped(check_piece(job, piece), {made_on, fingerprint});
            })
       .def("clear_leftovers", &Job::clear_leftovers)
       .def("check_outputs", &check_outputs)

@@ -55,7 +55,7 @@ void save(const std::filesystem::path& file, const PictureArray& pixels, const M
               [&](const ProgressCallback&) { write_image(file, image, metadata, crop, copies, transform, options); });
 }
 
-nb::object load(const std::filesystem::path& file) {
+nb::object load_picture(const std::filesystem::path& file) {
   Image image;
   run_watched(nb::none(), [&](const ProgressCallback&) { image = read_image(file); });
   return write_image_array(std::move(image));
@@ -148,7 +148,7 @@ nb::object write_image_array(Image image) {
 void bind_pictures(nb::module_& module) {
   module.def("write_image", &save, nb::arg("file"), nb::arg("pixels").noconvert(), nb::arg("metadata"),
              nb::arg("placement").none(), nb::arg("channels"), nb::arg("display"), nb::arg("exr").none());
-  module.def("read_image", &load, nb::arg("file"));
+  module.def("read_image", &load_picture, nb::arg("file"));
   module.def("read_channels", &load_channels, nb::arg("file"));
   module.def("show", &show, nb::arg("pixels").noconvert(), nb::arg("display"), nb::arg("unlit").none());
   module.def("compare", &compare, nb::arg("first").noconvert(), nb::arg("second").noconvert(), nb::arg("is_linear"),

@@ -54,8 +54,8 @@ dmat4 read_matrix(const Matrix& matrix) {
   return result;
 }
 
-Scene load(const std::filesystem::path& file, bool is_strict, const std::string& variant,
-           const std::filesystem::path& root) {
+Scene load_model(const std::filesystem::path& file, bool is_strict, const std::string& variant,
+                 const std::filesystem::path& root) {
   Scene scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
     scene = load_scene(file, {.is_strict = is_strict, .root = root, .material_variant = variant});
@@ -166,7 +166,7 @@ void check(const Scene& scene) {
 void bind_scene(nb::module_& module) {
   nb::class_<Scene>(module, "Scene")
       .def(nb::init<>())
-      .def_static("load", &load, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"), nb::arg("root"))
+      .def_static("load", &load_model, nb::arg("file"), nb::arg("is_strict"), nb::arg("variant"), nb::arg("root"))
       .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions").noconvert(), nb::arg("triangles").noconvert(),
            nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("material"),
            nb::arg("matrix").noconvert())

@@ -23,7 +23,7 @@ using testing::Not;
 using testing::UnorderedElementsAre;
 
 /// The path has three poses in front of the fixture's scenes; kPoses has the options that give each pose alone.
-constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, "frames": [
+constexpr const char* kCameraPath = R"({"format": "promin camera path", "version": 1, "frames": [
   {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
   {"time_s": 0.1, "eye": [1, 0.5, 3], "look": [-0.28, 0, -0.96], "up": [0, 1, 0], "fov_deg": 60},
   {"time_s": 0.3, "eye": [2, 0, 3], "look": [-0.6, 0, -0.8], "up": [0, 1, 0], "fov_deg": 30}]})";
@@ -37,7 +37,7 @@ class PathCliTest : public CliTest {
  protected:
   void SetUp() override {
     CliTest::SetUp();
-    write("path.json", kPath);
+    write("path.json", kCameraPath);
   }
 
   ProcessResult render_path(OptionValues more) const {
@@ -146,7 +146,7 @@ TEST_F(PathCliTest, FpsTakesThePathByTime) {
   EXPECT_NE(pixels("t2.exr"), pixels("s2.exr"));
   EXPECT_EQ(pixels("t3.exr"), pixels("s2.exr"));
 
-  std::string path = kPath;
+  std::string path = kCameraPath;
   path.insert(path.find("\"frames\""), "\"fps\": 10, ");
   write("path.json", path);
   expect_failure(render_path({"-o", "f#.exr", "--frames", "4"}), 2, "path.frame.missing path.json: 4 0 3");
@@ -205,7 +205,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
 TEST_F(PathCliTest, AFailureKeepsTheFramesDoneAndNamesItsOwn) {
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
   // The first frame shows nothing and so takes few bytes.
-  std::string path = kPath;
+  std::string path = kCameraPath;
   path.replace(path.find("[0, 0, -1]"), 10, "[0, 0, 1]");
   write("path.json", path);
   fill_disk(2000);

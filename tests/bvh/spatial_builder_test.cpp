@@ -13,17 +13,17 @@
 namespace promin {
 namespace {
 
-using Triangle = std::array<vec3, 3>;
+using TriangleOfInput = std::array<vec3, 3>;
 
-std::vector<Triangle> triangles_of(const Mesh& mesh) {
-  std::vector<Triangle> triangles;
+std::vector<TriangleOfInput> triangles_of(const Mesh& mesh) {
+  std::vector<TriangleOfInput> triangles;
   for (const uvec3& corners : mesh.triangles) {
     triangles.push_back({mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]});
   }
   return triangles;
 }
 
-std::vector<Bounds> boxes_of(const std::vector<Triangle>& triangles) {
+std::vector<Bounds> boxes_of(const std::vector<TriangleOfInput>& triangles) {
   std::vector<Bounds> boxes(triangles.size());
   for (size_t i = 0; i < triangles.size(); ++i) {
     for (const vec3& corner : triangles[i]) boxes[i].extend(corner);
@@ -33,7 +33,7 @@ std::vector<Bounds> boxes_of(const std::vector<Triangle>& triangles) {
 
 /// The input of a builder, with the object that holds its data.
 struct Input {
-  std::vector<Triangle> triangles;
+  std::vector<TriangleOfInput> triangles;
   std::vector<Bounds> boxes = boxes_of(triangles);
 
   BuildInput get() const {
@@ -105,7 +105,7 @@ TEST(SpatialBuilder, IsATreeWhosePartsCoverEveryTriangle) {
   ASSERT_LE(bvh.references.size(), input.boxes.size() * kMaxReferencesPerPrimitive);
 
   std::vector<std::vector<Polygon>> uncovered;
-  for (const Triangle& t : input.triangles) uncovered.push_back({{dvec3(t[0]), dvec3(t[1]), dvec3(t[2])}});
+  for (const TriangleOfInput& t : input.triangles) uncovered.push_back({{dvec3(t[0]), dvec3(t[1]), dvec3(t[2])}});
   for (const BvhNode& node : bvh.nodes) {
     for (uint32_t k = node.first; k < node.first + node.count; ++k) {
       std::vector<Polygon>& left = uncovered[bvh.references[k]];
@@ -113,7 +113,7 @@ TEST(SpatialBuilder, IsATreeWhosePartsCoverEveryTriangle) {
     }
   }
   for (size_t i = 0; i < uncovered.size(); ++i) {
-    const Triangle& t = input.triangles[i];
+    const TriangleOfInput& t = input.triangles[i];
     const double whole = area_of({dvec3(t[0]), dvec3(t[1]), dvec3(t[2])});
     double area = 0.0;
     for (const Polygon& polygon : uncovered[i]) area += area_of(polygon);

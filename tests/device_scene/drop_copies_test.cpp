@@ -15,7 +15,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 /// Returns a scene with this number of copies of a triangle, between two triangles beside it.
-Scene make_scene(uint32_t copies, const Material& material) {
+Scene make_copies(uint32_t copies, const Material& material) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)};
   mesh.triangles.emplace_back(3, 4, 5);
@@ -34,11 +34,11 @@ PackedScene pack(const Scene& scene, const char* builder = "sah") {
 
 TEST(DropCopiesTest, ManyLeaveTheTreeAndFewStay) {
   for (const char* builder : {"sah", "median", "spatial"}) {
-    const PackedScene few = pack(make_scene(kMostCopies, {}), builder);
+    const PackedScene few = pack(make_copies(kMostCopies, {}), builder);
     EXPECT_EQ(few.bounded_count, kMostCopies + 2);
     EXPECT_THAT(few.copies.by_first, IsEmpty());
     EXPECT_THAT(few.copies.materials, IsEmpty());
-    const PackedScene many = pack(make_scene(kMostCopies + 1, {}), builder);
+    const PackedScene many = pack(make_copies(kMostCopies + 1, {}), builder);
     EXPECT_EQ(many.bounded_count, 3U);
     ASSERT_THAT(many.copies.by_first, SizeIs(1));
     EXPECT_THAT(many.copies.materials, ElementsAre(0));
@@ -55,7 +55,7 @@ TEST(DropCopiesTest, WhatIsNotOpaqueStays) {
   Material glass;
   glass.model = Phong{.transmission = vec3(0.5F)};
   for (const Material& material : {blend, glass}) {
-    EXPECT_THAT(pack(make_scene(kMostCopies + 1, material)).copies.by_first, IsEmpty());
+    EXPECT_THAT(pack(make_copies(kMostCopies + 1, material)).copies.by_first, IsEmpty());
   }
 }
 

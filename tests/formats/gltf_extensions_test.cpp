@@ -116,7 +116,7 @@ TEST_F(GltfExtensionsTest, KnownOnesOfNodesAreNotRefused) {
 }
 
 /// A PNG of one pixel with the codes 80 (red), 40 (green) and 20 (blue), all hexadecimal.
-const std::string kPixel =
+const std::string kPngPixel =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNocFAAAAIkAOGVpLGLAAAAAElFTkSuQmCC";
 
@@ -126,7 +126,7 @@ GltfBuilder textured_gltf(const json& texture) {
   gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
   gltf.json["meshes"][0]["primitives"][0]["material"] = 0;
   gltf.json["textures"] = {texture};
-  gltf.json["images"] = {{{"uri", "missing.png"}}, {{"uri", kPixel}}};
+  gltf.json["images"] = {{{"uri", "missing.png"}}, {{"uri", kPngPixel}}};
   return gltf;
 }
 
@@ -165,7 +165,7 @@ TEST_F(GltfExtensionsTest, TexturesOfOtherFormatsNameTheirImage) {
   }
 }
 
-const MetallicRoughness& model_of(const Scene& scene) {
+const MetallicRoughness& metal_of(const Scene& scene) {
   return std::get<MetallicRoughness>(scene.materials.at(0).model);
 }
 
@@ -183,7 +183,7 @@ TEST_F(GltfExtensionsTest, TexturesOfLayersAreRead) {
   extensions["KHR_materials_anisotropy"]["anisotropyTexture"]["index"] = 0;
   const Scene scene = load(gltf);
   EXPECT_THAT(scene.warnings, IsEmpty());
-  const MetallicRoughness& model = model_of(scene);
+  const MetallicRoughness& model = metal_of(scene);
   const auto use_of = [&](const TextureSlot& slot) {
     return scene.images.at(scene.textures.at(slot.texture).image)->use;
   };
@@ -218,21 +218,21 @@ TEST_F(GltfExtensionsTest, SpecularGlossinessIsADielectricThatReflectsItsSpecula
       {{"diffuseFactor", {0.5, 0.25, 0, 1}}, {"specularFactor", {0.25, 0.5, 1}}, {"glossinessFactor", 0.75}});
   const Scene scene = load(gltf);
   EXPECT_THAT(scene.warnings, IsEmpty());
-  EXPECT_EQ(model_of(scene).base_color, vec3(0.5F, 0.25F, 0));
-  EXPECT_EQ(model_of(scene).specular_color, vec3(0.25F, 0.5F, 1));
-  EXPECT_EQ(model_of(scene).specular, 1.0F);
-  EXPECT_EQ(model_of(scene).metallic, 0.0F);
-  EXPECT_EQ(model_of(scene).ior, 0.0F) << "so that the specular colour is the reflectance";
-  EXPECT_EQ(model_of(scene).roughness, 0.25F);
+  EXPECT_EQ(metal_of(scene).base_color, vec3(0.5F, 0.25F, 0));
+  EXPECT_EQ(metal_of(scene).specular_color, vec3(0.25F, 0.5F, 1));
+  EXPECT_EQ(metal_of(scene).specular, 1.0F);
+  EXPECT_EQ(metal_of(scene).metallic, 0.0F);
+  EXPECT_EQ(metal_of(scene).ior, 0.0F) << "so that the specular colour is the reflectance";
+  EXPECT_EQ(metal_of(scene).roughness, 0.25F);
   EXPECT_TRUE(scene.extensions.at(0).is_used);
 }
 
 TEST_F(GltfExtensionsTest, SpecularGlossinessHasTheExtensionsDefaults) {
   GltfBuilder gltf = glossy_gltf(json::object());
   const Scene scene = load(gltf);
-  EXPECT_EQ(model_of(scene).base_color, vec3(1));
-  EXPECT_EQ(model_of(scene).specular_color, vec3(1));
-  EXPECT_EQ(model_of(scene).roughness, 0.0F);
+  EXPECT_EQ(metal_of(scene).base_color, vec3(1));
+  EXPECT_EQ(metal_of(scene).specular_color, vec3(1));
+  EXPECT_EQ(metal_of(scene).roughness, 0.0F);
 }
 
 TEST_F(GltfExtensionsTest, TexturesOfGlossinessBecomeSuchOfRoughness) {
@@ -242,7 +242,7 @@ TEST_F(GltfExtensionsTest, TexturesOfGlossinessBecomeSuchOfRoughness) {
                                     {"glossinessFactor", factor},
                                     {"specularGlossinessTexture", {{"index", 0}}}});
     const Scene scene = load(gltf);
-    const MetallicRoughness& model = model_of(scene);
+    const MetallicRoughness& model = metal_of(scene);
     const Texture& texture = scene.textures.at(model.metallic_roughness_texture.texture);
     const TextureImage& image = *scene.images.at(texture.image);
     EXPECT_EQ(image.use, ImageUse::kData);
@@ -265,8 +265,8 @@ TEST_F(GltfExtensionsTest, GlossinessHoldsWhereItsTextureIsMissing) {
   GltfBuilder gltf = glossy_gltf({{"glossinessFactor", 0.75}, {"specularGlossinessTexture", {{"index", 0}}}});
   gltf.json["images"] = {{{"uri", "missing.png"}}};
   const Scene scene = load(gltf);
-  EXPECT_EQ(model_of(scene).roughness, 0.25F);
-  EXPECT_EQ(model_of(scene).specular_color, vec3(1));
+  EXPECT_EQ(metal_of(scene).roughness, 0.25F);
+  EXPECT_EQ(metal_of(scene).specular_color, vec3(1));
 }
 
 // The next tests check variants.

@@ -18,17 +18,17 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-const float kNan = std::numeric_limits<float>::quiet_NaN();
-const std::vector<vec3> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+const float kNotANumber = std::numeric_limits<float>::quiet_NaN();
+const std::vector<vec3> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
 /// A change that makes a document faulty but leaves its geometry clear, and the warning that it gives.
-struct Repair {
+struct GltfRepair {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;
   const char* warning;
 };
 
-std::ostream& operator<<(std::ostream& stream, const Repair& repair) {
+std::ostream& operator<<(std::ostream& stream, const GltfRepair& repair) {
   return stream << repair.name;
 }
 
@@ -43,7 +43,7 @@ class GltfRepairTest : public SceneFolder {
   }
 };
 
-class GltfRepairsTest : public GltfRepairTest, public testing::WithParamInterface<Repair> {};
+class GltfRepairsTest : public GltfRepairTest, public testing::WithParamInterface<GltfRepair> {};
 
 TEST_P(GltfRepairsTest, AreOneWarningAndStrictlyARefusal) {
   GltfBuilder gltf = rich_gltf();
@@ -83,7 +83,7 @@ TEST_F(GltfRepairTest, NumbersBeyondDoubleAreOutOfRange) {
 #define PROMIN_CLAMPED(VALUE, PLACE, RANGE) PLACE ": a number is out of range (" VALUE "); it is clamped to " RANGE
 #define PROMIN_LIGHT "extensions.KHR_lights_punctual.lights[0]"
 
-const Repair kRepairs[] = {
+const GltfRepair kGltfRepairs[] = {
     // The next rows are faults of the document.
     {"NoAsset", [](auto& g) { g.json.erase("asset"); },
      "asset.version: the version is missing; promin reads the file as glTF 2.0"},
@@ -237,13 +237,14 @@ const Repair kRepairs[] = {
      "0 is used for a negative value, 1 for one that is not a number"},
     {"NanColors",
      [](auto& g) {
-       primitive(g)["attributes"]["COLOR_0"] = g.template add<float>({0, kNan, 0, 0, 0, 0, kNan, 0, 0}, "VEC3");
+       primitive(g)["attributes"]["COLOR_0"] =
+           g.template add<float>({0, kNotANumber, 0, 0, 0, 0, kNotANumber, 0, 0}, "VEC3");
      },
      "meshes[0].primitives[0].attributes.COLOR_0, element 0: a vertex colour is negative or not a number (nan), and 1 "
      "more; 0 is used for a negative value, 1 for one that is not a number"},
     {"NanTextureCoordinate",
      [](auto& g) {
-       primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNan, 0, 1}, "VEC2");
+       primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNotANumber, 0, 1}, "VEC2");
      },
      "meshes[0].primitives[0].attributes.TEXCOORD_0, element 1: a texture coordinate is not finite or beyond 1e15 "
      "(nan); 0 is used"},
@@ -315,7 +316,7 @@ const Repair kRepairs[] = {
      "nodes[0].rotation: a rotation has length 0; the node is not turned"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, GltfRepairsTest, testing::ValuesIn(kRepairs),
+INSTANTIATE_TEST_SUITE_P(Table, GltfRepairsTest, testing::ValuesIn(kGltfRepairs),
                          [](const auto& repair) { return std::string(repair.param.name); });
 
 // The next tests check numbers with rounding errors.
@@ -431,7 +432,7 @@ TEST_F(GltfRepairTest, NodesOfScaleZeroAreNotDrawnAndKeepTheirNumber) {
   const LoadedScene scene = load(gltf);
   ASSERT_THAT(scene.objects, SizeIs(4));
   for (size_t i = 0; i < 3; ++i) EXPECT_TRUE(std::holds_alternative<world::NotDrawn>(scene.objects[i].shape)) << i;
-  EXPECT_EQ(corners_of(mesh_of(scene, 3)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene, 3)), kCorners);
   EXPECT_THAT(scene.warnings, IsEmpty()) << "the format allows it";
   EXPECT_EQ(strict_refusal("strict.gltf", gltf.text()), "");
 }
@@ -542,7 +543,7 @@ TEST_F(GltfRepairTest, DataUrisHaveManyForms) {
         "data:;base64," + base64.substr(0, 20) + "\r\n " + base64.substr(20) + "\n"}) {
     gltf.json["buffers"] = {{{"byteLength", 42}, {"uri", uri}}};
     const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-    EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle) << uri;
+    EXPECT_EQ(corners_of(mesh_of(scene)), kCorners) << uri;
     EXPECT_THAT(scene.warnings, IsEmpty()) << uri;
   }
 }
@@ -556,7 +557,7 @@ TEST_F(GltfRepairTest, IndicesWithoutAViewAreZeros) {
                                          {"indices", {{"bufferView", places}, {"componentType", 5121}}},
                                          {"values", {{"bufferView", values}}}};
   LoadedScene scene = load(gltf);
-  EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
   EXPECT_THAT(scene.warnings, IsEmpty());
   gltf.json["accessors"][1].erase("sparse");
   EXPECT_THAT(mesh_of(load(gltf)).triangles, ElementsAre(uvec3(0)));
@@ -573,7 +574,7 @@ TEST_F(GltfRepairTest, WhatNothingUsesMayBeBroken) {
   gltf.json["buffers"].push_back({{"uri", 7}});
   gltf.json["buffers"].push_back(nullptr);
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_THAT(strict_refusal("strict.gltf", gltf.json.dump()), HasSubstr("accessors[2]"));
   gltf.json["buffers"].push_back({{"byteLength", 8}, {"uri", "../outside.bin"}});
@@ -591,12 +592,12 @@ TEST_F(GltfRepairTest, BuffersMayLackWhatNoViewNeeds) {
       scene.warnings,
       ElementsAre(
           "buffers[0]: a buffer is shorter than its byteLength (42 bytes instead of 100); the existing part is read"));
-  EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
   // The view's length includes padding.
   gltf.json["bufferViews"][1]["byteLength"] = 8;
   scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings, SizeIs(1));
-  EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
   gltf.json["bufferViews"][1]["byteLength"] = 10;
   EXPECT_THAT(refusal("scene.gltf", gltf.json.dump()), HasProblem("gltf.buffer.short 42 100"));
 }
@@ -610,7 +611,7 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings, ElementsAre("buffers[1]: a buffer of images cannot be read: a file does not exist "
                                           "(\"none.bin\"); promin omits its images"));
-  EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
 }
 
 TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
@@ -623,7 +624,7 @@ TEST_F(GltfRepairTest, EmptyAccessorsDrawNothing) {
               ElementsAre(HasSubstr("bufferViews[2]: a buffer view has no bytes"),
                           HasSubstr("accessors[2].count: an accessor has no elements"),
                           HasSubstr("meshes[1].primitives[0]: a mesh primitive has too few corners for a triangle")));
-  EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
 }
 
 TEST_F(GltfRepairTest, TheLastColumnOfAMatrixNeedsNoPadding) {
@@ -648,9 +649,9 @@ TEST_F(GltfRepairTest, EmptyBuffersHoldNothing) {
 TEST_F(GltfRepairTest, ColorsAreClampedAndCoordinatesReplaced) {
   GltfBuilder gltf = triangle_gltf();
   auto& attributes = primitive(gltf)["attributes"];
-  attributes["COLOR_0"] = gltf.add<float>({0, -1e-8F, 2, 1.5F, kNan, -1, 0, 0.5F, 1, 1, 1, 1}, "VEC4");
+  attributes["COLOR_0"] = gltf.add<float>({0, -1e-8F, 2, 1.5F, kNotANumber, -1, 0, 0.5F, 1, 1, 1, 1}, "VEC4");
   attributes["TEXCOORD_0"] = gltf.add<float>({0.5F, 0.25F, INFINITY, 0.5F, 1, 2}, "VEC2");
-  attributes["NORMAL"] = gltf.add<float>({0, 0, 1, kNan, 0, 1, 0, 0, 1}, "VEC3");
+  attributes["NORMAL"] = gltf.add<float>({0, 0, 1, kNotANumber, 0, 1, 0, 0, 1}, "VEC3");
   const LoadedScene scene = load(gltf);
   EXPECT_THAT(mesh_of(scene).colors, ElementsAre(vec4(0, 0, 2, 1), vec4(1, 0, 0, 0.5F), vec4(1)));
   EXPECT_THAT(mesh_of(scene).uvs, ElementsAre(vec4(0.5F, 0.25F, 0, 0), vec4(0), vec4(1, 2, 0, 0)));
@@ -677,12 +678,12 @@ TEST_F(GltfRepairTest, LengthsInTheHeaderOfAGlbAreRepaired) {
   for (const auto& [bytes, warning] : kFiles) {
     const LoadedScene scene = SceneFolder::load("a.glb", bytes);
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr(warning)));
-    EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle) << warning;
+    EXPECT_EQ(corners_of(mesh_of(scene)), kCorners) << warning;
   }
 }
 
 TEST_F(GltfRepairTest, FilesMayBeginWithAByteOrderMark) {
-  EXPECT_EQ(corners_of(mesh_of(SceneFolder::load("scene.gltf", "\xEF\xBB\xBF" + triangle_gltf().text()))), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(SceneFolder::load("scene.gltf", "\xEF\xBB\xBF" + triangle_gltf().text()))), kCorners);
 }
 
 TEST_F(GltfRepairTest, TheJsonOfAGlbMayBePaddedByZeros) {
@@ -691,7 +692,7 @@ TEST_F(GltfRepairTest, TheJsonOfAGlbMayBePaddedByZeros) {
   bytes.insert(20 + json_length, std::string(4, '\0'));
   bytes.replace(12, 4, GltfBuilder::u32(json_length + 4));
   bytes.replace(8, 4, GltfBuilder::u32(bytes.size()));
-  EXPECT_EQ(corners_of(mesh_of(SceneFolder::load("a.glb", bytes))), kTriangle);
+  EXPECT_EQ(corners_of(mesh_of(SceneFolder::load("a.glb", bytes))), kCorners);
 }
 
 TEST_F(GltfRepairTest, VersionOneIsNamedInTextAndGlb) {

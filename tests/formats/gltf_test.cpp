@@ -31,7 +31,7 @@ class GltfTest : public SceneFolder {
   LoadedScene load(GltfBuilder&& gltf) const { return load(gltf); }
 };
 
-const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+const std::vector<float> kSquarePlaces = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 
 // The next tests check meshes.
 
@@ -64,7 +64,7 @@ TYPED_TEST_SUITE(GltfIndexTest, IndexTypes);
 
 TYPED_TEST(GltfIndexTest, EveryIndexTypeIsRead) {
   GltfBuilder gltf;
-  const size_t positions = gltf.add<float>(kSquare, "VEC3");
+  const size_t positions = gltf.add<float>(kSquarePlaces, "VEC3");
   const size_t indices = gltf.add<TypeParam>({2, 1, 3}, "SCALAR");
   gltf.show({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
   const LoadedScene scene = this->load("scene.gltf", gltf.text());
@@ -89,7 +89,7 @@ TEST_F(GltfTest, StripsAlternateAndFansTurn) {
   for (const auto& [mode, wanted] : std::vector<std::pair<int, std::vector<uvec3>>>{
            {4, {{0, 1, 2}}}, {5, {{0, 1, 2}, {1, 3, 2}}}, {6, {{1, 2, 0}, {2, 3, 0}}}}) {
     GltfBuilder gltf;
-    gltf.show({{"attributes", {{"POSITION", gltf.add<float>(kSquare, "VEC3")}}}, {"mode", mode}});
+    gltf.show({{"attributes", {{"POSITION", gltf.add<float>(kSquarePlaces, "VEC3")}}}, {"mode", mode}});
     const LoadedScene scene = load(gltf);
     EXPECT_EQ(mesh_of(scene).triangles, wanted) << "mode " << mode;
     EXPECT_EQ(scene.warnings.size(), mode == 4 ? 1U : 0U) << "the fourth corner is no triangle";
@@ -98,7 +98,7 @@ TEST_F(GltfTest, StripsAlternateAndFansTurn) {
 
 TEST_F(GltfTest, PointsAndLinesTakeANumberButAreNotDrawn) {
   GltfBuilder gltf;
-  const size_t positions = gltf.add<float>(kSquare, "VEC3");
+  const size_t positions = gltf.add<float>(kSquarePlaces, "VEC3");
   for (const int mode : {0, 1, 2, 3, 5}) gltf.show({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
   const LoadedScene scene = load(gltf);
   ASSERT_THAT(scene.objects, SizeIs(5));

@@ -22,7 +22,7 @@ using testing::SizeIs;
 
 const std::string kView = "v\nfrom 1 2 8\nat 1 2 3\nup 0 2 1\nangle 45\nhither 0.5\nresolution 640 480\n";
 const std::string kMaterial = "f 0.5 0.25 1 0.5 0.25 20 0 0\n";
-const std::string kSquare = "p 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+const std::string kSquarePolygon = "p 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 class NffTest : public SceneFolder {
  protected:
@@ -70,7 +70,7 @@ TEST_F(NffTest, NormalsAgainstTheWindingAreWarnedOf) {
 }
 
 TEST_F(NffTest, LinesMeanNothing) {
-  std::string text = "b 0.25 0.5 0.75 # sky\n" + kView + kMaterial + kSquare + "l 1 2 3\ns 0 0 0 1\n#the end";
+  std::string text = "b 0.25 0.5 0.75 # sky\n" + kView + kMaterial + kSquarePolygon + "l 1 2 3\ns 0 0 0 1\n#the end";
   const Scene scene = load(text);
   std::replace(text.begin(), text.end(), '\n', '\t');
   text.replace(text.find("# sky"), 5, "#f 1 2\n");
@@ -128,8 +128,8 @@ TEST_F(NffTest, MaterialsAreOfPhong) {
 }
 
 TEST_F(NffTest, PolygonsOfAMaterialAreOneMesh) {
-  const Scene scene = load(kMaterial + kMaterial + "s 0 0 0 1\n" + kSquare + "s 1 0 0 1\n" + kSquare +
-                           "l 1 2 3\nc 0 0 0 1 0 1 0 1\n" + kMaterial + kSquare + kMaterial);
+  const Scene scene = load(kMaterial + kMaterial + "s 0 0 0 1\n" + kSquarePolygon + "s 1 0 0 1\n" + kSquarePolygon +
+                           "l 1 2 3\nc 0 0 0 1 0 1 0 1\n" + kMaterial + kSquarePolygon + kMaterial);
   ASSERT_THAT(scene.objects, SizeIs(5));
   EXPECT_EQ(shape_of<Sphere>(scene, 0).center, dvec3(0.0));
   EXPECT_THAT(shape_of<Mesh>(scene, 1).triangles, SizeIs(4)) << "both polygons, in file order";
@@ -164,7 +164,7 @@ TEST_F(NffTest, NegativeRadiiAreThoseOfShapesSeenFromInside) {
   EXPECT_EQ(shape_of<Cone>(scene, 2).radius_bottom, 1.0);
 }
 
-double area_of(const Mesh& mesh) {
+double mesh_area(const Mesh& mesh) {
   double area = 0.0;
   for (const uvec3& t : mesh.triangles) {
     const dvec3 a(mesh.positions[t.x]);
@@ -178,7 +178,7 @@ TEST_F(NffTest, PolygonsMayBeConcave) {
   const Scene scene = load("p 4 2 0 1 0 1 1 1 0 1 0 -1 1");
   const auto& mesh = shape_of<Mesh>(scene, 0);
   EXPECT_THAT(mesh.triangles, SizeIs(2));
-  EXPECT_NEAR(area_of(mesh), 1.0, 1e-12);
+  EXPECT_NEAR(mesh_area(mesh), 1.0, 1e-12);
   EXPECT_THAT(mesh.normals, IsEmpty());
   // The polygon is a comb of 40 teeth, with many notches.
   std::string comb = "p 81\n";
@@ -188,7 +188,7 @@ TEST_F(NffTest, PolygonsMayBeConcave) {
   // The outline goes from 0,0 to 80,0, and the base is its last side.
   const Scene teeth = load(comb);
   EXPECT_THAT(shape_of<Mesh>(teeth, 0).triangles, SizeIs(79));
-  EXPECT_NEAR(area_of(shape_of<Mesh>(teeth, 0)), 119.0, 1e-9);
+  EXPECT_NEAR(mesh_area(shape_of<Mesh>(teeth, 0)), 119.0, 1e-9);
 }
 
 TEST_F(NffTest, DegeneratePolygonsKeepTheirTriangles) {
@@ -209,7 +209,7 @@ TEST_F(NffTest, PatchesHaveNormals) {
   EXPECT_THAT(mesh.normals, ElementsAre(vec3(0, 0, 2), vec3(0, 1, 1), vec3(1, 0, 1)));
 
   // The patch stands between flat polygons.
-  const Scene mixed = load(kMaterial + kSquare + patch + kSquare);
+  const Scene mixed = load(kMaterial + kSquarePolygon + patch + kSquarePolygon);
   const auto& both = shape_of<Mesh>(mixed, 0);
   ASSERT_THAT(both.normals, SizeIs(both.positions.size()));
   EXPECT_EQ(both.normals[0], vec3(0, 0, 1));
@@ -241,13 +241,13 @@ TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
 // The next tests check faults that cost only a warning.
 
 /// A fault in a file, and the warning that it gives.
-struct Repair {
+struct NffRepair {
   const char* name;
   const char* text;
   const char* warning;
 };
 
-class NffRepairTest : public NffTest, public testing::WithParamInterface<Repair> {};
+class NffRepairTest : public NffTest, public testing::WithParamInterface<NffRepair> {};
 
 TEST_P(NffRepairTest, CostsAWarning) {
   const Scene scene = load(GetParam().text + std::string("\ns 0 0 0 1\n"));
@@ -259,7 +259,7 @@ TEST_P(NffRepairTest, CostsAWarning) {
   EXPECT_THROW(load_scene(folder_ / "scene.nff", {.is_strict = true}), InputError);
 }
 
-const Repair kRepairs[] = {
+const NffRepair kNffRepairs[] = {
     {"NegativeColor", "f 1 -1 1 1 1 1 0 0",
      "line 1: \"f\" has a number that is not from 0 to 1e7 (\"-1\"); the nearest"},
     {"NegativeKd", "f 1 1 1 -0.5 1 1 0 0", "\"f\" has a number that is not from 0 to 1e7 (\"-0.5\")"},
@@ -305,8 +305,8 @@ const Repair kRepairs[] = {
     {"PolygonNan", "p 3 0 0 0 1 nan 0 1 1 nan", "\"p\" has a coordinate"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Files, NffRepairTest, testing::ValuesIn(kRepairs),
-                         [](const testing::TestParamInfo<Repair>& repair) { return repair.param.name; });
+INSTANTIATE_TEST_SUITE_P(Files, NffRepairTest, testing::ValuesIn(kNffRepairs),
+                         [](const testing::TestParamInfo<NffRepair>& repair) { return repair.param.name; });
 
 TEST_F(NffTest, WhatIsForgivenKeepsTheRest) {
   const Scene scene = load(

@@ -21,7 +21,7 @@ using testing::SizeIs;
 
 const std::string kPlace = "property float x\nproperty float y\nproperty float z\n";
 const std::string kCornerList = "property list uchar int vertex_indices\n";
-const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+const std::string kSquareRows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 /// Returns the header of a text file with these elements, which are "element" lines and their properties.
 std::string text_header(const std::string& elements) {
@@ -32,7 +32,7 @@ std::string text_header(const std::string& elements) {
 std::string square(const std::string& faces, int face_count) {
   return text_header("element vertex 4\n" + kPlace + "element face " + std::to_string(face_count) + "\n" +
                      kCornerList) +
-         kSquare + faces;
+         kSquareRows + faces;
 }
 
 class PlyTest : public SceneFolder {
@@ -169,7 +169,7 @@ TEST_F(PlyTest, DegenerateTrianglesKeepTheirNumber) {
 TEST_F(PlyTest, StripsAreWoundOneWay) {
   const std::string file =
       text_header("element vertex 4\n" + kPlace + "element tristrips 1\nproperty list int int vertex_indices\n") +
-      kSquare + "9 0 1 3 2 -1 2 3 0 1\n";
+      kSquareRows + "9 0 1 3 2 -1 2 3 0 1\n";
   EXPECT_THAT(corners_of(mesh_of(load(file))),
               ElementsAre(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 1, 0), vec3(1, 0, 0), vec3(1, 1, 0),
                           vec3(1, 1, 0), vec3(0, 1, 0), vec3(0), vec3(0), vec3(0, 1, 0), vec3(1, 0, 0)));
@@ -182,7 +182,7 @@ TEST_F(PlyTest, VerticesThatNoFaceUsesMayHoldAnything) {
 }
 
 TEST_F(PlyTest, FacesWithoutAPlaceAreLeftOut) {
-  const std::string file = text_header("element vertex 5\n" + kPlace + "element face 4\n" + kCornerList) + kSquare +
+  const std::string file = text_header("element vertex 5\n" + kPlace + "element face 4\n" + kCornerList) + kSquareRows +
                            "1.#QNAN 0 0\n3 0 1 4\n3 0 1 2\n4 0 1 2 4\n3 0 2 3\n";
   const LoadedScene scene = load(file);
   EXPECT_THAT(mesh_of(scene).triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3)));
@@ -299,7 +299,7 @@ TEST_F(PlyTest, FacesOfOtherColorsHaveVerticesOfTheirOwn) {
   const std::string file =
       text_header("element vertex 4\n" + kPlace + "element face 3\nproperty uchar blue\n" + kCornerList +
                   "property uchar flags\nproperty uchar green\nproperty uchar red\n") +
-      kSquare + "0 3 0 1 2 7 0 255\n0 3 0 2 3 7 0 255\n255 4 0 1 2 3 7 0 0\n";
+      kSquareRows + "0 3 0 1 2 7 0 255\n0 3 0 2 3 7 0 255\n255 4 0 1 2 3 7 0 0\n";
   const LoadedScene scene = load(file);
   const Mesh& mesh = mesh_of(scene);
   EXPECT_THAT(mesh.triangles, ElementsAre(uvec3(0, 1, 2), uvec3(0, 2, 3), uvec3(4, 5, 6), uvec3(4, 6, 7)))
@@ -516,12 +516,13 @@ const BadFile kBadPly[] = {
     {"PropertyOfNothing", text_header("property int x\n"), "ply.header.order", ": line 5"},
     {"NoVertices", text_header("element face 0\n" + kCornerList), "ply.vertices.missing \"vertex\"", ""},
     {"NoPositions", text_header("element vertex 0\nproperty float x\n"), "ply.vertices.missing x", ""},
-    {"PointCloud", text_header(kVertexElement) + kSquare, "ply.faces.missing 4", ""},
-    {"NoFaces", text_header(kVertexElement + "element face 0\n" + kCornerList) + kSquare, "ply.faces.missing", ""},
-    {"FacesWithoutCorners", text_header(kVertexElement + "element face 1\nproperty int a\n") + kSquare + "1\n",
+    {"PointCloud", text_header(kVertexElement) + kSquareRows, "ply.faces.missing 4", ""},
+    {"NoFaces", text_header(kVertexElement + "element face 0\n" + kCornerList) + kSquareRows, "ply.faces.missing", ""},
+    {"FacesWithoutCorners", text_header(kVertexElement + "element face 1\nproperty int a\n") + kSquareRows + "1\n",
      "ply.faces.missing", ""},
-    {"CountOfALie", text_header("element vertex 1000000000\n" + kPlace) + kSquare, "ply.file.short", ""},
-    {"CountOfAHugeLie", text_header("element vertex 9223372036854775807\n" + kPlace) + kSquare, "ply.file.short", ""},
+    {"CountOfALie", text_header("element vertex 1000000000\n" + kPlace) + kSquareRows, "ply.file.short", ""},
+    {"CountOfAHugeLie", text_header("element vertex 9223372036854775807\n" + kPlace) + kSquareRows, "ply.file.short",
+     ""},
     {"CutBinaryHeader", cut_binary("1000"), "ply.file.short 1000 \"face\" 9", ""},
     {"CutBinary", cut_binary("1"), "ply.row.wrong list", ": face 0"},
     {"CutText", square("3 0 1 2\n", 2), "ply.row.wrong ends", ""},

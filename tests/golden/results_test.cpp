@@ -30,8 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kScenes = PROMIN_SCENES_DIR;
-const fs::path kGoldens = PROMIN_GOLDENS_DIR;
+const fs::path kSceneFolder = PROMIN_SCENES_DIR;
+const fs::path kGoldenFolder = PROMIN_GOLDENS_DIR;
 const fs::path kResults = PROMIN_RESULTS_FILE;
 
 /// Scenes with shapes, with meshes that share edges, and with glass.
@@ -47,7 +47,7 @@ struct Results {
 
 /// Returns the hash of the pixels of all stored pictures; their metadata may change.
 std::string hash_goldens() {
-  std::vector<fs::path> files{fs::directory_iterator(kGoldens), fs::directory_iterator()};
+  std::vector<fs::path> files{fs::directory_iterator(kGoldenFolder), fs::directory_iterator()};
   std::ranges::sort(files);
   jobs::Sha256 hash;
   for (const fs::path& file : files) {
@@ -59,7 +59,7 @@ std::string hash_goldens() {
 
 /// Returns the hash of the hits of rays through a scene. The rays start around the scene and aim at places in it.
 std::string hash_casts(const gpu::Device& device, const std::string& name) {
-  const Scene scene = load_scene(kScenes / name);
+  const Scene scene = load_scene(kSceneFolder / name);
   const Bounds bounds = bounds_of(scene);
   const vec3 middle = 0.5F * (bounds.lo + bounds.hi);
   const vec3 half = 0.5F * bounds.extent();

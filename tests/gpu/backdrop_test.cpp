@@ -26,7 +26,7 @@ void add_column(Scene& scene, uint32_t column, const Material& material) {
   scene.add("column", board, static_cast<uint32_t>(scene.materials.size() - 1));
 }
 
-Material make_phong(const Phong& phong) {
+Material make_phong_material(const Phong& phong) {
   Material material;
   material.model = phong;
   return material;
@@ -38,12 +38,12 @@ Scene make_columns() {
   const Phong lit{.ambient = vec3(0.0F), .diffuse = vec3(0.5F)};
   Scene scene;
   scene.environment.backdrop = Backdrop{kColor, kColor, kFactor};
-  add_column(scene, 1, make_phong(lit));
-  Material quarter = make_phong(lit);
+  add_column(scene, 1, make_phong_material(lit));
+  Material quarter = make_phong_material(lit);
   quarter.alpha_mode = AlphaMode::kBlend;
   quarter.alpha = 0.25F;
   add_column(scene, 2, quarter);
-  add_column(scene, 3, make_phong({.ambient = vec3(0.0F), .diffuse = vec3(0.0F), .reflection = vec3(0.5F)}));
+  add_column(scene, 3, make_phong_material({.ambient = vec3(0.0F), .diffuse = vec3(0.0F), .reflection = vec3(0.5F)}));
   Material pane;
   pane.model = MetallicRoughness{.metallic = 0.0F, .roughness = 0.0F, .specular = 0.0F, .transmission = 1.0F};
   add_column(scene, 4, pane);

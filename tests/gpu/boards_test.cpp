@@ -199,20 +199,20 @@ Board make_sides() {
   return board;
 }
 
-Material make_matt() {
+Material make_leaf_matt() {
   Material material;
   material.model = MetallicRoughness{.base_color = kGreenLight, .metallic = 0.0F, .specular = 0.0F};
   return material;
 }
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kHalfTurn = std::numbers::pi_v<float>;
 
 // Curtains with holes and blending ones hang behind the camera.
 Board make_shadows() {
   Board board;
-  board.scene.lights = {make_sun(vec3(0, 0, -1), kPi)};
+  board.scene.lights = {make_sun(vec3(0, 0, -1), kHalfTurn)};
   const auto add = [&](const Material& curtain, float light) {
-    board.add(0, make_matt());
+    board.add(0, make_leaf_matt());
     board.add(3, curtain);
     board.end_patch(vec3(0, light, 0));
   };
@@ -232,13 +232,13 @@ Board make_shadows() {
 Board make_normals() {
   Board board;
   const vec3 sun(1, -2, -3);
-  board.scene.lights = {make_sun(sun, kPi)};
+  board.scene.lights = {make_sun(sun, kHalfTurn)};
   const auto lit = [&](const vec3& normal) {
     return vec3(0, std::max(0.0F, glm::dot(glm::normalize(normal), -glm::normalize(sun))), 0);
   };
   const auto add = [&](uint32_t texel, float scale) {
     const auto component = [&](uint32_t shift) { return static_cast<float>(texel >> shift & 0xFF) / 127.5F - 1.0F; };
-    Material material = make_matt();
+    Material material = make_leaf_matt();
     auto& model = std::get<MetallicRoughness>(material.model);
     model.normal_texture.texture = board.add_image({1, 1}, {texel}, ImageUse::kNormal);
     model.normal_scale = scale;
@@ -257,10 +257,10 @@ Board make_normals() {
 // Occlusion reduces only light from everywhere.
 Board make_occlusion() {
   Board board;
-  board.scene.lights = {make_sun(vec3(0, 0, -1), 0.5F * kPi)};
+  board.scene.lights = {make_sun(vec3(0, 0, -1), 0.5F * kHalfTurn)};
   board.scene.environment.ambient = vec3(0.5F);
   for (const uint32_t left : {0U, 51U, 255U}) {
-    Material material = make_matt();
+    Material material = make_leaf_matt();
     auto& model = std::get<MetallicRoughness>(material.model);
     model.occlusion_texture.texture = board.add_image({1, 1}, {0xFF000000U | left}, ImageUse::kData);
     board.add(0, material);
@@ -274,7 +274,7 @@ Board make_occlusion() {
 Board make_coats() {
   Board board;
   for (const bool has_normals : {false, true}) {
-    Material material = make_matt();
+    Material material = make_leaf_matt();
     auto& model = std::get<MetallicRoughness>(material.model);
     model.base_color = vec3(0.0F);
     model.clearcoat = 1.0F;

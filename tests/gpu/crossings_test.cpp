@@ -40,7 +40,7 @@ using measure::Random;
 using measure::ray_towards;
 using measure::scene_of;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 
 struct Lists {
   std::vector<uint64_t> offsets{0};
@@ -147,7 +147,7 @@ TEST_F(CrossingsTest, ListsAreTheOracles) {
 }
 
 /// Returns the triangles of a square of n x n cells at z = 0; all corners are at integers, and diagonals go both ways.
-Mesh make_grid(uint32_t n) {
+Mesh make_crossed_grid(uint32_t n) {
   Mesh mesh;
   for (uint32_t y = 0; y <= n; ++y) {
     for (uint32_t x = 0; x <= n; ++x) mesh.positions.emplace_back(x, y, 0.0F);
@@ -170,7 +170,7 @@ Mesh make_grid(uint32_t n) {
 TEST_F(CrossingsTest, AtEdgesTheOneIsCrossedBesideWhichTheRayWouldPass) {
   constexpr uint32_t kCells = 8;
   for (const int turn : {0, 1, 2}) {
-    Mesh mesh = make_grid(kCells);
+    Mesh mesh = make_crossed_grid(kCells);
     const auto turned = [turn](vec3 v) {
       return turn == 0 ? v : turn == 1 ? vec3(v.z, v.x, v.y) : vec3(v.y, v.z, v.x);
     };
@@ -182,7 +182,7 @@ TEST_F(CrossingsTest, AtEdgesTheOneIsCrossedBesideWhichTheRayWouldPass) {
         for (uint32_t i = 0; i < (2 * kCells + 1) * (2 * kCells + 1); ++i) {
           const vec3 target = 0.5F * vec3(i % (2 * kCells + 1), i / (2 * kCells + 1), 0);
           const vec3 direction = vec3(0, 0, side) + lean;
-          rays.push_back({turned(target - 8.0F * direction), 0.0F, turned(direction), kInfinity});
+          rays.push_back({turned(target - 8.0F * direction), 0.0F, turned(direction), kNoEnd});
         }
       }
     }
@@ -208,7 +208,7 @@ TEST_F(CrossingsTest, AtEdgesTheOneIsCrossedBesideWhichTheRayWouldPass) {
 Mesh make_box_mesh(uint32_t n) {
   Mesh mesh;
   for (uint32_t face = 0; face < 6; ++face) {
-    const Mesh grid = make_grid(n);
+    const Mesh grid = make_crossed_grid(n);
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     const float side = face % 2 == 0 ? 1.0F : -1.0F;
     for (const vec3& p : grid.positions) {
@@ -308,7 +308,7 @@ std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_i
     if (!is_inside && kind == 0) {
       // This ray lies in the planes of faces and along sides.
       const dvec3 way = glm::normalize(corners[1] - corners[0]);
-      rays.push_back({vec3(target - 6.0 * way), 0.0F, vec3(way), kInfinity});
+      rays.push_back({vec3(target - 6.0 * way), 0.0F, vec3(way), kNoEnd});
     } else if (!is_inside && kind == 1) {
       // This ray goes along an axis of space, through numbers that the mesh has.
       const int axis = static_cast<int>(rays.size() % 9 / 3);
@@ -316,10 +316,10 @@ std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_i
       from[axis] -= 6.0F;
       vec3 direction(0.0F);
       direction[axis] = 1.0F;
-      rays.push_back({from, 0.0F, direction, kInfinity});
+      rays.push_back({from, 0.0F, direction, kNoEnd});
     } else {
       // The direction is computed from the rounded origin, so that it is as exact as possible.
-      rays.push_back({origin, 0.0F, vec3(target - dvec3(origin)), kInfinity});
+      rays.push_back({origin, 0.0F, vec3(target - dvec3(origin)), kNoEnd});
     }
   }
   return rays;
@@ -375,7 +375,7 @@ TEST_F(CrossingsTest, ParityHoldsAmongSliversSeenEdgeOn) {
       const dvec3 target =
           i % 4 == 3 ? 0.5 * random.perpendicular(dvec3(0, 0, 1)) : dvec3(0, 0, i % 2 == 0 ? height : -height);
       const vec3 origin(target - 5.0 * glm::normalize(way));
-      rays.push_back({origin, 0.0F, vec3(target - dvec3(origin)), kInfinity});
+      rays.push_back({origin, 0.0F, vec3(target - dvec3(origin)), kNoEnd});
     }
     EXPECT_EQ(count_wrong(count(scene_of({mesh}), rays), false), 0U) << height;
   }
@@ -426,7 +426,7 @@ TEST_F(CrossingsTest, WhatIsSeenAsAPointIsNotCrossedTwice) {
   std::vector<Ray> rays;
   for (int i = 0; i < 4000; ++i) {
     const vec3 origin(1e6 * random.direction());
-    rays.push_back({origin, 0.0F, -origin + vec3(0.02 * random.direction()), kInfinity});
+    rays.push_back({origin, 0.0F, -origin + vec3(0.02 * random.direction()), kNoEnd});
   }
   EXPECT_EQ(count_wrong(count(scene, rays), false), 0U);
 }
@@ -557,7 +557,7 @@ TEST_F(CrossingsTest, WhatIsTouchedIsNotCrossed) {
     make_caster(device(), scene).cast(rays, hits);
     EXPECT_EQ(hits[0].object >= 0, is_cast) << shape.index();
   };
-  const auto along_z = [](float x, float y) { return Ray{vec3(x, y, 8), 0.0F, vec3(0, 0, -1), kInfinity}; };
+  const auto along_z = [](float x, float y) { return Ray{vec3(x, y, 8), 0.0F, vec3(0, 0, -1), kNoEnd}; };
   expect(world::Sphere{vec3(0.0F), 1.0F}, along_z(1, 0), 0, true);
   expect(world::Sphere{vec3(0.0F), 1.0F}, along_z(0.5F, 0), 2, true);
   expect(world::Cylinder{vec3(0.0F), vec3(0, 1, 0), 1.0F, 1.0F}, along_z(1, 0), 0, true);
@@ -568,22 +568,22 @@ TEST_F(CrossingsTest, WhatIsTouchedIsNotCrossed) {
   // Rays through the side of a tube cross it once or twice; a ray along the axis never does.
   const world::Cylinder tube{vec3(0.0F), vec3(0, 1, 0), 1.0F, 1.0F, true};
   expect(tube, along_z(0, 0), 2, true);
-  expect(tube, {vec3(0, 2, 0), 0.0F, vec3(0, -1, 0), kInfinity}, 0, false);
-  expect(tube, {vec3(0, 2, 0), 0.0F, vec3(0.5F, -1, 0), kInfinity}, 1, true);
-  expect(tube, {vec3(0, 0, 0), 0.0F, vec3(1, 0, 0), kInfinity}, 1, true);
+  expect(tube, {vec3(0, 2, 0), 0.0F, vec3(0, -1, 0), kNoEnd}, 0, false);
+  expect(tube, {vec3(0, 2, 0), 0.0F, vec3(0.5F, -1, 0), kNoEnd}, 1, true);
+  expect(tube, {vec3(0, 0, 0), 0.0F, vec3(1, 0, 0), kNoEnd}, 1, true);
 }
 
 TEST_F(CrossingsTest, TheIntervalIsOpen) {
-  const world::Scene scene = scene_of({make_grid(4), world::Box{vec3(2, 2, 4), vec3(0.5F)}});
+  const world::Scene scene = scene_of({make_crossed_grid(4), world::Box{vec3(2, 2, 4), vec3(0.5F)}});
   const auto ray = [](float tmin, float tmax) { return Ray{vec3(1.75F, 2.25F, 8), tmin, vec3(0, 0, -1), tmax}; };
   // The crossings are at t = 3.5, 4.5 and 8.
-  const std::vector<Ray> rays = {ray(0, kInfinity),
+  const std::vector<Ray> rays = {ray(0, kNoEnd),
                                  ray(3.5F, 8),
                                  ray(3.4F, 4.5F),
-                                 ray(-kInfinity, 8.001F),
+                                 ray(-kNoEnd, 8.001F),
                                  ray(5, 4),
                                  ray(0, 0),
-                                 ray(std::nextafter(4.5F, 0.0F), kInfinity),
+                                 ray(std::nextafter(4.5F, 0.0F), kNoEnd),
                                  ray(std::numeric_limits<float>::quiet_NaN(), 9)};
   EXPECT_THAT(count(scene, rays), testing::ElementsAre(3, 1, 1, 3, 0, 0, 2, 0));
   const Lists lists = list(scene, rays);
@@ -604,16 +604,16 @@ TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
   const vec3 aside(1e-4F, 2e-4F, 0.0F);
   std::vector<Ray> rays;
   for (const float length : {1e-40F, 1e-37F, 1.2e-38F, 1e-10F, 1.0F, 1e10F, 1e36F, 1.7e38F, 3e38F}) {
-    rays.push_back({aside + vec3(0, 0, 2.5e-3F), 0.0F, vec3(0, 0, -length), kInfinity});
+    rays.push_back({aside + vec3(0, 0, 2.5e-3F), 0.0F, vec3(0, 0, -length), kNoEnd});
   }
   for (const float distance : {10.0F, 1000.0F}) {
     const vec3 origin = aside + vec3(0, 0, distance);
-    rays.push_back({origin, 0.0F, vec3(0, 0, -2), kInfinity});
-    rays.push_back({origin, 0.6F * distance, vec3(0, 0, -2), kInfinity});
+    rays.push_back({origin, 0.0F, vec3(0, 0, -2), kNoEnd});
+    rays.push_back({origin, 0.6F * distance, vec3(0, 0, -2), kNoEnd});
     rays.push_back({origin, 0.0F, vec3(0, 0, -2), 0.4F * distance});
   }
   // t would be 10^39.
-  rays.push_back({aside + vec3(0, 0, 10), 0.0F, vec3(0, 0, -1e-38F), kInfinity});
+  rays.push_back({aside + vec3(0, 0, 10), 0.0F, vec3(0, 0, -1e-38F), kNoEnd});
   const std::vector<int32_t> counts = count(scene, rays);
   EXPECT_THAT(counts, testing::ElementsAre(4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 0, 0, 4, 0, 0, 0));
   const Lists lists = list(scene, rays);
@@ -625,7 +625,7 @@ TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
   std::vector<Ray> parts;
   std::vector<int32_t> expected;
   for (const float length : {1.1e37F, 3.3e37F, 0.7e38F, 0.9e38F, 1.3e38F, 1.6e38F}) {
-    rays.push_back({aside + vec3(0, 0, 2.5e-3F), 0.0F, vec3(0, 0, -length), kInfinity});
+    rays.push_back({aside + vec3(0, 0, 2.5e-3F), 0.0F, vec3(0, 0, -length), kNoEnd});
   }
   const Lists more_lists = list(scene, rays);
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -655,7 +655,7 @@ TEST_F(CrossingsTest, CoincidentTrianglesAreAllListedInOrder) {
   mesh.positions = {vec3(-1, -1, 0), vec3(2, -1, 0), vec3(-1, 2, 0)};
   for (int i = 0; i < 300; ++i) mesh.triangles.push_back({0, 1, 2});
   const world::Scene scene = scene_of({mesh, mesh});
-  const std::vector<Ray> rays = {{vec3(0, 0, 3), 0.0F, vec3(0.01F, 0.02F, -1), kInfinity}};
+  const std::vector<Ray> rays = {{vec3(0, 0, 3), 0.0F, vec3(0.01F, 0.02F, -1), kNoEnd}};
   const Lists lists = list(scene, rays);
   ASSERT_EQ(lists.hits.size(), 600U);
   for (int i = 0; i < 600; ++i) {
@@ -672,7 +672,7 @@ std::pair<world::Scene, Ray> make_stack(uint32_t count) {
     mesh.positions.insert(mesh.positions.end(), {vec3(-1, -1, z), vec3(1, -1, z), vec3(0, 1, z)});
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  return {scene_of({mesh}), {vec3(0.1F, 0.1F, 0), 0.0F, vec3(0, 0, 1), kInfinity}};
+  return {scene_of({mesh}), {vec3(0.1F, 0.1F, 0), 0.0F, vec3(0, 0, 1), kNoEnd}};
 }
 
 // There are more crossings than the budget: the hits of one ray stay together.
@@ -794,7 +794,7 @@ TEST_F(SameCrossingsTest, WhateverHangsTogetherInPackets) {
   std::vector<Ray> rays;
   for (uint32_t i = 0; i < 64 * 64; ++i) {
     const vec3 aside = 0.015F * size * vec3(static_cast<float>(i % 64) - 31.5F, 31.5F - static_cast<float>(i / 64), 0);
-    rays.push_back({center + aside + vec3(0, 0, 2.0F * size), 0.0F, vec3(0.01F, 0.02F, -1), kInfinity});
+    rays.push_back({center + aside + vec3(0, 0, 2.0F * size), 0.0F, vec3(0.01F, 0.02F, -1), kNoEnd});
   }
   Caster whole = make_caster(device(), scene, CasterOptions{.builder = "sah"});
   Caster split = make_caster(device(), scene, CasterOptions{.builder = "spatial"});
@@ -848,7 +848,7 @@ TEST_F(SameCrossingsTest, WhateverTheKernel) {
 TEST_F(CrossingsTest, WrongUseIsRefusedAndTheCasterStaysUsable) {
   const world::Scene scene = scene_of({world::Sphere{vec3(0.0F), 1.0F}});
   Caster caster = make_caster(device(), scene);
-  const std::vector<Ray> rays(10, {vec3(0.1F, 0, 3), 0.0F, vec3(0, 0, -1), kInfinity});
+  const std::vector<Ray> rays(10, {vec3(0.1F, 0, 3), 0.0F, vec3(0, 0, -1), kNoEnd});
   std::vector<int32_t> counts(9);
   EXPECT_THROW(caster.count(rays, counts), UsageError);
   std::vector<Hit> hits(10);

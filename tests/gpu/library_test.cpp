@@ -30,7 +30,7 @@ namespace {
 using test::has_same_bits;
 
 /// Returns a mirroring ball on a floor, with a light.
-Scene make_scene() {
+Scene make_library_scene() {
   Mesh floor;
   floor.positions = {{-5, 0, -5}, {5, 0, -5}, {5, 0, 5}, {-5, 0, 5}};
   floor.triangles = {{0, 2, 1}, {0, 3, 2}};
@@ -44,7 +44,7 @@ Scene make_scene() {
   return scene;
 }
 
-View make_view(const Scene& scene, uint32_t size = 64) {
+View make_library_view(const Scene& scene, uint32_t size = 64) {
   View view;
   view.camera = frame_scene(scene, 1.0F);
   view.size = {size, size};
@@ -53,8 +53,8 @@ View make_view(const Scene& scene, uint32_t size = 64) {
 
 class LibraryTest : public test::DeviceTest {
  protected:
-  const Scene scene_ = make_scene();
-  const View view_ = make_view(scene_);
+  const Scene scene_ = make_library_scene();
+  const View view_ = make_library_view(scene_);
 };
 
 TEST_F(LibraryTest, WrongViewsAreRefusedAndTheRendererStays) {
@@ -226,7 +226,7 @@ TEST_F(LibraryTest, ABrokenOffConstructorLeavesTheDeviceUsable) {
 }
 
 TEST_F(LibraryTest, ABrokenOffPictureStopsAtTheNextDispatchAndTheRendererStays) {
-  const View view = make_view(scene_, 256);
+  const View view = make_library_view(scene_, 256);
   // A dispatch takes so few rays that there are several dispatches.
   TunedRendererOptions options;
   options.blocks_per_dispatch = 1;

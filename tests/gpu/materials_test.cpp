@@ -21,9 +21,9 @@
 namespace promin {
 namespace {
 
-constexpr float kU = 0x1p-24F;
+constexpr float kRoundoff = 0x1p-24F;
 
-Material make_metallic_roughness(const MetallicRoughness& model) {
+Material make_metal(const MetallicRoughness& model) {
   Material material;
   material.model = model;
   return material;
@@ -96,7 +96,7 @@ world::Scene make_spheres(const vec3& base_color) {
       model.roughness = 0.1F * static_cast<float>(column);
       scene.objects.push_back(
           {"", world::Sphere{vec3(column - 5, row - 1, 0), 0.45F}, static_cast<uint32_t>(scene.materials.size())});
-      scene.materials.push_back(make_metallic_roughness(model));
+      scene.materials.push_back(make_metal(model));
     }
   }
   return scene;
@@ -116,7 +116,7 @@ TEST_F(MaterialsTest, WhiteSpheresVanishInAWhiteFurnace) {
   View view = look_at_spheres();
   for (const uint32_t depth : {0U, 1U, 5U}) {
     view.max_depth = depth;
-    EXPECT_LE(largest_difference(renderer.render(view).image, 1.0F), 8.0F * kU) << depth;
+    EXPECT_LE(largest_difference(renderer.render(view).image, 1.0F), 8.0F * kRoundoff) << depth;
   }
 }
 
@@ -124,7 +124,7 @@ TEST_F(MaterialsTest, ColoredSpheresSendNoMoreThanTheyGet) {
   const Image image = render(make_spheres(vec3(0.9F, 0.5F, 0.0F)), look_at_spheres());
   size_t darker = 0;
   for (const vec3& pixel : image.pixels) {
-    ASSERT_LE(max_component(pixel), 1.0F + 8.0F * kU);
+    ASSERT_LE(max_component(pixel), 1.0F + 8.0F * kRoundoff);
     ASSERT_GE(std::min({pixel.x, pixel.y, pixel.z}), 0.0F);
     darker += pixel.z < 0.5F ? 1 : 0;
   }
@@ -140,7 +140,7 @@ TEST_F(MaterialsTest, WhiteSpheresUnderWhiteSheensVanishInAWhiteFurnace) {
       model.sheen_color = vec3(1.0F);
       model.sheen_roughness = roughness;
     }
-    EXPECT_LE(largest_difference(render(scene, look_at_spheres()), 1.0F), 8.0F * kU) << roughness;
+    EXPECT_LE(largest_difference(render(scene, look_at_spheres()), 1.0F), 8.0F * kRoundoff) << roughness;
   }
 }
 
@@ -154,7 +154,7 @@ TEST_F(MaterialsTest, WhiteSpheresThatScatterThroughVanishInAWhiteFurnace) {
     }
     if (!renderer) renderer.emplace(make_renderer(device(), scene));
     renderer->set_materials(scene.materials);
-    EXPECT_LE(largest_difference(renderer->render(look_at_spheres()).image, 1.0F), 8.0F * kU) << share;
+    EXPECT_LE(largest_difference(renderer->render(look_at_spheres()).image, 1.0F), 8.0F * kRoundoff) << share;
   }
 }
 
@@ -173,7 +173,7 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   scene.objects = {{"", wall, 0}};
   // This box blocks light from the left, on either side of the wall.
   scene.objects.push_back({"", world::Box{.center = vec3(-9, 0, 0), .half_size = vec3(1, 8, 8)}, 0});
-  scene.materials = {make_metallic_roughness(model)};
+  scene.materials = {make_metal(model)};
   scene.lights = {make_sun(vec3(0, 1, 0))};
   Renderer renderer = make_renderer(device(), scene);
   const View view = look_along(-glm::normalize(vec3(0.2F, 1, 0)));
@@ -182,8 +182,8 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
     return renderer.render(view).image.pixels[0];
   };
   const float cosine = glm::normalize(vec3(3, 4, 0)).y;
-  EXPECT_LE(max_abs_component(seen_under(vec3(3, 4, 0)) - 0.25F * 0.5F * cosine * vec3(1)), 8.0F * kU);
-  EXPECT_LE(max_abs_component(seen_under(vec3(3, -4, 0)) - 0.75F * cosine * color), 8.0F * kU);
+  EXPECT_LE(max_abs_component(seen_under(vec3(3, 4, 0)) - 0.25F * 0.5F * cosine * vec3(1)), 8.0F * kRoundoff);
+  EXPECT_LE(max_abs_component(seen_under(vec3(3, -4, 0)) - 0.75F * cosine * color), 8.0F * kRoundoff);
   EXPECT_EQ(seen_under(vec3(-9, 0.5F, 0)), vec3(0));
   EXPECT_EQ(seen_under(vec3(-9, -0.5F, 0)), vec3(0));
   EXPECT_EQ(seen_under(vec3(1, 0, 0)), vec3(0));
@@ -194,7 +194,7 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
     if (is_metal) other.metallic = 1.0F;
     if (!is_metal) other.diffuse_transmission = 0.0F;
     scene.objects[1].material = 1;
-    scene.materials = {make_metallic_roughness(other), make_metallic_roughness(model)};
+    scene.materials = {make_metal(other), make_metal(model)};
     scene.lights = {make_sun(vec3(0, -1, 0))};
     EXPECT_EQ(render(scene, view).pixels[0], vec3(0));
   }
@@ -208,8 +208,8 @@ TEST_F(MaterialsTest, AWhiteFloorUnderAFilmSendsAllOfOneColorInAWhiteFurnace) {
       MetallicRoughness model{.metallic = 0.0F, .roughness = 0.3F};
       model.iridescence = 1.0F;
       model.iridescence_thickness_maximum = thickness;
-      const vec3 seen = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
-      EXPECT_NEAR(max_component(seen), 1.0F, 8.0F * kU) << thickness << " nm at " << cosine;
+      const vec3 seen = color_of_floor(make_metal(model), cosine, make_furnace());
+      EXPECT_NEAR(max_component(seen), 1.0F, 8.0F * kRoundoff) << thickness << " nm at " << cosine;
     }
   }
 }
@@ -223,13 +223,13 @@ TEST_F(MaterialsTest, ThickFilmsReflectWithoutInterference) {
   model.iridescence = 1.0F;
   model.iridescence_ior = static_cast<float>(ior);
   model.iridescence_thickness_maximum = 1e8F;
-  const vec3 seen = color_of_floor(make_metallic_roughness(model), 1.0F, make_furnace());
+  const vec3 seen = color_of_floor(make_metal(model), 1.0F, make_furnace());
   const double outer = (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
   for (int i = 0; i < 3; ++i) {
     const double base_ior = (1 + std::sqrt(base[i])) / (1 - std::sqrt(base[i]));
     const double inner = (base_ior - ior) * (base_ior - ior) / ((base_ior + ior) * (base_ior + ior));
     const double sum = outer + (1 - outer) * (1 - outer) * inner / (1 - outer * inner);
-    EXPECT_NEAR(seen[i], sum, 64.0 * static_cast<double>(kU)) << i;
+    EXPECT_NEAR(seen[i], sum, 64.0 * static_cast<double>(kRoundoff)) << i;
   }
 }
 
@@ -244,7 +244,7 @@ world::Scene make_grain(float strength, float rotation, float roughness) {
   MetallicRoughness model{.metallic = 1.0F, .roughness = roughness};
   model.anisotropy = strength;
   model.anisotropy_rotation = rotation;
-  scene.materials = {make_metallic_roughness(model)};
+  scene.materials = {make_metal(model)};
   return scene;
 }
 
@@ -303,7 +303,7 @@ TEST_F(MaterialsTest, AWhiteGrainVanishesInAWhiteFurnace) {
     if (!renderer) renderer.emplace(make_renderer(device(), scene));
     renderer->set_materials(scene.materials);
     const vec3 seen = renderer->render(look_along(-glm::normalize(vec3(0.2F, 1, 0)))).image.pixels[0];
-    EXPECT_LE(max_abs_component(seen - vec3(1.0F)), 8.0F * kU) << roughness;
+    EXPECT_LE(max_abs_component(seen - vec3(1.0F)), 8.0F * kRoundoff) << roughness;
   }
 }
 
@@ -318,7 +318,7 @@ TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
     }
     float least = 1.0F;
     for (const vec3& pixel : render(scene, look_at_spheres()).pixels) {
-      ASSERT_LE(max_component(pixel), 1.0F + 16.0F * kU) << roughness;
+      ASSERT_LE(max_component(pixel), 1.0F + 16.0F * kRoundoff) << roughness;
       least = std::min({least, pixel.x, pixel.y, pixel.z});
     }
     // Smooth facets lose nothing; the table is exact to 0.0003 except at the rim.
@@ -331,7 +331,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
   constexpr int kCount = 4096;
   world::Scene scene;
   scene.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
-  scene.materials = {make_metallic_roughness({})};
+  scene.materials = {make_metal({})};
   const float golden_angle = std::numbers::pi_v<float> * (3.0F - std::sqrt(5.0F));
   for (int i = 0; i < kCount; ++i) {
     const float height = 1.0F - (2.0F * static_cast<float>(i) + 1.0F) / kCount;
@@ -346,7 +346,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
       MetallicRoughness model;
       model.metallic = metallic;
       model.roughness = roughness;
-      renderer.set_materials(std::vector{make_metallic_roughness(model)});
+      renderer.set_materials(std::vector{make_metal(model)});
       for (const float cosine : {0.999F, 0.8F, 0.5F, 0.25F, 0.1F}) {
         const vec3 color = renderer.render(look_along(-direction_at(cosine))).image.pixels[0];
         EXPECT_NEAR(color.x, 1.0F, 0.002F) << "metallic " << metallic << " roughness " << roughness << " at " << cosine;
@@ -360,7 +360,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
     model.metallic = 0.0F;
     model.sheen_color = vec3(1.0F);
     model.sheen_roughness = roughness;
-    renderer.set_materials(std::vector{make_metallic_roughness(model)});
+    renderer.set_materials(std::vector{make_metal(model)});
     for (const float cosine : {0.999F, 0.8F, 0.5F, 0.25F, 0.1F}) {
       const float sent = renderer.render(look_along(-direction_at(cosine))).image.pixels[0].x;
       EXPECT_LE(sent, 1.0F + 0.002F) << roughness << " at " << cosine;
@@ -379,7 +379,7 @@ class HighlightTest : public MaterialsTest {
  protected:
   HighlightTest() {
     scene_.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
-    scene_.materials = {make_metallic_roughness({})};
+    scene_.materials = {make_metal({})};
     scene_.lights = {make_sun(vec3(0, 1, 0))};
     renderer_.emplace(make_renderer(device(), scene_));
   }
@@ -389,7 +389,7 @@ class HighlightTest : public MaterialsTest {
     model.metallic = metallic;
     model.roughness = roughness;
     model.base_color = metallic > 0.0F ? vec3(0.9F, 0.6F, 0.2F) : vec3(0.0F);
-    scene_.materials = {make_metallic_roughness(model)};
+    scene_.materials = {make_metal(model)};
     renderer_->set_materials(scene_.materials);
   }
 
@@ -419,7 +419,7 @@ TEST_F(HighlightTest, LobesAreTheOraclesButForRounding) {
         for (const float aside : {0.0F, 0.3F, 1.0F, 3.0F}) {
           const vec3 to_light = glm::normalize(mirrored + std::min(aside * alpha, 0.5F) * vec3(0.3F, 0.5F, 0.8F));
           const Highlight highlight = measure(to_eye, to_light);
-          const float bound = (64.0F + 8.0F / alpha) * kU;
+          const float bound = (64.0F + 8.0F / alpha) * kRoundoff;
           EXPECT_LE(std::abs(highlight.got / highlight.wanted - 1), bound)
               << "metallic " << metallic << " roughness " << roughness << " cosine " << cosine << " aside " << aside;
           EXPECT_GT(highlight.got, 0.0F);
@@ -451,7 +451,7 @@ TEST_F(HighlightTest, TheLobeIsReciprocal) {
       };
       const oracle::Real one = measure(there, back).got / share_of(there, back);
       const oracle::Real other = measure(back, there).got / share_of(back, there);
-      EXPECT_LE(std::abs(one / other - 1), (32.0F + 16.0F / alpha) * kU) << roughness << " " << i;
+      EXPECT_LE(std::abs(one / other - 1), (32.0F + 16.0F / alpha) * kRoundoff) << roughness << " " << i;
     }
   }
 }
@@ -460,26 +460,25 @@ TEST_F(HighlightTest, TheLobeIsReciprocal) {
 TEST_F(MaterialsTest, AnIndexOfZeroIsAMirror) {
   MetallicRoughness model{.base_color = vec3(0.0F), .metallic = 0.0F, .roughness = 0.0F, .ior = 0.0F};
   for (const float cosine : {1.0F, 0.5F, 0.1F}) {
-    const vec3 color = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
-    EXPECT_LE(max_abs_component(color - vec3(1.0F)), 8.0F * kU) << cosine;
+    const vec3 color = color_of_floor(make_metal(model), cosine, make_furnace());
+    EXPECT_LE(max_abs_component(color - vec3(1.0F)), 8.0F * kRoundoff) << cosine;
   }
   // KHR_materials_specular colours the reflection or removes it; without it all light is the body's.
   model.specular_color = vec3(1.0F, 0.5F, 0.0F);
-  EXPECT_LE(
-      max_abs_component(color_of_floor(make_metallic_roughness(model), 1.0F, make_furnace()) - model.specular_color),
-      8.0F * kU);
+  EXPECT_LE(max_abs_component(color_of_floor(make_metal(model), 1.0F, make_furnace()) - model.specular_color),
+            8.0F * kRoundoff);
   model.base_color = vec3(0.5F);
   model.specular = 0.0F;
-  EXPECT_EQ(color_of_floor(make_metallic_roughness(model), 0.1F, make_furnace()), vec3(0.5F));
+  EXPECT_EQ(color_of_floor(make_metal(model), 0.1F, make_furnace()), vec3(0.5F));
 }
 
 TEST_F(MaterialsTest, WithoutSpecularStrengthASurfaceIsMatt) {
   MetallicRoughness model{.base_color = vec3(0.5F), .metallic = 0.0F, .roughness = 0.3F};
   world::Scene scene;
   scene.lights = {make_sun(direction_at(0.5F) * vec3(-1, 1, 1))};
-  const vec3 glossy = color_of_floor(make_metallic_roughness(model), 0.5F, scene);
+  const vec3 glossy = color_of_floor(make_metal(model), 0.5F, scene);
   model.specular = 0.0F;
-  const vec3 matt = color_of_floor(make_metallic_roughness(model), 0.5F, scene);
+  const vec3 matt = color_of_floor(make_metal(model), 0.5F, scene);
   EXPECT_NEAR(matt.x, 0.5F * std::numbers::inv_pi_v<float> * 0.5F, 1e-7F);
   EXPECT_GT(glossy.x, 2.0F * matt.x);
 }
@@ -488,7 +487,7 @@ TEST_F(MaterialsTest, WithoutSpecularStrengthASurfaceIsMatt) {
 TEST_F(MaterialsTest, BlackMetalReflectsFromTheSideAlone) {
   const MetallicRoughness model{.base_color = vec3(0.0F), .metallic = 1.0F, .roughness = 0.0F};
   for (const float cosine : {1.0F, 0.7F, 0.3F, 0.05F}) {
-    const vec3 color = color_of_floor(make_metallic_roughness(model), cosine, make_furnace());
+    const vec3 color = color_of_floor(make_metal(model), cosine, make_furnace());
     // The tolerance is the table's error.
     EXPECT_NEAR(color.x, std::pow(1.0F - cosine, 5.0F), 0.005F) << cosine;
   }
@@ -514,20 +513,20 @@ TEST_F(MaterialsTest, VertexColorsAreFactorsOfTheBaseColor) {
   };
   for (const float metallic : {0.0F, 0.5F, 1.0F}) {
     MetallicRoughness model{.base_color = vec3(1, 0.5F, 0.75F), .metallic = metallic, .roughness = 0.6F};
-    const vec3 by_vertices = color_of(make_metallic_roughness(model), vec3(0.25F, 0.5F, 1));
-    const vec3 plain = color_of(make_metallic_roughness(model), vec3(1));
+    const vec3 by_vertices = color_of(make_metal(model), vec3(0.25F, 0.5F, 1));
+    const vec3 plain = color_of(make_metal(model), vec3(1));
     model.base_color = vec3(0.25F, 0.25F, 0.75F);
-    const vec3 by_base = color_of(make_metallic_roughness(model), vec3(1));
-    EXPECT_LE(max_abs_component(by_vertices - by_base), 32.0F * kU) << metallic;
+    const vec3 by_base = color_of(make_metal(model), vec3(1));
+    EXPECT_LE(max_abs_component(by_vertices - by_base), 32.0F * kRoundoff) << metallic;
     EXPECT_GT(plain.x, 1.5F * by_base.x) << metallic;
     // With a base colour of more than 1, the surface would reflect more light than it gets.
     model.base_color = vec3(1);
-    const vec3 white = color_of(make_metallic_roughness(model), vec3(1));
-    EXPECT_LE(max_abs_component(color_of(make_metallic_roughness(model), vec3(4)) - white), 32.0F * kU) << metallic;
+    const vec3 white = color_of(make_metal(model), vec3(1));
+    EXPECT_LE(max_abs_component(color_of(make_metal(model), vec3(4)) - white), 32.0F * kRoundoff) << metallic;
   }
   Material unlit;
   unlit.model = Unlit{vec3(1, 0.5F, 2)};
-  EXPECT_LE(max_abs_component(color_of(unlit, vec3(0.5F, 0.5F, 3)) - vec3(0.5F, 0.25F, 6)), 32.0F * kU);
+  EXPECT_LE(max_abs_component(color_of(unlit, vec3(0.5F, 0.5F, 3)) - vec3(0.5F, 0.25F, 6)), 32.0F * kRoundoff);
 }
 
 TEST_F(MaterialsTest, NoLightTouchesTheUnlit) {

@@ -47,7 +47,7 @@ uvec2 size_for(const world::Scene& scene) {
 }
 
 /// Returns the view that `promin render` has of a scene, and adds the default lights if the scene needs them.
-View view_of(world::Scene& scene) {
+View camera_view_of(world::Scene& scene) {
   View view;
   view.size = size_for(scene);
   view.camera = scene.cameras.empty() ? look_from_front(scene, 4.0F / 3.0F) : scene.cameras.front();
@@ -117,7 +117,7 @@ std::vector<std::string> scene_names() {
 
 TEST_P(OraclePictureTest, AgreesWithTheOracle) {
   world::Scene scene = world::flatten(load_scene(fs::path(PROMIN_SCENES_DIR) / GetParam()));
-  View view = view_of(scene);
+  View view = camera_view_of(scene);
   oracle::PictureBounds bounds;
   if (std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); })) {
     view.max_depth = kMaxDepthOfGlass;

@@ -29,7 +29,7 @@ namespace {
 using test::has_same_bits;
 using test::make_scene_of_everything;
 
-const uvec2 kSize(150, 100);  // neither number is a multiple of the block's size
+const uvec2 kPictureSize(150, 100);  // neither number is a multiple of the block's size
 
 class RendererTest : public test::DeviceTest {
  protected:
@@ -46,13 +46,13 @@ class RendererTest : public test::DeviceTest {
 TEST_F(RendererTest, TwoRunsGiveTheSameBits) {
   const world::Scene scene = make_scene_of_everything();
   Renderer renderer = make(scene);
-  const View view = test::make_view(kSize);
+  const View view = test::make_view(kPictureSize);
   EXPECT_TRUE(has_same_bits(renderer.render(view).image, renderer.render(view).image));
 }
 
 TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
   const world::Scene scene = make_scene_of_everything();
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   view.samples_per_pixel = 3;
   TunedRendererOptions single_blocks;
   single_blocks.blocks_per_dispatch = 1;
@@ -69,7 +69,7 @@ TEST_F(RendererTest, BitsDoNotDependOnTheTiles) {
 
 TEST_F(RendererTest, BitsDoNotDependOnThePackets) {
   const world::Scene scene = make_scene_of_everything();
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   view.samples_per_pixel = 3;
   TunedRendererOptions options;
   options.with_aovs = true;
@@ -112,12 +112,13 @@ TEST_F(RendererTest, FewSamplesAreTracedBySinglePixels) {
 TEST_F(RendererTest, TexelsAndStorageBuffersGiveTheSameBits) {
   constexpr uint64_t kEnough = uint64_t{1} << 26;
   if (device().profile().most_texel_bytes < kEnough) GTEST_SKIP() << "the device's texel buffers are too small";
-  std::vector<std::pair<world::Scene, View>> pictures = {{make_scene_of_everything(2000), test::make_view(kSize)}};
+  std::vector<std::pair<world::Scene, View>> pictures = {
+      {make_scene_of_everything(2000), test::make_view(kPictureSize)}};
   for (const char* name :
        test::cases_of<const char*>({"showcase.gltf", "light_physical.gltf", "vertex_colors.gltf"}, 0)) {
     world::Scene scene = world::flatten(load_scene(std::filesystem::path(PROMIN_SCENES_DIR) / name));
     View view;
-    view.size = kSize;
+    view.size = kPictureSize;
     view.camera = scene.cameras.at(0);
     pictures.emplace_back(std::move(scene), view);
   }
@@ -141,7 +142,7 @@ TEST_F(RendererTest, TexelsAndStorageBuffersGiveTheSameBits) {
 
 TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {
   const world::Scene scene = make_scene_of_everything();
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   Renderer renderer = make(scene);
   const Image whole = renderer.render(view).image;
   view.crop = PixelWindow{uvec2(13, 29), uvec2(90, 71)};
@@ -156,7 +157,7 @@ TEST_F(RendererTest, ACropHasTheBitsOfTheWhole) {
 
 TEST_F(RendererTest, BitsDoNotDependOnTheBuilder) {
   const world::Scene scene = make_scene_of_everything(2000);
-  const View view = test::make_view(kSize);
+  const View view = test::make_view(kPictureSize);
   const Image expected = render(scene, view).image;
   for (const std::string_view builder : builder_names()) {
     TunedRendererOptions options;
@@ -175,7 +176,7 @@ TEST_F(RendererTest, SpecialisationChangesNoBit) {
   TunedRendererOptions forced;
   forced.more_features = all_features();
   for (const world::Scene* scene : std::array<const world::Scene*, 2>{&spheres, &everything}) {
-    const View view = test::make_view(kSize);
+    const View view = test::make_view(kPictureSize);
     Renderer specialised = make_renderer(device(), *scene);
     Renderer general = make_renderer(device(), *scene, forced);
     EXPECT_EQ(specialised.setup_stats().features, feature_names(features_of(*scene)));
@@ -199,7 +200,7 @@ TEST_F(RendererTest, TheHeadlightFollowsTheCameraOfEachView) {
   world::Scene scene = make_scene_of_everything();
   scene.lights = {make_headlight()};
   Renderer renderer = make(scene);
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   for (const vec3& look : {vec3(0, 0, -1), vec3(0.28F, 0, -0.96F), vec3(-0.6F, 0, -0.8F)}) {
     view.camera.look = look;
     view.camera.up = vec3(0, 1, 0);

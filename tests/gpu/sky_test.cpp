@@ -42,7 +42,7 @@ world::Scene make_balls(const std::vector<Material>& materials) {
   return scene;
 }
 
-View make_view(const vec3& eye, const vec3& look, const vec3& up, uvec2 size) {
+View make_sky_view(const vec3& eye, const vec3& look, const vec3& up, uvec2 size) {
   View view;
   view.camera.eye = eye;
   view.camera.look = look;
@@ -55,7 +55,7 @@ View make_view(const vec3& eye, const vec3& look, const vec3& up, uvec2 size) {
 /// back.
 View look_from(const vec3& axis) {
   const vec3 up = axis.y == 0.0F ? vec3(0, 1, 0) : vec3(0, 0, 1);
-  return make_view(5.0F * axis, -axis, up, uvec2(1));
+  return make_sky_view(5.0F * axis, -axis, up, uvec2(1));
 }
 
 Panorama make_panorama(uvec2 size, const std::function<vec3(uint32_t, uint32_t)>& pixel) {
@@ -108,7 +108,7 @@ TEST_F(SkyPictureTest, AWhiteFurnaceIsWhite) {
   world::Scene scene = make_balls(metals);
   scene.environment.sky = make_panorama({4, 2}, [](uint32_t, uint32_t) { return vec3(1.0F); });
   scene.environment.background = vec3(1.0F);
-  View view = make_view(vec3(12.5F, 0, 20), vec3(0, 0, -1), vec3(0, 1, 0), uvec2(280, 20));
+  View view = make_sky_view(vec3(12.5F, 0, 20), vec3(0, 0, -1), vec3(0, 1, 0), uvec2(280, 20));
   view.camera.yfov = 0.11F;
   const Image image = render(scene, view);
   for (size_t i = 0; i < image.pixels.size(); ++i) {
@@ -131,8 +131,8 @@ world::Scene make_studio_scene() {
 }
 
 View make_studio_view() {
-  View view =
-      make_view(vec3(12.5F, 2, 24), glm::normalize(vec3(0, -2, -24)), glm::normalize(vec3(0, 24, -2)), uvec2(320, 48));
+  View view = make_sky_view(vec3(12.5F, 2, 24), glm::normalize(vec3(0, -2, -24)), glm::normalize(vec3(0, 24, -2)),
+                            uvec2(320, 48));
   view.camera.yfov = 0.2F;
   return view;
 }

@@ -14,7 +14,7 @@
 namespace promin::test {
 namespace {
 
-const vec3 kColor(0.25F, 0.5F, 0.75F);
+const vec3 kUnlitColor(0.25F, 0.5F, 0.75F);
 constexpr uint32_t kStripes = 5;
 
 /// Adds a stripe to the board that fills the picture; `index` counts from the left.
@@ -37,16 +37,16 @@ Material make_lit(AlphaMode mode = AlphaMode::kOpaque, float alpha = 1.0F) {
 /// unlit surface, and a mirror of an unlit surface.
 Scene make_stripes() {
   Scene scene;
-  add_stripe(scene, 0, 0.0F, make_unlit(kColor));
+  add_stripe(scene, 0, 0.0F, make_unlit(kUnlitColor));
   add_stripe(scene, 1, 0.0F, make_lit());
   add_stripe(scene, 2, 0.5F, make_lit(AlphaMode::kBlend, 0.25F));
-  add_stripe(scene, 2, 0.0F, make_unlit(kColor));
-  add_stripe(scene, 3, 0.5F, make_unlit(kColor, AlphaMode::kBlend, 0.25F));
+  add_stripe(scene, 2, 0.0F, make_unlit(kUnlitColor));
+  add_stripe(scene, 3, 0.5F, make_unlit(kUnlitColor, AlphaMode::kBlend, 0.25F));
   add_stripe(scene, 3, 0.0F, make_lit());
   Material mirror;
   mirror.model = Phong{.ambient = vec3(0.0F), .diffuse = vec3(0.0F), .reflection = vec3(0.5F)};
   add_stripe(scene, 4, 0.0F, mirror);
-  add_stripe(scene, 4, 3.0F, make_unlit(kColor));
+  add_stripe(scene, 4, 3.0F, make_unlit(kUnlitColor));
   scene.lights = {make_sun(vec3(0.0F, 0.0F, -1.0F), 8.0F)};
   return scene;
 }
@@ -74,13 +74,13 @@ class UnlitTest : public DeviceTest {
 TEST_F(UnlitTest, TheShareIsWhatTheCameraSeesDirectly) {
   const RenderResult result = trace(make_stripes_view(uvec2(kStripes, 1)));
   const std::vector<vec4>& unlit = result.aovs.unlit;
-  EXPECT_EQ(unlit[0], vec4(kColor, 1.0F));
-  EXPECT_EQ(result.image.pixels[0], kColor);
+  EXPECT_EQ(unlit[0], vec4(kUnlitColor, 1.0F));
+  EXPECT_EQ(result.image.pixels[0], kUnlitColor);
   EXPECT_EQ(unlit[1], vec4(0.0F));
-  EXPECT_EQ(unlit[2], 0.75F * vec4(kColor, 1.0F));
-  EXPECT_EQ(unlit[3], 0.25F * vec4(kColor, 1.0F));
+  EXPECT_EQ(unlit[2], 0.75F * vec4(kUnlitColor, 1.0F));
+  EXPECT_EQ(unlit[3], 0.25F * vec4(kUnlitColor, 1.0F));
   EXPECT_EQ(unlit[4], vec4(0.0F)) << "a mirror shows light";
-  EXPECT_EQ(result.image.pixels[4], 0.5F * kColor);
+  EXPECT_EQ(result.image.pixels[4], 0.5F * kUnlitColor);
 }
 
 TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
@@ -93,13 +93,13 @@ TEST_F(UnlitTest, NoTransformChangesAnUnlitColourAndItChangesNoOther) {
       for (size_t i = 0; i < kStripes; ++i) {
         shown[i] = apply(display, result.image.pixels[i], result.aovs.unlit[i]);
       }
-      EXPECT_EQ(shown[0], kColor);
+      EXPECT_EQ(shown[0], kUnlitColor);
       EXPECT_EQ(shown[1], apply(display, result.image.pixels[1]));
       EXPECT_EQ(shown[4], apply(display, result.image.pixels[4]));
       // The light on the blending surface is that on the stripe beside it; shadows go through it.
       const vec3 lit = apply(display, result.image.pixels[1]);
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(shown[2][c], 0.75F * kColor[c] + 0.25F * lit[c], 1e-5F * (1.0F + lit[c]));
+        EXPECT_NEAR(shown[2][c], 0.75F * kUnlitColor[c] + 0.25F * lit[c], 1e-5F * (1.0F + lit[c]));
       }
     }
   }
@@ -110,7 +110,7 @@ TEST_F(UnlitTest, EdgesCountByTheirShare) {
   View view = make_stripes_view(uvec2(3, 2), 16);
   const RenderResult result = trace(view);
   EXPECT_NEAR(result.aovs.unlit[0].w, 0.6F, 0.1F);
-  const vec4 expected = result.aovs.unlit[0].w * vec4(kColor, 1.0F);
+  const vec4 expected = result.aovs.unlit[0].w * vec4(kUnlitColor, 1.0F);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(result.aovs.unlit[0][c], expected[c], 1e-6F);
   // Packets change no bit, and the picture is the same if the fraction is not requested.
   TunedRendererOptions single;
@@ -124,7 +124,7 @@ TEST_F(UnlitTest, EdgesCountByTheirShare) {
   const RenderResult refined = trace(view);
   EXPECT_NEAR(refined.aovs.unlit[0].w, 0.6F, 0.03F);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(refined.aovs.unlit[0][c], refined.aovs.unlit[0].w * kColor[c], 1e-6F);
+    EXPECT_NEAR(refined.aovs.unlit[0][c], refined.aovs.unlit[0].w * kUnlitColor[c], 1e-6F);
   }
 }
 

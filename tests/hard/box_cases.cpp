@@ -146,13 +146,13 @@ void run_axis_parallel(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{28, "BoxEdgesAndCorners", run_box_edges},
-                            HardCase{29, "AxisParallelRays", run_axis_parallel}};
+constexpr std::array kBoxCases{HardCase{28, "BoxEdgesAndCorners", run_box_edges},
+                               HardCase{29, "AxisParallelRays", run_axis_parallel}};
 
 }  // namespace
 
 std::span<const HardCase> box_cases() {
-  return kCases;
+  return kBoxCases;
 }
 
 }  // namespace promin::hard

@@ -14,7 +14,7 @@ namespace promin::hard {
 namespace {
 
 /// The number of rays for each orientation.
-const size_t kRayCount = some_of(25000);
+const size_t kImplicitRayCount = some_of(25000);
 /// The number of rays if many answers differ from the oracle's, because finding the margin of one takes a millisecond.
 const size_t kGrazingRayCount = some_of(1000);
 
@@ -65,7 +65,7 @@ dvec3 random_place(Random& random, double spread) {
 using MakeRay = std::function<Ray(const AimedBox&, Random&)>;
 
 Tally cast_boxes(Lab& lab, const BoxForm& form, const vec3& center, Random& random, const MakeRay& make_ray,
-                 size_t count = kRayCount) {
+                 size_t count = kImplicitRayCount) {
   Tally tally;
   for (const vec3& turn : kTurns) {
     const AimedBox aimed(form, center, turn);
@@ -76,8 +76,8 @@ Tally cast_boxes(Lab& lab, const BoxForm& form, const vec3& center, Random& rand
   return tally;
 }
 
-void run_around(Lab& lab, const BoxForm& form, std::initializer_list<double> distances, const vec3& center,
-                Random& random) {
+void run_around_box(Lab& lab, const BoxForm& form, std::initializer_list<double> distances, const vec3& center,
+                    Random& random) {
   for (const double distance : distances) {
     const Tally tally = cast_boxes(lab, form, center, random, [&](const AimedBox& aimed, Random& r) {
       return ray_towards(dvec3(aimed.box.center) + distance * r.direction(), aimed.at(random_place(r, 1.1)));
@@ -89,17 +89,17 @@ void run_around(Lab& lab, const BoxForm& form, std::initializer_list<double> dis
 
 void run_boxes_far_away(Lab& lab) {
   Random random(39);
-  run_around(lab, kCube, {3.0, 1e1, 1e2, 1e3, 1e4, 1e5}, vec3(0.0F), random);
-  run_around(lab, kBrick, {3.0, 1e3}, vec3(0.0F), random);
-  run_around(lab, kPlate, {3.0, 1e3}, vec3(0.0F), random);
-  run_around(lab, kRod, {3.0, 1e3}, vec3(0.0F), random);
-  run_around(lab, kSmall, {10.0}, vec3(0.0F), random);
-  run_around(lab, kBrick, {10.0}, vec3(1e5F, -1e5F, 1e5F), random);
+  run_around_box(lab, kCube, {3.0, 1e1, 1e2, 1e3, 1e4, 1e5}, vec3(0.0F), random);
+  run_around_box(lab, kBrick, {3.0, 1e3}, vec3(0.0F), random);
+  run_around_box(lab, kPlate, {3.0, 1e3}, vec3(0.0F), random);
+  run_around_box(lab, kRod, {3.0, 1e3}, vec3(0.0F), random);
+  run_around_box(lab, kSmall, {10.0}, vec3(0.0F), random);
+  run_around_box(lab, kBrick, {10.0}, vec3(1e5F, -1e5F, 1e5F), random);
 }
 
 /// Aims at edges and corners from directions that see both or all of their faces, well inside the silhouette: no ray
 /// may miss. A plate is aimed at from near by; from too far away, u S would reach its other side.
-void run_box_edges(Lab& lab) {
+void run_implicit_box_edges(Lab& lab) {
   Random random(40);
   for (const BoxForm& form : {kCube, kBrick, kPlate}) {
     uint64_t leaks = 0;
@@ -203,7 +203,8 @@ const std::array<dvec3, 4> kAxes = {dvec3(0.0, 1.0, 0.0), dvec3(-1.0, 0.0, 0.0),
                                     dvec3(1e-3, -1e-4, -1.0)};
 
 Tally cast_capsules(Lab& lab, const CapsuleForm& form, const vec3& center, Random& random,
-                    const std::function<Ray(const AimedCapsule&, Random&)>& make_ray, size_t count = kRayCount) {
+                    const std::function<Ray(const AimedCapsule&, Random&)>& make_ray,
+                    size_t count = kImplicitRayCount) {
   Tally tally;
   for (const dvec3& axis : kAxes) {
     const AimedCapsule aimed(form, center, axis);
@@ -271,15 +272,15 @@ void run_along_capsules(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{
-    HardCase{39, "BoxFarAway", run_boxes_far_away}, HardCase{40, "BoxEdges", run_box_edges},
+constexpr std::array kImplicitCases{
+    HardCase{39, "BoxFarAway", run_boxes_far_away}, HardCase{40, "BoxEdges", run_implicit_box_edges},
     HardCase{41, "AlongBoxFaces", run_along_faces}, HardCase{42, "CapsuleFarAway", run_capsules_far_away},
     HardCase{43, "CapsuleSeams", run_seams},        HardCase{44, "AlongCapsules", run_along_capsules}};
 
 }  // namespace
 
 std::span<const HardCase> implicit_cases() {
-  return kCases;
+  return kImplicitCases;
 }
 
 }  // namespace promin::hard

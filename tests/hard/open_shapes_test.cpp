@@ -17,11 +17,11 @@
 namespace promin::hard {
 namespace {
 
-constexpr int kShapeCount = 20;
+constexpr int kOpenShapeCount = 20;
 /// Faults at a rim affect one ray in about ten thousand.
 const int kRimShapeCount = test::is_thorough() ? 40 : 16;
-const size_t kRayCount = some_of(5000);
-constexpr vec3 kCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
+const size_t kOpenRayCount = some_of(5000);
+constexpr vec3 kOpenCenters[] = {vec3(0.0F), vec3(0.3F, -0.7F, 0.4F), vec3(1000.0F, -800.0F, 1200.0F)};
 
 /// Gives both kinds of shape the same names.
 struct Side {
@@ -56,7 +56,7 @@ template <class Shape>
 class OpenShapeTest : public test::DeviceTest {
  protected:
   Shape make(int i) {
-    Shape shape = random_shape<Shape>(kCenters[i % 3], random);
+    Shape shape = random_shape<Shape>(kOpenCenters[i % 3], random);
     shape.is_open = true;
     return shape;
   }
@@ -75,12 +75,12 @@ TYPED_TEST_SUITE(OpenShapeTest, OpenShapes);
 TYPED_TEST(OpenShapeTest, TheOracleAgrees) {
   const Lab lab(this->device(), 0);
   uint64_t misses = 0;
-  for (int i = 0; i < kShapeCount; ++i) {
+  for (int i = 0; i < kOpenShapeCount; ++i) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     const double distance = side.size() * std::pow(10.0, this->random.uniform(0.2, 4.0));
     std::vector<Ray> rays;
-    for (size_t k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kOpenRayCount; ++k) {
       const double z = side.half_height * this->random.uniform(-1.1, 1.1);
       const dvec3 target = side.at(z, side.widest() * this->random.uniform() * this->random.perpendicular(side.axis));
       rays.push_back(ray_towards(side.center + distance * this->random.direction(), target));
@@ -96,12 +96,12 @@ TYPED_TEST(OpenShapeTest, TheOracleAgrees) {
 /// Rays go through the wide end to the wall beyond: they hit the inside, never a disk.
 TYPED_TEST(OpenShapeTest, RaysEnterWhereADiskIsMissing) {
   const Lab lab(this->device(), 0);
-  for (int i = 0; i < kShapeCount; ++i) {
+  for (int i = 0; i < kOpenShapeCount; ++i) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     const double end = side.radius_bottom >= side.radius_top ? -1.0 : 1.0;
     std::vector<Ray> rays;
-    for (size_t k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kOpenRayCount; ++k) {
       const dvec3 gate = side.at(end * side.half_height, 0.9 * side.widest() * std::sqrt(this->random.uniform()) *
                                                              this->random.perpendicular(side.axis));
       const double z = side.half_height * this->random.uniform(-0.9, 0.9);
@@ -128,17 +128,17 @@ TYPED_TEST(OpenShapeTest, RaysEnterWhereADiskIsMissing) {
 /// Rays exactly along the axis go through the tube, onto the wall where it narrows, or past the tube.
 TYPED_TEST(OpenShapeTest, RaysAlongTheAxisPassThroughTheTube) {
   const Lab lab(this->device(), 0);
-  for (int i = 0; i < kShapeCount; ++i) {
+  for (int i = 0; i < kOpenShapeCount; ++i) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     const double narrow = std::min(side.radius_bottom, side.radius_top);
     const float sign = i % 2 == 0 ? 1.0F : -1.0F;
     const double distance = 3.0 * side.size();
     const double gap = 8.0 * static_cast<double>(oracle::kRoundoff) *
-                       (glm::length(dvec3(kCenters[i % 3])) + 2.0 * distance + side.size());
+                       (glm::length(dvec3(kOpenCenters[i % 3])) + 2.0 * distance + side.size());
     std::vector<Ray> through;
     std::vector<Ray> at_wall;
-    for (size_t k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kOpenRayCount; ++k) {
       const auto ray_at = [&](double impact) {
         const dvec3 foot = side.at(0.0, impact * this->random.perpendicular(side.axis));
         Ray ray = ray_towards(foot - static_cast<double>(sign) * distance * side.axis, foot);
@@ -168,7 +168,7 @@ TYPED_TEST(OpenShapeTest, RimsAreWhereTheSideEnds) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     std::vector<Ray> rays;
-    for (size_t k = 0; k < kRayCount / 4; ++k) {
+    for (size_t k = 0; k < kOpenRayCount / 4; ++k) {
       const double end = k % 2 == 0 ? -1.0 : 1.0;
       const dvec3 radial = this->random.perpendicular(side.axis);
       const dvec3 rim = side.at(end * side.half_height, side.radius_at(end * side.half_height) * radial);
@@ -185,11 +185,11 @@ TYPED_TEST(OpenShapeTest, RimsAreWhereTheSideEnds) {
 TYPED_TEST(OpenShapeTest, FromInsideTheWallIsMetAndTheEndsAreNot) {
   const Lab lab(this->device(), 0);
   uint64_t misses = 0;
-  for (int i = 0; i < kShapeCount; ++i) {
+  for (int i = 0; i < kOpenShapeCount; ++i) {
     const TypeParam shape = this->make(i);
     const Side side(shape);
     std::vector<Ray> rays;
-    for (size_t k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kOpenRayCount; ++k) {
       const double z = side.half_height * this->random.uniform(-1.0, 1.0);
       const double radius = side.radius_at(z) * std::sqrt(this->random.uniform());
       const dvec3 origin = side.at(z, radius * this->random.perpendicular(side.axis));
@@ -215,7 +215,7 @@ TYPED_TEST(OpenShapeTest, ClosedShapesKeepTheirBits) {
     TypeParam far_open = far_away;
     far_open.is_open = true;
     std::vector<Ray> rays;
-    for (size_t k = 0; k < kRayCount; ++k) {
+    for (size_t k = 0; k < kOpenRayCount; ++k) {
       const dvec3 origin = side.center + 5.0 * side.size() * this->random.direction();
       rays.push_back(
           ray_towards(origin, side.center + side.size() * this->random.uniform() * this->random.direction()));

@@ -11,7 +11,7 @@
 namespace promin::hard {
 namespace {
 
-const size_t kRayCount = some_of(100000);
+const size_t kPlaneRayCount = some_of(100000);
 
 /// Judges |dt n.d| / (u (|q - o| + |t d|)); it is infinite if a hit is missing.
 Tally judge_plane(const world::Plane& plane, std::span<const Ray> rays, std::span<const Hit> hits) {
@@ -41,7 +41,7 @@ void run_slopes(Lab& lab) {
     const world::Plane plane{vec3(1e5F, -1e5F, 1e5F), vec3(normal)};
     const dvec3 n = glm::normalize(dvec3(plane.normal));
     std::vector<Ray> rays;
-    while (rays.size() < kRayCount) {
+    while (rays.size() < kPlaneRayCount) {
       const double reach = 10.0 * random.uniform();
       const dvec3 origin = dvec3(plane.point) + 10.0 * n + reach * random.perpendicular(n);
       const dvec3 along = std::sqrt(1.0 - cosine * cosine) * random.perpendicular(n);
@@ -78,13 +78,13 @@ void run_parallel(Lab& lab) {
                      static_cast<double>(std::count_if(hits.begin(), hits.end(), is_hit)));
 }
 
-constexpr std::array kCases{HardCase{10, "PlaneFarFromTheOrigin", run_slopes},
-                            HardCase{11, "ParallelToThePlane", run_parallel}};
+constexpr std::array kPlaneCases{HardCase{10, "PlaneFarFromTheOrigin", run_slopes},
+                                 HardCase{11, "ParallelToThePlane", run_parallel}};
 
 }  // namespace
 
 std::span<const HardCase> plane_cases() {
-  return kCases;
+  return kPlaneCases;
 }
 
 }  // namespace promin::hard

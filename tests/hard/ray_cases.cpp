@@ -242,13 +242,13 @@ void run_intervals(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{30, "InvalidRays", run_invalid_and_extreme},
-                            HardCase{31, "OpenIntervals", run_intervals}};
+constexpr std::array kRayCases{HardCase{30, "InvalidRays", run_invalid_and_extreme},
+                               HardCase{31, "OpenIntervals", run_intervals}};
 
 }  // namespace
 
 std::span<const HardCase> ray_cases() {
-  return kCases;
+  return kRayCases;
 }
 
 }  // namespace promin::hard

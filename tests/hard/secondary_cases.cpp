@@ -20,8 +20,8 @@ namespace {
 using oracle::Real;
 using oracle::Vector;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Real kU = kUnitRoundoff;
+constexpr float kNoEnd = std::numeric_limits<float>::infinity();
+constexpr Real kRoundoff = kUnitRoundoff;
 
 Mesh make_octahedron(const vec3& center, float size) {
   Mesh mesh;
@@ -76,7 +76,7 @@ void run_plane_lift(Lab& lab) {
       const double distance = std::pow(10.0, random.uniform(-2.0, 4.0));
       const double reach = 10.0 * random.uniform();
       const dvec3 target = dvec3(plane.point) + reach * random.perpendicular(n);
-      rays.push_back({vec3(target - distance * dvec3(direction)), 0.0F, direction, kInfinity});
+      rays.push_back({vec3(target - distance * dvec3(direction)), 0.0F, direction, kNoEnd});
     }
     const std::vector<Hit> hits = lab.cast(scene, rays);
     const std::vector<Bounce> bounces = Bouncer(lab.device(), scene).bounce(rays);
@@ -96,8 +96,8 @@ void run_plane_lift(Lab& lab) {
                            max_abs_component(plane.point);
       worst_lift = std::max(worst_lift, static_cast<double>(bounces[i].lift) / (kUnitRoundoff * reach));
       const dvec3 facing = height(rays[i].origin) > 0 ? n : -n;
-      next.push_back({bounces[i].origin, 0.0F, bounces[i].mirrored, kInfinity});
-      next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kInfinity});
+      next.push_back({bounces[i].origin, 0.0F, bounces[i].mirrored, kNoEnd});
+      next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kNoEnd});
     }
     // At 1e6 an ulp is more than the height of a tenth of the starts.
     EXPECT_GT(hit_count, rays.size() * 3 / 4);
@@ -133,22 +133,22 @@ void run_contact(Lab& lab) {
     }
     const std::vector<Bounce> bounces = bouncer.bounce(rays);
     std::vector<Ray> shadow_rays;
-    for (const Bounce& bounce : bounces) shadow_rays.push_back({bounce.origin, 0.0F, to_light, kInfinity});
+    for (const Bounce& bounce : bounces) shadow_rays.push_back({bounce.origin, 0.0F, to_light, kNoEnd});
     const std::vector<Hit> blockers = lab.cast(scene, shadow_rays, HitQuery::kAny);
     uint64_t leaks = 0;
     uint64_t shadowed = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
       const oracle::Hit exact =
-          oracle::find_nearest_hit(scene, {Vector(rays[i].origin), Vector(rays[i].direction), 0, oracle::kInfinity});
+          oracle::find_nearest_hit(scene, {Vector(rays[i].origin), Vector(rays[i].direction), 0, oracle::kNoEnd});
       if (!bounces[i].is_hit || !exact.exists() || glm::dot(exact.normal, Vector(to_light)) <= 0) continue;
       const Vector point = Vector(rays[i].origin) + exact.t * Vector(rays[i].direction);
-      const oracle::Ray exact_shadow{point, Vector(to_light), 1e-12L, oracle::kInfinity};
+      const oracle::Ray exact_shadow{point, Vector(to_light), 1e-12L, oracle::kNoEnd};
       if (!oracle::is_occluded(scene, exact_shadow)) continue;
       ++shadowed;
       if (blockers[i].t == 0.0F) continue;
       // The point is lit, though the exact answer is shadow. The depth is that of the exact ray in the blocker.
-      const Real depth = oracle::judge(scene, exact_shadow, {}).margin * kU * 2;  // S = |o - c| + r is about 2
-      if (depth > glm::distance(point, Vector(bounces[i].origin)) + 2 * kU * 2) ++leaks;
+      const Real depth = oracle::judge(scene, exact_shadow, {}).margin * kRoundoff * 2;  // S = |o - c| + r is about 2
+      if (depth > glm::distance(point, Vector(bounces[i].origin)) + 2 * kRoundoff * 2) ++leaks;
     }
     EXPECT_GT(shadowed, rays.size() / 100);
     lab.expect_at_most(label("light leaks beyond the lift, elevation in degrees", elevation_deg), 0.0,
@@ -170,7 +170,7 @@ void run_reflections(Lab& lab) {
     const std::vector<Bounce> bounces = bouncer.bounce(rays);
     for (size_t i = 0; i < rays.size(); ++i) {
       lost += bounces[i].is_hit ? 0 : 1;
-      rays[i] = {bounces[i].origin, 0.0F, bounces[i].mirrored, kInfinity};
+      rays[i] = {bounces[i].origin, 0.0F, bounces[i].mirrored, kNoEnd};
       worst = std::max(worst, std::abs(glm::length(dvec3(bounces[i].mirrored)) - 1.0));
     }
     if (bounce == 50) lab.expect_at_most("||d| - 1| after 50 reflections", 4e-6, worst);
@@ -189,7 +189,7 @@ void run_facing_mirrors(Lab& lab) {
     for (size_t i = 0; i < some_of(10000); ++i) {
       const dvec3 origin{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.5 * static_cast<double>(gap)};
       rays.push_back(
-          {vec3(origin), 0.0F, direction_at(dvec3(0.0, 0.0, 1.0), random.uniform(0.1, 1.0), random), kInfinity});
+          {vec3(origin), 0.0F, direction_at(dvec3(0.0, 0.0, 1.0), random.uniform(0.1, 1.0), random), kNoEnd});
     }
     const std::vector<Ray> first = rays;
     double worst = 0.0;
@@ -209,22 +209,22 @@ void run_facing_mirrors(Lab& lab) {
         exact.z = bounce % 2 == 0 ? Real(gap) : 0;
         const Vector point = Vector(rays[i].origin) + Real(hits[i].t) * Vector(rays[i].direction);
         worst = std::max(worst, static_cast<double>(glm::distance(point, exact)));
-        rays[i] = {bounces[i].origin, 0.0F, bounces[i].mirrored, kInfinity};
+        rays[i] = {bounces[i].origin, 0.0F, bounces[i].mirrored, kNoEnd};
       }
     }
     lab.expect_at_most(label("|dP| up to bounce 10, gap", gap), 1e-3, worst);
   }
 }
 
-constexpr std::array kCases{HardCase{32, "NoSelfHits", run_self_hits}, HardCase{33, "LiftOffPlanes", run_plane_lift},
-                            HardCase{34, "SphereOnAPlane", run_contact},
-                            HardCase{35, "ManyReflections", run_reflections},
-                            HardCase{36, "FacingMirrors", run_facing_mirrors}};
+constexpr std::array kSecondaryCases{
+    HardCase{32, "NoSelfHits", run_self_hits}, HardCase{33, "LiftOffPlanes", run_plane_lift},
+    HardCase{34, "SphereOnAPlane", run_contact}, HardCase{35, "ManyReflections", run_reflections},
+    HardCase{36, "FacingMirrors", run_facing_mirrors}};
 
 }  // namespace
 
 std::span<const HardCase> secondary_cases() {
-  return kCases;
+  return kSecondaryCases;
 }
 
 }  // namespace promin::hard

@@ -13,7 +13,7 @@
 namespace promin::hard {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -39,9 +39,9 @@ uint64_t count_self_hits(const Lab& lab, const world::Shape& shape, double scale
     if (!bounces[i].is_hit || hits[i].object < 0) continue;
     const dvec3 n = glm::normalize(dvec3(hits[i].normal));
     const dvec3 facing = glm::dot(n, dvec3(rays[i].direction)) > 0.0 ? -n : n;
-    next.push_back({bounces[i].origin, 0.0F, bounces[i].mirrored, kInfinity});
+    next.push_back({bounces[i].origin, 0.0F, bounces[i].mirrored, kUnbounded});
     for (int k = 0; k < 3; ++k) {
-      next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kInfinity});
+      next.push_back({bounces[i].origin, 0.0F, direction_at(facing, uniform_cosine(random), random), kUnbounded});
     }
   }
   EXPECT_GT(next.size(), 100U) << "four for each ray that meets the shape, of which a thin one takes few";

@@ -14,7 +14,7 @@ namespace promin::hard {
 namespace {
 
 /// The number of rays for each of the four axes.
-const size_t kRayCount = some_of(25000);
+const size_t kSolidRayCount = some_of(25000);
 /// For many of the rays that touch an edge, the answer differs from the oracle's, and finding the margin of one takes a
 /// millisecond. Therefore B2 is checked for one in this many rays; all hits must lie on the surface.
 constexpr size_t kEdgeRaysPerMargin = 64;
@@ -73,7 +73,7 @@ constexpr std::array<dvec3, 4> axes() {
 }
 
 /// Returns a point in the solid, which is enlarged by the factor `spread`.
-dvec3 random_point(const Solid& solid, double spread, Random& random) {
+dvec3 random_point_around(const Solid& solid, double spread, Random& random) {
   const double z = solid.half_height * random.uniform(-1.0, 1.0);
   const double radius = solid.radius_at(z) * std::sqrt(random.uniform());
   return solid.center + spread * (solid.at(z, radius * random.perpendicular(solid.axis)) - solid.center);
@@ -82,9 +82,9 @@ dvec3 random_point(const Solid& solid, double spread, Random& random) {
 /// Returns rays from all around at a distance from the centre; most of them meet the solid.
 std::vector<Ray> rays_around(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSolidRayCount; ++i) {
     const dvec3 origin = solid.center + distance * random.direction();
-    rays.push_back(ray_towards(origin, random_point(solid, 1.1, random)));
+    rays.push_back(ray_towards(origin, random_point_around(solid, 1.1, random)));
   }
   return rays;
 }
@@ -93,8 +93,8 @@ std::vector<Ray> rays_around(const Solid& solid, double distance, Random& random
 /// a distance.
 std::vector<Ray> rays_along_axis(const Solid& solid, double sine, double distance, Random& random) {
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
-    const dvec3 target = random_point(solid, 1.1, random);
+  for (size_t i = 0; i < kSolidRayCount; ++i) {
+    const dvec3 target = random_point_around(solid, 1.1, random);
     const dvec3 direction =
         (i % 2 == 0 ? 1.0 : -1.0) * std::sqrt(1.0 - sine * sine) * solid.axis + sine * random.perpendicular(solid.axis);
     rays.push_back(ray_towards(target - distance * direction, target));
@@ -161,8 +161,8 @@ struct Form {
   Solid (*make)(const vec3& center, const dvec3& axis);
 };
 
-void run_around(Lab& lab, const Form& form, std::initializer_list<double> distances, const vec3& center,
-                Random& random) {
+void run_around_solid(Lab& lab, const Form& form, std::initializer_list<double> distances, const vec3& center,
+                      Random& random) {
   for (const double distance : distances) {
     Tally tally;
     for (const dvec3& axis : axes()) {
@@ -210,11 +210,11 @@ Solid flat_frustum(const vec3& center, const dvec3& axis) {
 
 void run_cylinder_distances(Lab& lab) {
   Random random(12);
-  run_around(lab, {"cylinder", unit_cylinder}, {3.0, 1e1, 1e2, 1e3, 1e4, 1e5}, kOrigin, random);
-  run_around(lab, {"r = 1e-3", small_cylinder}, {10.0}, kOrigin, random);
-  run_around(lab, {"flat cylinder", disk}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"needle", needle}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"cylinder at 1e5", unit_cylinder}, {10.0}, kFarAway, random);
+  run_around_solid(lab, {"cylinder", unit_cylinder}, {3.0, 1e1, 1e2, 1e3, 1e4, 1e5}, kOrigin, random);
+  run_around_solid(lab, {"r = 1e-3", small_cylinder}, {10.0}, kOrigin, random);
+  run_around_solid(lab, {"flat cylinder", disk}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"needle", needle}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"cylinder at 1e5", unit_cylinder}, {10.0}, kFarAway, random);
 }
 
 void run_along_axis(Lab& lab) {
@@ -243,7 +243,7 @@ std::vector<Ray> parallel_rays(const Solid& solid, double distance, double low, 
       },
       solid.shape);
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSolidRayCount; ++i) {
     const double impact = solid.widest() * random.uniform(low, high);
     const dvec3 foot = solid.at(0.0, impact * random.perpendicular(solid.axis));
     // A cylinder gets rays from both sides.
@@ -255,7 +255,7 @@ std::vector<Ray> parallel_rays(const Solid& solid, double distance, double low, 
   return rays;
 }
 
-void run_parallel(Lab& lab) {
+void run_parallel_to_solids(Lab& lab) {
   Random random(14);
   const Form forms[] = {{"cylinder", unit_cylinder},
                         {"disk", disk},
@@ -349,7 +349,7 @@ void run_rims(Lab& lab) {
   }
 }
 
-void run_inside(Lab& lab) {
+void run_inside_solids(Lab& lab) {
   Random random(16);
   const vec3 center(1.0F, 2.0F, 3.0F);
   const Form forms[] = {{"cylinder", unit_cylinder}, {"flat cylinder", disk},   {"long cylinder", long_cylinder},
@@ -361,8 +361,8 @@ void run_inside(Lab& lab) {
     for (const dvec3& axis : axes()) {
       const Solid solid = form.make(center, axis);
       std::vector<Ray> rays;
-      while (rays.size() < kRayCount) {
-        const dvec3 origin = random_point(solid, 1.0, random);
+      while (rays.size() < kSolidRayCount) {
+        const dvec3 origin = random_point_around(solid, 1.0, random);
         const Ray ray = ray_towards(origin, origin + random.direction());
         // The ray is inside also after rounding, by more than B2 allows as an error.
         const oracle::Ray exact{oracle::Vector(ray.origin), oracle::Vector(ray.direction)};
@@ -389,26 +389,26 @@ void run_inside(Lab& lab) {
 void run_cones(Lab& lab) {
   Random random(18);
   const std::initializer_list<double> distances = {3.0, 1e1, 1e2, 1e3, 1e4};
-  run_around(lab, {"cone 1", cone_of<10>}, distances, kOrigin, random);
-  run_around(lab, {"cone 20", cone_of<200>}, distances, kOrigin, random);
-  run_around(lab, {"cone 85", cone_of<850>}, distances, kOrigin, random);
-  run_around(lab, {"frustum", frustum}, distances, kOrigin, random);
-  run_around(lab, {"cone 0.1", cone_of<1>}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"cone 89.9", cone_of<899>}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"almost a cylinder", near_cylinder}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"almost a cone", near_cone}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"flat frustum", flat_frustum}, {3.0, 1e3}, kOrigin, random);
-  run_around(lab, {"cone 20 at 1e5", cone_of<200>}, {10.0}, kFarAway, random);
-  run_around(lab, {"frustum at 1e5", frustum}, {10.0}, kFarAway, random);
+  run_around_solid(lab, {"cone 1", cone_of<10>}, distances, kOrigin, random);
+  run_around_solid(lab, {"cone 20", cone_of<200>}, distances, kOrigin, random);
+  run_around_solid(lab, {"cone 85", cone_of<850>}, distances, kOrigin, random);
+  run_around_solid(lab, {"frustum", frustum}, distances, kOrigin, random);
+  run_around_solid(lab, {"cone 0.1", cone_of<1>}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"cone 89.9", cone_of<899>}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"almost a cylinder", near_cylinder}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"almost a cone", near_cone}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"flat frustum", flat_frustum}, {3.0, 1e3}, kOrigin, random);
+  run_around_solid(lab, {"cone 20 at 1e5", cone_of<200>}, {10.0}, kFarAway, random);
+  run_around_solid(lab, {"frustum at 1e5", frustum}, {10.0}, kFarAway, random);
 }
 
 /// Returns rays parallel to a generator, as nearly as fp32 allows, through the solid and beside it.
 std::vector<Ray> rays_along_generators(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSolidRayCount; ++i) {
     const double sign = i % 2 == 0 ? 1.0 : -1.0;
     const dvec3 generator = sign * glm::normalize(solid.axis + solid.slope() * random.perpendicular(solid.axis));
-    const dvec3 target = random_point(solid, 1.1, random);
+    const dvec3 target = random_point_around(solid, 1.1, random);
     rays.push_back(ray_towards(target - distance * generator, target));
   }
   return rays;
@@ -417,7 +417,7 @@ std::vector<Ray> rays_along_generators(const Solid& solid, double distance, Rand
 /// Returns rays at the apex: from all around, along generators, and along the axis.
 std::vector<Ray> rays_at_apex(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSolidRayCount; ++i) {
     const dvec3 sideways = random.perpendicular(solid.axis);
     const dvec3 direction = i % 4 == 0   ? random.direction()
                             : i % 4 == 1 ? glm::normalize(solid.axis + solid.slope() * sideways)
@@ -460,9 +460,9 @@ void run_generators_and_apex(Lab& lab) {
   for (const auto& [slope, direction] : {std::pair{0.75, vec3(3.0F, 4.0F, 0.0F)}, {1.0, vec3(1.0F, 1.0F, 0.0F)}}) {
     const Solid solid = make_cone(kOrigin, dvec3(0.0, 1.0, 0.0), 1.0, 2.0 * slope);
     std::vector<Ray> rays;
-    for (size_t i = 0; i < kRayCount; ++i) {
+    for (size_t i = 0; i < kSolidRayCount; ++i) {
       // Every eighth ray goes through the apex.
-      const dvec3 target = i % 8 == 0 ? solid.apex() : random_point(solid, 1.1, random);
+      const dvec3 target = i % 8 == 0 ? solid.apex() : random_point_around(solid, 1.1, random);
       const float sign = i % 2 == 0 ? 1.0F : -1.0F;
       const vec3 step = sign * vec3(direction.x * (i % 4 < 2 ? 1.0F : -1.0F), direction.y, direction.z);
       rays.push_back({vec3(target) - 4.0F * step, 0.0F, step, std::numeric_limits<float>::infinity()});
@@ -489,7 +489,7 @@ std::vector<Ray> rays_at_mirror_nappe(const Solid& solid, Random& random) {
   const double slope = -solid.slope();
   const dvec3 apex = solid.at(solid.radius_at(0.0) / slope, dvec3(0.0));
   std::vector<Ray> rays;
-  while (rays.size() < kRayCount) {
+  while (rays.size() < kSolidRayCount) {
     const double beyond = solid.size() * std::pow(10.0, random.uniform(-2.0, 1.0));
     const dvec3 on_nappe = apex + beyond * (solid.axis + slope * random.perpendicular(solid.axis));
     dvec3 in_box(0.0);
@@ -521,7 +521,7 @@ void run_mirror_nappe(Lab& lab) {
 /// They are level, or tilted by so little that they meet the plane far beyond the solid or nowhere.
 std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSolidRayCount; ++i) {
     const double end = i % 2 == 0 ? -1.0 : 1.0;
     const double radius = solid.radius_at(end * solid.half_height);
     const dvec3 along = random.perpendicular(solid.axis);
@@ -554,20 +554,20 @@ void run_cap_planes(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{12, "CylinderFarAway", run_cylinder_distances},
-                            HardCase{13, "AlmostAlongTheAxis", run_along_axis},
-                            HardCase{14, "ParallelToTheAxis", run_parallel},
-                            HardCase{15, "Rims", run_rims},
-                            HardCase{16, "SolidFromInside", run_inside},
-                            HardCase{18, "ConeFarAway", run_cones},
-                            HardCase{19, "GeneratorsAndApex", run_generators_and_apex},
-                            HardCase{20, "MirrorNappe", run_mirror_nappe},
-                            HardCase{54, "PlanesOfDisks", run_cap_planes}};
+constexpr std::array kSolidCases{HardCase{12, "CylinderFarAway", run_cylinder_distances},
+                                 HardCase{13, "AlmostAlongTheAxis", run_along_axis},
+                                 HardCase{14, "ParallelToTheAxis", run_parallel_to_solids},
+                                 HardCase{15, "Rims", run_rims},
+                                 HardCase{16, "SolidFromInside", run_inside_solids},
+                                 HardCase{18, "ConeFarAway", run_cones},
+                                 HardCase{19, "GeneratorsAndApex", run_generators_and_apex},
+                                 HardCase{20, "MirrorNappe", run_mirror_nappe},
+                                 HardCase{54, "PlanesOfDisks", run_cap_planes}};
 
 }  // namespace
 
 std::span<const HardCase> solid_cases() {
-  return kCases;
+  return kSolidCases;
 }
 
 }  // namespace promin::hard

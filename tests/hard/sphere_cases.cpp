@@ -8,13 +8,13 @@
 namespace promin::hard {
 namespace {
 
-const size_t kRayCount = some_of(100000);
+const size_t kSphereRayCount = some_of(100000);
 
 /// Returns rays from random places at a distance from the centre, to targets spread over a disk of `spread` radii
 /// across the view.
 std::vector<Ray> rays_at(const world::Sphere& sphere, double distance, double spread, Random& random) {
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSphereRayCount; ++i) {
     const dvec3 view = random.direction();
     const double impact = spread * sphere.radius * std::sqrt(random.uniform());
     rays.push_back(ray_towards(dvec3(sphere.center) - distance * view,
@@ -59,7 +59,7 @@ void run_large(Lab& lab) {
   Random random(3);
   const world::Sphere sphere{vec3(0.0F), 1e6F};
   std::vector<Ray> rays;
-  while (rays.size() < kRayCount) {
+  while (rays.size() < kSphereRayCount) {
     const dvec3 up = random.direction();
     const dvec3 origin = (1e6 + 1.0) * up;
     // The ray goes down enough to meet the sphere in spite of rounding: the horizon is 1.4e-3 below the level.
@@ -82,7 +82,7 @@ void run_grazing(Lab& lab) {
   Random random(6);
   const world::Sphere sphere{vec3(0.0F), 1.0F};
   std::vector<Ray> rays;
-  for (size_t i = 0; i < kRayCount; ++i) {
+  for (size_t i = 0; i < kSphereRayCount; ++i) {
     const dvec3 view = random.direction();
     const double impact = i % 2 == 0 ? 1.0 + 0x1p-22 : 1.0 - 0x1p-22;
     const dvec3 offset = impact * random.perpendicular(view);
@@ -96,7 +96,7 @@ void run_inside(Lab& lab) {
   const world::Sphere sphere{vec3(1.0F, 2.0F, 3.0F), 2.0F};
   for (const double depth : {0.0, 0.5, 0.999}) {
     std::vector<Ray> rays;
-    for (size_t i = 0; i < kRayCount; ++i) {
+    for (size_t i = 0; i < kSphereRayCount; ++i) {
       const dvec3 origin = dvec3(sphere.center) + 2.0 * depth * random.direction();
       rays.push_back(ray_towards(origin, origin + random.direction()));
     }
@@ -105,7 +105,7 @@ void run_inside(Lab& lab) {
   // The rays go from the surface inwards to the far side. They must not hit their start, which rounding has put a few u
   // S beside the surface; S is 2 r. On a ray that is not grazing, tmin is larger than this error.
   std::vector<Ray> rays;
-  while (rays.size() < kRayCount) {
+  while (rays.size() < kSphereRayCount) {
     const dvec3 outward = random.direction();
     const dvec3 origin = dvec3(sphere.center) + 2.0 * outward;
     const dvec3 direction = random.direction();
@@ -134,19 +134,19 @@ void run_offsets(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{1, "SphereFarAway", run_distances},
-                            HardCase{2, "SmallSphere", run_small},
-                            HardCase{3, "LargeSphereFromNear", run_large},
-                            HardCase{4, "ExtremeSizes", run_extreme_sizes},
-                            HardCase{6, "SphereGrazed", run_grazing},
-                            HardCase{7, "SphereFromInside", run_inside},
-                            HardCase{8, "DirectionLengths", run_direction_lengths},
-                            HardCase{9, "SphereFarFromTheOrigin", run_offsets}};
+constexpr std::array kSphereCases{HardCase{1, "SphereFarAway", run_distances},
+                                  HardCase{2, "SmallSphere", run_small},
+                                  HardCase{3, "LargeSphereFromNear", run_large},
+                                  HardCase{4, "ExtremeSizes", run_extreme_sizes},
+                                  HardCase{6, "SphereGrazed", run_grazing},
+                                  HardCase{7, "SphereFromInside", run_inside},
+                                  HardCase{8, "DirectionLengths", run_direction_lengths},
+                                  HardCase{9, "SphereFarFromTheOrigin", run_offsets}};
 
 }  // namespace
 
 std::span<const HardCase> sphere_cases() {
-  return kCases;
+  return kSphereCases;
 }
 
 }  // namespace promin::hard

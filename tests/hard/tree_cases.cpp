@@ -31,7 +31,7 @@ vec3 turned_axis(Random& random) {
 }
 
 /// Returns a point in a ball; all points are equally likely.
-dvec3 random_point(const dvec3& center, double radius, Random& random) {
+dvec3 random_point_within(const dvec3& center, double radius, Random& random) {
   const double distance = radius * std::cbrt(random.uniform());
   return center + distance * random.direction();
 }
@@ -40,7 +40,7 @@ dvec3 random_point(const dvec3& center, double radius, Random& random) {
 world::Scene make_strewn(const dvec3& center, double radius, int count, Random& random) {
   std::vector<world::Shape> shapes;
   for (int i = 0; i < count; ++i) {
-    const vec3 place(random_point(center, radius, random));
+    const vec3 place(random_point_within(center, radius, random));
     const auto size = static_cast<float>(0.02 * radius * std::pow(10.0, random.uniform()));
     switch (i % 7) {
       case 0:
@@ -87,8 +87,8 @@ world::Scene make_ties() {
 
 Ray ray_through(const TreeScene& in, Random& random, size_t index) {
   // The ray starts outside, inside, or inside along an axis.
-  const dvec3 within = random_point(in.center, in.radius, random);
-  const dvec3 target = random_point(in.center, in.radius, random);
+  const dvec3 within = random_point_within(in.center, in.radius, random);
+  const dvec3 target = random_point_within(in.center, in.radius, random);
   if (index % 8 < 5) return ray_towards(in.center + 3.0 * in.radius * random.direction(), target);
   Ray ray = ray_towards(within, target);
   if (index % 8 == 7) {
@@ -165,7 +165,7 @@ void run_far_from_the_origin(Lab& lab) {
           std::vector<Ray> rays;
           for (size_t k = 0; k < kRaysPerFarShape; ++k) {
             // The calls stand one after the other, because compilers evaluate arguments in different orders.
-            const dvec3 target = random_point(dvec3(bound.center), size, random);
+            const dvec3 target = random_point_within(dvec3(bound.center), size, random);
             const dvec3 origin = dvec3(bound.center) + distance * size * random.direction();
             rays.push_back(ray_towards(origin, target));
           }
@@ -180,13 +180,13 @@ void run_far_from_the_origin(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{38, "TreesAgainstBruteForce", run_trees},
-                            HardCase{55, "TreeFarFromTheOrigin", run_far_from_the_origin}};
+constexpr std::array kTreeCases{HardCase{38, "TreesAgainstBruteForce", run_trees},
+                                HardCase{55, "TreeFarFromTheOrigin", run_far_from_the_origin}};
 
 }  // namespace
 
 std::span<const HardCase> tree_cases() {
-  return kCases;
+  return kTreeCases;
 }
 
 }  // namespace promin::hard

@@ -16,7 +16,7 @@ using oracle::Real;
 using oracle::Vector;
 
 constexpr double kPi = std::numbers::pi;
-const size_t kRayCount = some_of(100000);
+const size_t kTriangleRayCount = some_of(100000);
 
 /// Returns a closed UV sphere as in Embree's watertightness tests: `steps` + 1 rows of 2 * `steps` vertices; all
 /// vertices of a pole are at the same place.
@@ -117,13 +117,15 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
     const dvec3 from = origin();
     return ray_towards(from, pick_target(mesh, random));
   };
-  expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return at(pick_vertex); }), "at vertices from inside" + where);
-  expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return at(pick_on_edge); }), "at edges from inside" + where);
+  expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return at(pick_vertex); }),
+                  "at vertices from inside" + where);
+  expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return at(pick_on_edge); }),
+                  "at edges from inside" + where);
 
   // The rays come from outside and go through the inside. If a hit is past the middle, the near side has let the ray
   // through.
   std::vector<Ray> rays;
-  while (rays.size() < kRayCount) {
+  while (rays.size() < kTriangleRayCount) {
     const dvec3 from = center + 10.0 * random.direction();
     const dvec3 target = rays.size() % 2 == 0 ? pick_vertex(mesh, random) : pick_on_edge(mesh, random);
     Ray ray = ray_towards(from, target);
@@ -158,7 +160,7 @@ void cast_at_collinear_corners(Lab& lab) {
     seams.push_back({center - half, center + half});
   }
   std::vector<Ray> rays;
-  while (rays.size() < kRayCount) {
+  while (rays.size() < kTriangleRayCount) {
     const auto& seam = seams[pick(random, seams.size())];
     const dvec3 target = glm::mix(seam[0], seam[1], random.uniform(0.01, 0.99));
     Ray ray = ray_towards(target + random.direction(), target);
@@ -184,7 +186,7 @@ void run_closed_mesh(Lab& lab) {
   cast_at_closed_mesh(lab, center, 200, some_of(1000000), ", 200 steps");
   // On a coarse grid in all three axes, many triangles have three corners in a line: they are not packed, and the
   // corner in the middle lies on the edge of a neighbour.
-  cast_at_closed_mesh(lab, dvec3(148376.0, 171234.0, -223423.0), 200, kRayCount, ", collinear corners");
+  cast_at_closed_mesh(lab, dvec3(148376.0, 171234.0, -223423.0), 200, kTriangleRayCount, ", collinear corners");
 }
 
 void run_spikes(Lab& lab) {
@@ -193,7 +195,7 @@ void run_spikes(Lab& lab) {
                                    [](uint32_t row, uint32_t column) { return (row + column) % 2 == 0 ? 10.0 : 0.5; });
   const world::Scene scene = scene_of({mesh});
   const dvec3 center(0.0);
-  expect_no_leaks(lab, scene, make_rays(kRayCount, [&] { return ray_towards(center, random.direction()); }),
+  expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return ray_towards(center, random.direction()); }),
                   "random rays from the centre");
   expect_no_leaks(lab, scene, make_rays(some_of(50000), [&] { return ray_towards(center, pick_vertex(mesh, random)); }),
                   "at vertices from the centre");
@@ -612,18 +614,18 @@ void run_unit_triangle(Lab& lab) {
   }
 }
 
-constexpr std::array kCases{HardCase{21, "ClosedMeshFarFromTheOrigin", run_closed_mesh},
-                            HardCase{22, "SpikySphere", run_spikes},
-                            HardCase{23, "SquaresAndFans", run_squares_and_fans},
-                            HardCase{24, "DegenerateTriangles", run_degenerate},
-                            HardCase{25, "Slivers", run_slivers},
-                            HardCase{26, "CoincidentTriangles", run_coincident},
-                            HardCase{27, "UnitTriangle", run_unit_triangle}};
+constexpr std::array kTriangleCases{HardCase{21, "ClosedMeshFarFromTheOrigin", run_closed_mesh},
+                                    HardCase{22, "SpikySphere", run_spikes},
+                                    HardCase{23, "SquaresAndFans", run_squares_and_fans},
+                                    HardCase{24, "DegenerateTriangles", run_degenerate},
+                                    HardCase{25, "Slivers", run_slivers},
+                                    HardCase{26, "CoincidentTriangles", run_coincident},
+                                    HardCase{27, "UnitTriangle", run_unit_triangle}};
 
 }  // namespace
 
 std::span<const HardCase> triangle_cases() {
-  return kCases;
+  return kTriangleCases;
 }
 
 }  // namespace promin::hard

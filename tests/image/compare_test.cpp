@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-Image make_flat(uint32_t width, uint32_t height, float value) {
+Image make_gray(uint32_t width, uint32_t height, float value) {
   Image image;
   image.size = uvec2(width, height);
   image.pixels.assign(static_cast<size_t>(width) * height, vec3(value));
@@ -25,7 +25,7 @@ Image make_flat(uint32_t width, uint32_t height, float value) {
 
 /// Returns a shaded disk on black with its centre at (x, y) in pixels, which looks like a small golden image.
 Image make_disk(float x, float y) {
-  Image image = make_flat(64, 64, 0.0F);
+  Image image = make_gray(64, 64, 0.0F);
   for (uint32_t row = 0; row < 64; ++row) {
     for (uint32_t column = 0; column < 64; ++column) {
       const float dx = static_cast<float>(column) + 0.5F - x;
@@ -52,7 +52,7 @@ TEST(CompareTest, AHalfPixelShiftFails) {
 
 TEST(CompareTest, NonFinitePixelsFailEvenWhereBothHaveThem) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    Image image = make_flat(8, 8, 0.5F);
+    Image image = make_gray(8, 8, 0.5F);
     image.at(3, 2).y = bad;
     const ImageDifference result = compare_images(image, image);
     EXPECT_FALSE(result.is_equal);
@@ -60,13 +60,13 @@ TEST(CompareTest, NonFinitePixelsFailEvenWhereBothHaveThem) {
     EXPECT_EQ(result.failed_count, 1U);
     ASSERT_EQ(result.worst.size(), 1U);
     EXPECT_EQ(result.worst[0].pixel, uvec2(3, 2));
-    EXPECT_FALSE(compare_images(make_flat(8, 8, 0.5F), image).is_equal);
-    EXPECT_FALSE(compare_images(image, make_flat(8, 8, 0.5F)).is_equal);
+    EXPECT_FALSE(compare_images(make_gray(8, 8, 0.5F), image).is_equal);
+    EXPECT_FALSE(compare_images(image, make_gray(8, 8, 0.5F)).is_equal);
   }
 }
 
 TEST(CompareTest, AShareOfSmallDifferencesIsAllowed) {
-  const Image a = make_flat(100, 100, 0.5F);
+  const Image a = make_gray(100, 100, 0.5F);
   Image b = a;
   b.at(10, 20).x += 0.005F;
   b.at(11, 20).z -= 0.006F;
@@ -79,7 +79,7 @@ TEST(CompareTest, AShareOfSmallDifferencesIsAllowed) {
 }
 
 TEST(CompareTest, OneLargeDifferenceFails) {
-  const Image a = make_flat(100, 100, 0.5F);
+  const Image a = make_gray(100, 100, 0.5F);
   Image b = a;
   b.at(99, 99).y += 0.013F;
   EXPECT_FALSE(compare_images(a, b).is_equal);
@@ -89,7 +89,7 @@ TEST(CompareTest, OneLargeDifferenceFails) {
 }
 
 TEST(CompareTest, AShareOfEdgePixelsMayShowTheirNeighbour) {
-  Image golden = make_flat(100, 100, 0.0F);
+  Image golden = make_gray(100, 100, 0.0F);
   for (uint32_t y = 0; y < 100; ++y) {
     for (uint32_t x = 50; x < 100; ++x) golden.at(x, y) = vec3(1.0F);
   }
@@ -120,7 +120,7 @@ TEST(CompareTest, AShareOfEdgePixelsMayShowTheirNeighbour) {
 }
 
 TEST(CompareTest, TheWorstPixelsComeFirst) {
-  const Image a = make_flat(10, 10, 0.0F);
+  const Image a = make_gray(10, 10, 0.0F);
   Image b = a;
   b.at(1, 5) = vec3(0.25F);
   b.at(7, 2) = vec3(0.0F, -0.5F, 0.0F);
@@ -138,13 +138,13 @@ TEST(CompareTest, TheWorstPixelsComeFirst) {
 }
 
 TEST(CompareTest, SizesMustMatch) {
-  EXPECT_THROW(compare_images(make_flat(3, 2, 0.0F), make_flat(2, 3, 0.0F)), InputError);
+  EXPECT_THROW(compare_images(make_gray(3, 2, 0.0F), make_gray(2, 3, 0.0F)), InputError);
   EXPECT_THROW(compare_images(Image{}, Image{}), InputError);
 }
 
 TEST(CompareTest, TheDifferenceImageShowsWhere) {
   const fs::path file = fs::path(testing::TempDir()) / "promin_difference.exr";
-  const Image a = make_flat(2, 1, 0.5F);
+  const Image a = make_gray(2, 1, 0.5F);
   Image b = a;
   b.at(0, 0).x = 0.25F;
   b.at(1, 0).x = std::numeric_limits<float>::quiet_NaN();

@@ -20,7 +20,7 @@ namespace promin {
 namespace {
 
 using Color = std::array<long double, 3>;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 /// Khronos PBR Neutral as its authors write it, but with a mix to white instead of a saturation.
 Color neutral_of(Color c) {
@@ -90,7 +90,7 @@ vec3 apply(ToneMapping mapping, const vec3& radiance) {
 }
 
 TEST(DisplayTest, TheDefaultKeepsEveryBit) {
-  for (const float x : {0.0F, -1.0F, 1e-40F, 0.18F, 1.0F, 3e38F, kInfinity}) {
+  for (const float x : {0.0F, -1.0F, 1e-40F, 0.18F, 1.0F, 3e38F, kInfinite}) {
     EXPECT_EQ(promin::apply({}, vec3(x, 0.5F, -x)), vec3(x, 0.5F, -x));
   }
 }
@@ -175,7 +175,7 @@ TEST(DisplayTest, NeutralKeepsBaseColorsBelowItsShoulder) {
 TEST(DisplayTest, WhatIsNoColorIsShownAsOne) {
   for (const ToneMapping mapping :
        {ToneMapping::kNeutral, ToneMapping::kAces, ToneMapping::kReinhard, ToneMapping::kAgx}) {
-    for (const float x : {kInfinity, 3e38F, -kInfinity, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    for (const float x : {kInfinite, 3e38F, -kInfinite, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
       const vec3 shown = promin::apply({.exposure_ev = 60.0F, .tone_mapping = mapping}, vec3(x, 0.5F, x));
       // Reinhard's curve continues beyond its white.
       const float most = mapping == ToneMapping::kReinhard ? 1e9F : 1.04F;
@@ -186,12 +186,12 @@ TEST(DisplayTest, WhatIsNoColorIsShownAsOne) {
 }
 
 TEST(DisplayTest, TheAverageExposureBringsTheLogMeanToMiddleGrey) {
-  const std::vector<vec3> pixels = {vec3(0.09F), vec3(0.36F), vec3(5.0F), vec3(kInfinity)};
+  const std::vector<vec3> pixels = {vec3(0.09F), vec3(0.36F), vec3(5.0F), vec3(kInfinite)};
   const std::vector<uint32_t> objects = {0, 7, Aovs::kNoId, 1};
   EXPECT_NEAR(average_exposure_ev(pixels, objects), 0.0, 2e-3) << "sky and what is not finite do not count";
   const double mean = (std::log(0.09) + std::log(0.36) + std::log(5.0)) / 3;
   EXPECT_NEAR(average_exposure_ev(pixels, {}), std::log2(0.18 / std::exp(mean)), 1e-3);
-  EXPECT_EQ(average_exposure_ev(std::vector<vec3>{vec3(kInfinity)}, {}), 0.0F);
+  EXPECT_EQ(average_exposure_ev(std::vector<vec3>{vec3(kInfinite)}, {}), 0.0F);
   EXPECT_NEAR(average_exposure_ev(std::vector<vec3>{vec3(0.0F)}, {}), std::log2(1800.0), 1e-5) << "black is not lost";
 }
 

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns a picture in which every channel of every pixel differs, with values beyond [0, 1].
-Image make_ramp(uint32_t width, uint32_t height) {
+Image make_ramp_image(uint32_t width, uint32_t height) {
   Image image;
   image.size = uvec2(width, height);
   for (uint32_t i = 0; i < width * height; ++i) {
@@ -74,7 +74,7 @@ TEST(ImageFormatTest, EndingsAreKnownInAnyCase) {
 }
 
 TEST_F(ImageTest, ExrKeepsEveryBit) {
-  const Image image = make_ramp(17, 5);
+  const Image image = make_ramp_image(17, 5);
   write_image(folder_ / "a.exr", image);
   const Image back = read_image(folder_ / "a.exr");
   EXPECT_EQ(back.size, image.size);
@@ -84,13 +84,13 @@ TEST_F(ImageTest, ExrKeepsEveryBit) {
 
 TEST_F(ImageTest, EqualPicturesGiveEqualBytes) {
   const Metadata metadata = {{"promin:scene", "a.gltf"}};
-  write_image(folder_ / "a.exr", make_ramp(64, 64), metadata);
-  write_image(folder_ / "b.exr", make_ramp(64, 64), metadata);
+  write_image(folder_ / "a.exr", make_ramp_image(64, 64), metadata);
+  write_image(folder_ / "b.exr", make_ramp_image(64, 64), metadata);
   EXPECT_EQ(read_file(folder_ / "a.exr"), read_file(folder_ / "b.exr"));
 }
 
 TEST_F(ImageTest, ExrCarriesMetadataAndTheCropsPlace) {
-  write_image(folder_ / "a.exr", make_ramp(8, 4), {{"promin:scene", "a.gltf"}}, CropPlacement{{3, 2}, {20, 10}});
+  write_image(folder_ / "a.exr", make_ramp_image(8, 4), {{"promin:scene", "a.gltf"}}, CropPlacement{{3, 2}, {20, 10}});
   const auto input = OIIO::ImageInput::open((folder_ / "a.exr").string());
   ASSERT_TRUE(input);
   const OIIO::ImageSpec& spec = input->spec();
@@ -101,7 +101,7 @@ TEST_F(ImageTest, ExrCarriesMetadataAndTheCropsPlace) {
   EXPECT_EQ(std::vector<int>({spec.x, spec.y, spec.width, spec.height}), std::vector<int>({3, 2, 8, 4}));
   EXPECT_EQ(std::vector<int>({spec.full_x, spec.full_y, spec.full_width, spec.full_height}),
             std::vector<int>({0, 0, 20, 10}));
-  EXPECT_EQ(read_image(folder_ / "a.exr").pixels, make_ramp(8, 4).pixels);
+  EXPECT_EQ(read_image(folder_ / "a.exr").pixels, make_ramp_image(8, 4).pixels);
 }
 
 TEST_F(ImageTest, PngIsSrgbOf8Bits) {
@@ -134,7 +134,7 @@ TEST_F(ImageTest, JpegIsNearSrgbWithWholeColours) {
   ASSERT_TRUE(input);
   EXPECT_EQ(input->spec().get_string_attribute("jpeg:subsampling"), "4:4:4");
   // The format cannot hold such a width.
-  EXPECT_THROW(write_image(folder_ / "wide.jpg", make_ramp(65501, 1)), RunError);
+  EXPECT_THROW(write_image(folder_ / "wide.jpg", make_ramp_image(65501, 1)), RunError);
   EXPECT_EQ(file_count(), 2);
 }
 
@@ -199,7 +199,7 @@ TEST_F(ImageTest, RadianceFilesHoldLight) {
   for (size_t i = 0; i < 2; ++i) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.pixels[i][c], image.pixels[i][c], image.pixels[i].x / 128.0F);
   }
-  EXPECT_THROW(write_image(folder_ / "wide.webp", make_ramp(16384, 1)), RunError);
+  EXPECT_THROW(write_image(folder_ / "wide.webp", make_ramp_image(16384, 1)), RunError);
   EXPECT_EQ(file_count(), 1);
 }
 
@@ -213,12 +213,12 @@ TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
       {"deep.exr", {depth}, {.compression = ExrCompression::kNone}}};
   for (const auto& [name, channels, exr] : kinds) {
     const fs::path file = folder_ / name;
-    write_image(file, make_ramp(4, 4));
+    write_image(file, make_ramp_image(4, 4));
     const std::vector<std::byte> old = read_file(file);
 
     {
       const FileSizeLimit limit(100);
-      EXPECT_THROW(write_image(file, make_ramp(200, 200), {}, {}, channels, {}, exr), RunError) << name;
+      EXPECT_THROW(write_image(file, make_ramp_image(200, 200), {}, {}, channels, {}, exr), RunError) << name;
     }
 
     EXPECT_EQ(read_file(file), old) << name;
@@ -229,16 +229,16 @@ TEST_F(ImageTest, AFailedWriteKeepsTheOldPicture) {
 
 TEST_F(ImageTest, UnwritableTargetsAreRefused) {
   fs::create_directory(folder_ / "folder.exr");
-  EXPECT_THROW(write_image(folder_ / "folder.exr", make_ramp(2, 2)), RunError);
-  EXPECT_THROW(write_image(folder_ / "none" / "a.exr", make_ramp(2, 2)), RunError);
-  EXPECT_THROW(write_image(folder_ / "a.bmp", make_ramp(2, 2)), UsageError);
+  EXPECT_THROW(write_image(folder_ / "folder.exr", make_ramp_image(2, 2)), RunError);
+  EXPECT_THROW(write_image(folder_ / "none" / "a.exr", make_ramp_image(2, 2)), RunError);
+  EXPECT_THROW(write_image(folder_ / "a.bmp", make_ramp_image(2, 2)), UsageError);
   EXPECT_EQ(file_count(), 1);
 }
 
 TEST_F(ImageTest, PicturesWhosePartsDoNotSuitAreRefused) {
   const fs::path file = folder_ / "a.exr";
   EXPECT_THROW(write_image(file, Image()), UsageError);
-  Image image = make_ramp(4, 3);
+  Image image = make_ramp_image(4, 3);
   image.size.y = 4;
   EXPECT_THROW(write_image(file, image), UsageError);
   image.size.y = 3;
@@ -258,7 +258,7 @@ TEST_F(ImageTest, UnreadablePicturesSayWhy) {
   EXPECT_THAT(message, HasProblem("picture.format"));
   EXPECT_EQ(message.find('\n'), std::string::npos);
 
-  write_image(folder_ / "whole.exr", make_ramp(64, 64));
+  write_image(folder_ / "whole.exr", make_ramp_image(64, 64));
   fs::resize_file(folder_ / "whole.exr", fs::file_size(folder_ / "whole.exr") / 2);
   EXPECT_THAT(message_of_reading(folder_ / "whole.exr"), HasProblem("picture.damaged"));
 }
@@ -303,7 +303,7 @@ TEST_F(ImageTest, PicturesOfAbsurdSizeAreRefused) {
 }
 
 TEST_F(ImageTest, ChannelsKeepTheirNamesTypesAndBits) {
-  const Image image = make_ramp(3, 2);
+  const Image image = make_ramp_image(3, 2);
   const float infinity = std::numeric_limits<float>::infinity();
   const std::vector<float> depths = {1.0F, infinity, 3.0F, 1e-30F, 5.0F, 6.5F};
   std::vector<Channel> channels = {{"Z", false, {}}, {"object", true, {0, 0xFFFFFFFF, 2, 3, 16777217, 5}}};

@@ -17,12 +17,12 @@ void load_text(const std::string& text, bool is_strict = false) {
   static_cast<void>(load_scene("a.gltf", {.is_strict = is_strict}));
 }
 
-MessageCase load(std::string_view code, const std::string& text, bool quotes_others = false) {
+MessageCase refuse_document(std::string_view code, const std::string& text, bool quotes_others = false) {
   return {code, [=] { load_text(text); }, quotes_others};
 }
 
 /// Loads the rich scene with a fault.
-MessageCase spoil(std::string_view code, const Spoil& fault, bool is_strict = false) {
+MessageCase spoil_document(std::string_view code, const Spoil& fault, bool is_strict = false) {
   return {code, [=] {
             GltfBuilder gltf = rich_gltf();
             fault(gltf);
@@ -31,7 +31,7 @@ MessageCase spoil(std::string_view code, const Spoil& fault, bool is_strict = fa
 }
 
 MessageCase spoil_strictly(std::string_view code, const Spoil& fault) {
-  return spoil(code, fault, true);
+  return spoil_document(code, fault, true);
 }
 
 /// Loads the rich scene with a fault that costs a warning.
@@ -113,26 +113,26 @@ MessageCase compress(std::string_view code, const json& changes) {
 
 std::vector<MessageCase> cases_of_documents() {
   return {
-      load("json.syntax", "{ not json", true),
-      load("json.depth", std::string(20'000, '[')),
-      load("json.type", "[]"),
-      spoil("json.type", [](auto& g) { g.json["nodes"] = 3; }),
-      spoil("json.missing", [](auto& g) { primitive(g).erase("attributes"); }),
+      refuse_document("json.syntax", "{ not json", true),
+      refuse_document("json.depth", std::string(20'000, '[')),
+      refuse_document("json.type", "[]"),
+      spoil_document("json.type", [](auto& g) { g.json["nodes"] = 3; }),
+      spoil_document("json.missing", [](auto& g) { primitive(g).erase("attributes"); }),
       spoil_strictly("json.missing", [](auto& g) { g.json["cameras"][0].erase("perspective"); }),
-      spoil("json.index", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }),
-      spoil("json.range", [](auto& g) { primitive(g)["mode"] = 7; }),
-      spoil("json.choice", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }),
-      spoil("gltf.version", [](auto& g) { g.json["asset"]["version"] = "1.0"; }),
-      spoil("gltf.version", [](auto& g) { g.json["asset"]["version"] = "3.0"; }),
-      spoil("gltf.version", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }),
+      spoil_document("json.index", [](auto& g) { g.json["nodes"][0]["mesh"] = 9; }),
+      spoil_document("json.range", [](auto& g) { primitive(g)["mode"] = 7; }),
+      spoil_document("json.choice", [](auto& g) { g.json["accessors"][0]["type"] = "VEC5"; }),
+      spoil_document("gltf.version", [](auto& g) { g.json["asset"]["version"] = "1.0"; }),
+      spoil_document("gltf.version", [](auto& g) { g.json["asset"]["version"] = "3.0"; }),
+      spoil_document("gltf.version", [](auto& g) { g.json["asset"]["minVersion"] = "2.1"; }),
       spoil_strictly("gltf.version", [](auto& g) { g.json.erase("asset"); }),
       spoil_strictly("gltf.version", [](auto& g) { g.json["asset"]["version"] = 2; }),
       spoil_strictly("gltf.extension.required", [](auto& g) { g.json["extensionsRequired"] = {"KHR_materials_foo"}; }),
-      spoil("gltf.extension.required",
-            [](auto& g) {
-              g.json["extensionsRequired"] = {"EXT_splats"};
-              primitive(g)["extensions"]["EXT_splats"] = json::object();
-            }),
+      spoil_document("gltf.extension.required",
+                     [](auto& g) {
+                       g.json["extensionsRequired"] = {"EXT_splats"};
+                       primitive(g)["extensions"]["EXT_splats"] = json::object();
+                     }),
       {"scene.variant.unknown",
        [] {
          write_case("a.gltf", triangle_gltf().text());
@@ -189,7 +189,7 @@ std::vector<MessageCase> cases_of_bytes() {
             g.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
           },
           true),
-      spoil("gltf.view.short", [](auto& g) { g.json["bufferViews"][1]["byteLength"] = 999; }),
+      spoil_document("gltf.view.short", [](auto& g) { g.json["bufferViews"][1]["byteLength"] = 999; }),
       spoil_strictly("gltf.view.short",
                      [](auto& g) {
                        const size_t view = g.template add_view<uint8_t>({0});
@@ -211,24 +211,24 @@ std::vector<MessageCase> cases_of_bytes() {
                        g.template add<float>({}, "VEC3");
                        g.json["bufferViews"].back()["byteLength"] = 0;
                      }),
-      spoil("gltf.accessor.short", [](auto& g) { g.json["accessors"][0]["count"] = 4; }),
-      spoil("gltf.accessor.large",
-            [](auto& g) {
-              g.json["accessors"][0].erase("bufferView");
-              g.json["accessors"][0]["count"] = 2000000000;
-            }),
-      spoil("gltf.accessor.stride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 8; }),
-      spoil("gltf.accessor.index",
-            [](auto& g) {
-              const size_t view = g.template add_view<uint8_t>({3});
-              g.json["accessors"][0]["sparse"] = {{"count", 1},
-                                                  {"indices", {{"bufferView", view}, {"componentType", 5121}}},
-                                                  {"values", {{"bufferView", 0}}}};
-            }),
-      spoil("gltf.accessor.format",
-            [](auto& g) {
-              primitive(g)["indices"] = g.template add<float>({0, 1, 2}, "SCALAR");
-            }),
+      spoil_document("gltf.accessor.short", [](auto& g) { g.json["accessors"][0]["count"] = 4; }),
+      spoil_document("gltf.accessor.large",
+                     [](auto& g) {
+                       g.json["accessors"][0].erase("bufferView");
+                       g.json["accessors"][0]["count"] = 2000000000;
+                     }),
+      spoil_document("gltf.accessor.stride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 8; }),
+      spoil_document("gltf.accessor.index",
+                     [](auto& g) {
+                       const size_t view = g.template add_view<uint8_t>({3});
+                       g.json["accessors"][0]["sparse"] = {{"count", 1},
+                                                           {"indices", {{"bufferView", view}, {"componentType", 5121}}},
+                                                           {"values", {{"bufferView", 0}}}};
+                     }),
+      spoil_document("gltf.accessor.format",
+                     [](auto& g) {
+                       primitive(g)["indices"] = g.template add<float>({0, 1, 2}, "SCALAR");
+                     }),
       spoil_strictly(
           "gltf.accessor.format",
           [](auto& g) {
@@ -293,15 +293,15 @@ std::vector<MessageCase> cases_of_geometry() {
     return [=](GltfBuilder& g) { primitive(g)["attributes"]["POSITION"] = g.add<float>(positions, "VEC3"); };
   };
   return {
-      spoil("gltf.position.range", set_positions({2e15F, 0, 0, 1, 0, 0, 0, 1, 0})),
-      spoil("gltf.position.far",
-            [](auto& g) {
-              g.json["nodes"][0]["scale"] = {1e16, 1, 1};
-            }),
-      spoil("gltf.indices.range",
-            [](auto& g) {
-              primitive(g)["indices"] = g.template add<uint8_t>({0, 1, 3}, "SCALAR");
-            }),
+      spoil_document("gltf.position.range", set_positions({2e15F, 0, 0, 1, 0, 0, 0, 1, 0})),
+      spoil_document("gltf.position.far",
+                     [](auto& g) {
+                       g.json["nodes"][0]["scale"] = {1e16, 1, 1};
+                     }),
+      spoil_document("gltf.indices.range",
+                     [](auto& g) {
+                       primitive(g)["indices"] = g.template add<uint8_t>({0, 1, 3}, "SCALAR");
+                     }),
       spoil_strictly(
           "gltf.color.range",
           [](auto& g) {
@@ -393,7 +393,7 @@ std::vector<MessageCase> cases_of_geometry() {
                        g.json["nodes"][0]["children"] = {2};
                        g.json["nodes"][1]["children"] = {2};
                      }),
-      spoil("gltf.node.cycle", [](auto& g) { g.json["nodes"][0]["children"] = {0}; }),
+      spoil_document("gltf.node.cycle", [](auto& g) { g.json["nodes"][0]["children"] = {0}; }),
       spoil_strictly("gltf.node.root",
                      [](auto& g) {
                        g.json["nodes"][3]["children"] = {1};
@@ -416,31 +416,31 @@ std::vector<MessageCase> cases_of_geometry() {
                      [](auto& g) {
                        g.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
                      }),
-      spoil("gltf.node.far",
-            [](auto& g) {
-              for (size_t i = 4; i < 20; ++i) {
-                g.add_node({{"scale", {1e25, 1e25, 1e25}}, {"children", {i == 4 ? 0 : i - 1}}});
-              }
-            }),
+      spoil_document("gltf.node.far",
+                     [](auto& g) {
+                       for (size_t i = 4; i < 20; ++i) {
+                         g.add_node({{"scale", {1e25, 1e25, 1e25}}, {"children", {i == 4 ? 0 : i - 1}}});
+                       }
+                     }),
       spoil_strictly("gltf.light.cone",
                      [](auto& g) {
                        light(g)["spot"] = {{"innerConeAngle", 1.0}, {"outerConeAngle", 0.5}};
                      }),
-      spoil("gltf.shape.size", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = 1e-30; }),
-      spoil("gltf.shape.size",
-            [](auto& g) {
-              shape(g, 1)["cylinder"].update({{"radiusTop", 0}, {"radiusBottom", 0}});
-            }),
-      spoil("gltf.shape.far",
-            [](auto& g) {
-              g.json["nodes"][1]["translation"] = {1e15, 0, 0};
-              g.add_node({{"children", {1}}, {"scale", {2, 2, 2}}});
-            }),
-      spoil("gltf.shape.flat",
-            [](auto& g) {
-              shape(g, 0) = {{"type", "plane"}, {"plane", json::object()}};
-              g.json["nodes"][1]["scale"] = {0, 1, 1};
-            }),
+      spoil_document("gltf.shape.size", [](auto& g) { shape(g, 1)["cylinder"]["radiusTop"] = 1e-30; }),
+      spoil_document("gltf.shape.size",
+                     [](auto& g) {
+                       shape(g, 1)["cylinder"].update({{"radiusTop", 0}, {"radiusBottom", 0}});
+                     }),
+      spoil_document("gltf.shape.far",
+                     [](auto& g) {
+                       g.json["nodes"][1]["translation"] = {1e15, 0, 0};
+                       g.add_node({{"children", {1}}, {"scale", {2, 2, 2}}});
+                     }),
+      spoil_document("gltf.shape.flat",
+                     [](auto& g) {
+                       shape(g, 0) = {{"type", "plane"}, {"plane", json::object()}};
+                       g.json["nodes"][1]["scale"] = {0, 1, 1};
+                     }),
       add_instances("gltf.rotation.zero", "ROTATION", {0, 0, 0, 0}, true),
       add_instances("gltf.number.range", "TRANSLATION", {0, std::nanf(""), 0}, false),
       {"gltf.instances.missing",

@@ -10,7 +10,7 @@
 namespace promin::oracle {
 namespace {
 
-constexpr Real kTolerance = 1e-15L;
+constexpr Real kHitTolerance = 1e-15L;
 
 world::Scene scene_of(std::initializer_list<world::Shape> shapes) {
   world::Scene scene;
@@ -24,8 +24,8 @@ Hit cast(const world::Shape& shape, const Vector& origin, const Vector& directio
 
 void expect_hit(const Hit& hit, Real t, const Vector& normal) {
   ASSERT_TRUE(hit.exists());
-  EXPECT_NEAR(hit.t, t, kTolerance);
-  EXPECT_NEAR(glm::distance(hit.normal, normal), 0, kTolerance);
+  EXPECT_NEAR(hit.t, t, kHitTolerance);
+  EXPECT_NEAR(glm::distance(hit.normal, normal), 0, kHitTolerance);
 }
 
 /// Expects two numbers that agree to a few roundings of long double.
@@ -33,7 +33,7 @@ void expect_near_relative(Real value, Real expected) {
   EXPECT_NEAR(value, expected, 0x1p-62L * expected);
 }
 
-Mesh make_triangle() {
+Mesh make_right_triangle() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 4, 0}};
   mesh.triangles = {{0, 1, 2}};
@@ -169,20 +169,20 @@ TEST(Oracle, FrustumSideAndDisks) {
 }
 
 TEST(Oracle, Triangle) {
-  const Hit hit = cast(make_triangle(), {0.5L, 1, 3}, {0, 0, -1});
+  const Hit hit = cast(make_right_triangle(), {0.5L, 1, 3}, {0, 0, -1});
   expect_hit(hit, 3, {0, 0, 1});
-  EXPECT_NEAR(hit.u, 0.25L, kTolerance);
-  EXPECT_NEAR(hit.v, 0.25L, kTolerance);
-  expect_hit(cast(make_triangle(), {0.5L, 1, -3}, {0, 0, 1}), 3, {0, 0, 1});
-  expect_hit(cast(make_triangle(), {1, 2, 3}, {0, 0, -1}), 3, {0, 0, 1});
-  expect_hit(cast(make_triangle(), {0, 0, 3}, {0, 0, -1}), 3, {0, 0, 1});
-  EXPECT_FALSE(cast(make_triangle(), {1.001L, 2, 3}, {0, 0, -1}).exists());
-  EXPECT_FALSE(cast(make_triangle(), {-0.001L, 1, 3}, {0, 0, -1}).exists());
-  EXPECT_FALSE(cast(make_triangle(), {-1, 1, 0}, {1, 0, 0}).exists());
+  EXPECT_NEAR(hit.u, 0.25L, kHitTolerance);
+  EXPECT_NEAR(hit.v, 0.25L, kHitTolerance);
+  expect_hit(cast(make_right_triangle(), {0.5L, 1, -3}, {0, 0, 1}), 3, {0, 0, 1});
+  expect_hit(cast(make_right_triangle(), {1, 2, 3}, {0, 0, -1}), 3, {0, 0, 1});
+  expect_hit(cast(make_right_triangle(), {0, 0, 3}, {0, 0, -1}), 3, {0, 0, 1});
+  EXPECT_FALSE(cast(make_right_triangle(), {1.001L, 2, 3}, {0, 0, -1}).exists());
+  EXPECT_FALSE(cast(make_right_triangle(), {-0.001L, 1, 3}, {0, 0, -1}).exists());
+  EXPECT_FALSE(cast(make_right_triangle(), {-1, 1, 0}, {1, 0, 0}).exists());
 }
 
 TEST(Oracle, DegenerateTrianglesKeepTheirNumberAndAreNotHit) {
-  Mesh mesh = make_triangle();
+  Mesh mesh = make_right_triangle();
   mesh.triangles = {{0, 1, 1}, {0, 1, 2}};
   EXPECT_EQ(cast(mesh, {0.5L, 1, 3}, {0, 0, -1}).primitive, 1);
   mesh.triangles = {{0, 1, 1}};
@@ -207,7 +207,7 @@ TEST(Oracle, TheNearestAndOfEqualOnesTheFirstIsFound) {
   const world::Scene scene = scene_of({world::NotDrawn{}, world::Sphere{{0, 0, -5}, 1}, sphere, sphere});
   EXPECT_EQ(find_nearest_hit(scene, {{0, 0, 5}, {0, 0, -1}}).object, 2);
   EXPECT_EQ(find_nearest_hit(scene, {{0, 0, -9}, {0, 0, 1}}).object, 1);
-  Mesh twice = make_triangle();
+  Mesh twice = make_right_triangle();
   twice.triangles.push_back(twice.triangles.front());
   EXPECT_EQ(cast(twice, {0.5L, 1, 3}, {0, 0, -1}).primitive, 0);
 }
@@ -258,7 +258,7 @@ TEST(Oracle, HitsLieOnTheSurfaceAndRaysTowardsTheInsideHit) {
       ASSERT_TRUE(hit.exists());
       ASSERT_LT(hit.t, 1);
       ASSERT_LE(glm::dot(hit.normal, inside - origin), 0);
-      ASSERT_LE(distance_to_profile(origin + hit.t * (inside - origin), bottom, top), kTolerance);
+      ASSERT_LE(distance_to_profile(origin + hit.t * (inside - origin), bottom, top), kHitTolerance);
     }
   }
 }

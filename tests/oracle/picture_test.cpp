@@ -14,12 +14,12 @@ namespace promin::oracle {
 namespace {
 
 /// Cameras, lights and colours are fp32 numbers, so results have this error.
-constexpr Real kTolerance = 1e-6L;
+constexpr Real kColorTolerance = 1e-6L;
 
 const world::Plane kFloor{{0, 0, 0}, {0, 1, 0}};
 
 void expect_color(const Vector& color, const Vector& expected) {
-  EXPECT_LE(glm::distance(color, expected), kTolerance)
+  EXPECT_LE(glm::distance(color, expected), kColorTolerance)
       << "(" << color.x << ", " << color.y << ", " << color.z << "), not (" << expected.x << ", " << expected.y << ", "
       << expected.z << ")";
 }
@@ -96,7 +96,7 @@ TEST(OraclePicture, RaysGoThroughThePixelsCentres) {
   camera.yfov = 1.57079633F;
   const Ray ray = camera_ray(camera, uvec2(4, 2), 0, 0);
   EXPECT_EQ(ray.origin, Vector(1, 2, 3));
-  EXPECT_LE(glm::distance(ray.direction, Vector(-1.5L, 0.5L, -1)), kTolerance);
+  EXPECT_LE(glm::distance(ray.direction, Vector(-1.5L, 0.5L, -1)), kColorTolerance);
   camera.projection = Projection::kOrthographic;
   camera.ymag = 4;
   const Ray parallel = camera_ray(camera, uvec2(4, 2), 3, 1);
@@ -119,7 +119,7 @@ TEST(OraclePicture, DepthCountsFromTheEyeAndNormalsAreNotFlipped) {
   const world::Scene scene = make_lit_floor();
   View view = look_at(vec3(0, -3, 0), vec3(0, 0, -4), vec3(0, 0.8F, 0.6F));
   const Pixel seen = render(scene, view).at(0, 0);
-  EXPECT_NEAR(seen.depth(), 5, kTolerance);
+  EXPECT_NEAR(seen.depth(), 5, kColorTolerance);
   EXPECT_EQ(seen.hit.normal, Vector(0, 1, 0));
   EXPECT_EQ(seen.hit.primitive, 0);
   view.camera.look = -view.camera.look;
@@ -199,9 +199,9 @@ TEST(OraclePicture, SpotsFadeBetweenTheirAngles) {
     return color_of(scene, look_down_at(static_cast<float>(2 * std::tan(angle)))).x / std::cos(angle);
   };
   const Real ramp = (std::cos(0.3L) - std::cos(0.4L)) / (std::cos(0.2L) - std::cos(0.4L));
-  EXPECT_NEAR(seen_at(0.19L), 1, kTolerance);
-  EXPECT_NEAR(seen_at(0.3L), ramp * ramp, kTolerance);
-  EXPECT_NEAR(seen_at(0.41L), 0, kTolerance);
+  EXPECT_NEAR(seen_at(0.19L), 1, kColorTolerance);
+  EXPECT_NEAR(seen_at(0.3L), ramp * ramp, kColorTolerance);
+  EXPECT_NEAR(seen_at(0.41L), 0, kColorTolerance);
 }
 
 TEST(OraclePicture, AMirrorAddsWhatItSees) {
@@ -410,7 +410,7 @@ TEST(OraclePicture, SizeAndPlaceDoNotMatter) {
     const Picture moved = render_still_life(size, center);
     uint32_t differing = 0;
     for (size_t i = 0; i < moved.pixels.size(); ++i) {
-      if (!(glm::distance(moved.pixels[i].color, expected.pixels[i].color) <= kTolerance)) ++differing;
+      if (!(glm::distance(moved.pixels[i].color, expected.pixels[i].color) <= kColorTolerance)) ++differing;
     }
     EXPECT_EQ(differing, 0U) << size;
   }

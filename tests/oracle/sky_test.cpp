@@ -11,7 +11,7 @@
 namespace promin::oracle {
 namespace {
 
-constexpr Real kPi = std::numbers::pi_v<Real>;
+constexpr Real kHalfTurn = std::numbers::pi_v<Real>;
 
 Environment make_environment(decltype(Environment::sky) sky) {
   Environment environment;
@@ -68,12 +68,12 @@ TEST(SurroundingsTest, LobesAreTheIntegral) {
     Real sum = 0;
     Real weights = 0;
     for (int i = 0; i < 400; ++i) {
-      const Real angle = kPi / 2 * (i + 0.5L) / 400;
+      const Real angle = kHalfTurn / 2 * (i + 0.5L) / 400;
       const Real cosine2 = std::pow(std::cos(angle / 2), Real(2));
       const Real spread = cosine2 * (alpha2 - 1) + 1;
       const Real weight = std::cos(angle) * std::sin(angle) / (spread * spread);
       for (int j = 0; j < 400; ++j) {
-        const Real azimuth = 2 * kPi * (j + 0.5L) / 400;
+        const Real azimuth = 2 * kHalfTurn * (j + 0.5L) / 400;
         const Vector way(std::cos(angle), std::sin(angle) * std::sin(azimuth), std::sin(angle) * std::cos(azimuth));
         sum += weight * surroundings.radiance(way).x;
         weights += weight;
@@ -105,7 +105,7 @@ TEST(SurroundingsTest, TheStudioLightsWallsAsItIsDescribed) {
     EXPECT_NEAR(surroundings.irradiance(normal).x, light, 0.02L);
   }
   // Azimuths count from the viewer to the right: the key light is to the left, at an elevation of 38 degrees.
-  const Real elevation = 38 * kPi / 180;
+  const Real elevation = 38 * kHalfTurn / 180;
   const Vector key(-std::sqrt(0.5L) * std::cos(elevation), std::sin(elevation), std::sqrt(0.5L) * std::cos(elevation));
   // In this direction, only the ceiling adds to the key light.
   EXPECT_NEAR(surroundings.radiance(key).x, 0.16L + 1.7L, 1e-9L);
@@ -124,7 +124,7 @@ TEST(SurroundingsTest, APanoramaHasMinusZInItsMiddleAndTurns) {
   EXPECT_NEAR(Surroundings(environment).radiance({0, 0, 1}).x, 2.5L, 1e-9L);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, half}).x, 1, 1e-9L);
   // The rotation goes from +Z towards +X: what was at -Z is at -X.
-  environment.rotation = static_cast<float>(kPi / 2);
+  environment.rotation = static_cast<float>(kHalfTurn / 2);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, -half}).x, 3, 1e-6L);
 }
 

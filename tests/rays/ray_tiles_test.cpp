@@ -15,8 +15,8 @@
 namespace promin {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr SceneCube kCube{vec3(0.0F), 1.0F};
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr SceneCube kUnitCube{vec3(0.0F), 1.0F};
 
 /// Rays of some pixels, row by row, and the pixels themselves.
 struct Pixels {
@@ -61,7 +61,7 @@ Ray make_shadow_ray(vec2 p) {
 
 std::vector<uint32_t> tile(const std::vector<Ray>& rays) {
   RayTiler tiler;
-  const std::span<const uint32_t> order = tiler.tile(rays, kCube);
+  const std::span<const uint32_t> order = tiler.tile(rays, kUnitCube);
   return {order.begin(), order.end()};
 }
 
@@ -187,7 +187,7 @@ TEST(RayTiles, WhatComesInNoRowsIsLeft) {
 TEST(RayTiles, IsAPermutationWhateverTheRays) {
   const Pixels pixels = make_pixels({300, 100}, choose_all, make_camera_ray);
   std::vector<Ray> bad = pixels.rays;
-  for (size_t i = 5; i < bad.size(); i += 37) bad[i].origin.x = kNan;
+  for (size_t i = 5; i < bad.size(); i += 37) bad[i].origin.x = kMissing;
   for (size_t i = 7; i < bad.size(); i += 41) bad[i].direction = vec3(0.0F);
   for (size_t i = 11; i < bad.size(); i += 43) bad[i].origin = vec3(1e38F);
   std::vector<Ray> shuffled = pixels.rays;
@@ -198,7 +198,7 @@ TEST(RayTiles, IsAPermutationWhateverTheRays) {
   }
   ASSERT_FALSE(tile(bad).empty());
   for (const std::vector<Ray>& rays : {bad, shuffled, back_and_forth}) {
-    for (const SceneCube& cube : {kCube, SceneCube{}}) {
+    for (const SceneCube& cube : {kUnitCube, SceneCube{}}) {
       RayTiler tiler;
       const std::span<const uint32_t> order = tiler.tile(rays, cube);
       if (!order.empty()) expect_permutation({order.begin(), order.end()}, rays.size());
@@ -208,9 +208,9 @@ TEST(RayTiles, IsAPermutationWhateverTheRays) {
 
 TEST(RayTiles, ATilerForgetsWhatItTiledBefore) {
   RayTiler tiler;
-  tiler.tile(make_pixels({600, 600}, choose_ring, make_shadow_ray).rays, kCube);
+  tiler.tile(make_pixels({600, 600}, choose_ring, make_shadow_ray).rays, kUnitCube);
   const std::vector<Ray> rays = make_pixels({200, 90}, choose_all, make_camera_ray).rays;
-  const std::span<const uint32_t> order = tiler.tile(rays, kCube);
+  const std::span<const uint32_t> order = tiler.tile(rays, kUnitCube);
   ASSERT_FALSE(order.empty());
   EXPECT_EQ(std::vector<uint32_t>(order.begin(), order.end()), tile(rays));
 }

@@ -117,16 +117,16 @@ TEST(ShapesTest, TriangleBoundsHoldTheirCornersExactly) {
   EXPECT_EQ(world::bounds_of_triangle(mesh, 0).hi, vec3(1, 2, 4));
 }
 
-world::Scene scene_of(const std::vector<world::Shape>& shapes) {
+world::Scene world_of(const std::vector<world::Shape>& shapes) {
   world::Scene scene;
   for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
   return scene;
 }
 
 TEST(SceneTest, BoundsLeaveOutWhatIsInfiniteOrNotDrawn) {
-  EXPECT_TRUE(bounds_of(scene_of({})).is_empty());
-  EXPECT_TRUE(bounds_of(scene_of({world::Plane{}, world::NotDrawn{}})).is_empty());
-  const Bounds bounds = bounds_of(scene_of({world::Plane{}, world::Sphere{vec3(1, 2, 3), 1.0F}}));
+  EXPECT_TRUE(bounds_of(world_of({})).is_empty());
+  EXPECT_TRUE(bounds_of(world_of({world::Plane{}, world::NotDrawn{}})).is_empty());
+  const Bounds bounds = bounds_of(world_of({world::Plane{}, world::Sphere{vec3(1, 2, 3), 1.0F}}));
   EXPECT_LE(max_abs_component(bounds.center() - vec3(1, 2, 3)), 1e-6F);
 }
 
@@ -166,7 +166,7 @@ TEST(SceneTest, TheCameraInFrontSeesEverything) {
         Mesh mesh;
         mesh.positions = {scale * vec3(1, 2, 3), scale * (vec3(1, 2, 3) + shape), scale * vec3(1, 2, 3)};
         mesh.triangles = {{0, 1, 2}};
-        const world::Scene scene = scene_of({mesh, world::Plane{}});
+        const world::Scene scene = world_of({mesh, world::Plane{}});
         const Camera camera = look_from_front(scene, aspect_ratio);
         const dvec2 extent = extent_on_picture(camera, bounds_of(scene));
         EXPECT_LE(std::max(extent.x, extent.y), 1.0) << aspect_ratio << " " << scale;
@@ -217,7 +217,7 @@ TEST(SceneTest, TheCameraInFrontKeepsItsBits) {
   Mesh mesh;
   mesh.positions = {vec3(-1.0F, 1.5F, 2.0F), vec3(3.0F, 2.5F, 4.0F), vec3(0.0F, 2.0F, 3.0F)};
   mesh.triangles = {{0, 1, 2}};
-  const Camera camera = look_from_front(scene_of({mesh}), 16.0F / 9.0F);
+  const Camera camera = look_from_front(world_of({mesh}), 16.0F / 9.0F);
   EXPECT_EQ(camera.eye, vec3(1.0F, 0x1.8acf12p+1F, 0x1.cfcf4ep+2F));
   EXPECT_EQ(camera.look, vec3(0.0F, -0x1.faaeeep-3F, -0x1.f0154ap-1F));
   EXPECT_EQ(camera.up, vec3(0.0F, 0x1.f0154ap-1F, -0x1.faaeeep-3F));
@@ -227,8 +227,8 @@ TEST(SceneTest, TheCameraInFrontKeepsItsBits) {
 
 TEST(SceneTest, TheCameraInFrontIsUpright) {
   for (const world::Scene& scene :
-       {scene_of({}), scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
-        scene_of({world::Sphere{vec3(1e7F), 1e-3F}}), scene_of({world::Sphere{vec3(0), 1e15F}})}) {
+       {world_of({}), world_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}),
+        world_of({world::Sphere{vec3(1e7F), 1e-3F}}), world_of({world::Sphere{vec3(0), 1e15F}})}) {
     const Camera camera = look_from_front(scene, 1.5F);
     EXPECT_TRUE(is_finite(camera.eye));
     EXPECT_NEAR(glm::length(camera.look), 1.0, 1e-6);
@@ -239,7 +239,7 @@ TEST(SceneTest, TheCameraInFrontIsUpright) {
     EXPECT_EQ(camera.near, 0.0F);
     EXPECT_EQ(camera.aspect_ratio, 1.5F);
   }
-  EXPECT_GT(look_from_front(scene_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F)
+  EXPECT_GT(look_from_front(world_of({world::Plane{vec3(0, 5, 0), vec3(0, 1, 0)}}), 1.0F).eye.y, 5.0F)
       << "above the ground";
 }
 

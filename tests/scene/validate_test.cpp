@@ -21,7 +21,7 @@ using testing::IsEmpty;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-Mesh& mesh_of(Scene& scene) {
+Mesh& first_mesh(Scene& scene) {
   return std::get<Mesh>(scene.geometries[0]);
 }
 
@@ -100,13 +100,13 @@ TEST(ValidateTest, EveryFaultOfASceneIsToldWithItsPlace) {
       {"environment.background", [](Scene& s) { s.environment.background.r = kNan; }},
       {"environment.backdrop.bottom", [](Scene& s) { s.environment.backdrop.emplace().bottom.g = -1; }},
       {"environment.backdrop.radiance", [](Scene& s) { s.environment.backdrop.emplace().radiance = kNan; }},
-      {"geometries[0].normals[1]", [](Scene& s) { mesh_of(s).normals[1] = vec3(0); }},
-      {"geometries[0].normals", [](Scene& s) { mesh_of(s).normals.pop_back(); }},
-      {"geometries[0].colors[2]", [](Scene& s) { mesh_of(s).colors[2].r = -1; }},
-      {"geometries[0].colors", [](Scene& s) { mesh_of(s).colors.pop_back(); }},
-      {"geometries[0].triangles[0]", [](Scene& s) { mesh_of(s).triangles[0].z = 3; }},
-      {"geometries[0].triangle_materials[0]", [](Scene& s) { mesh_of(s).triangle_materials[0] = 3; }},
-      {"geometries[0].triangle_materials", [](Scene& s) { mesh_of(s).triangle_materials.resize(2); }},
+      {"geometries[0].normals[1]", [](Scene& s) { first_mesh(s).normals[1] = vec3(0); }},
+      {"geometries[0].normals", [](Scene& s) { first_mesh(s).normals.pop_back(); }},
+      {"geometries[0].colors[2]", [](Scene& s) { first_mesh(s).colors[2].r = -1; }},
+      {"geometries[0].colors", [](Scene& s) { first_mesh(s).colors.pop_back(); }},
+      {"geometries[0].triangles[0]", [](Scene& s) { first_mesh(s).triangles[0].z = 3; }},
+      {"geometries[0].triangle_materials[0]", [](Scene& s) { first_mesh(s).triangle_materials[0] = 3; }},
+      {"geometries[0].triangle_materials", [](Scene& s) { first_mesh(s).triangle_materials.resize(2); }},
       {"objects[1].material", [](Scene& s) { s.objects[1].material = 3; }},
       {"objects[1].geometry", [](Scene& s) { s.objects[1].geometry = 5; }},
       {"objects[1].world_from_object", [](Scene& s) { s.objects[1].world_from_object[3][0] = kNan; }},
@@ -145,7 +145,7 @@ TEST(ValidateTest, TheEndsOfRangesAreValid) {
 
 TEST(ValidateTest, AVertexOutOfRangeIsTold) {
   Scene scene = make_valid_scene();
-  mesh_of(scene).positions[1].y = kNan;
+  first_mesh(scene).positions[1].y = kNan;
   EXPECT_THAT(places_of(validate(scene)), testing::Contains("geometries[0].positions[1]"));
 }
 
@@ -198,7 +198,7 @@ TEST(ValidateTest, QuestionsToABrokenSceneThrow) {
   EXPECT_THROW(frame_scene(scene, kNan), UsageError);
   EXPECT_NO_THROW(frame_scene(scene, 1.0F));
 
-  mesh_of(scene).triangles[0].y = 1000000;
+  first_mesh(scene).triangles[0].y = 1000000;
   EXPECT_THROW(bounds_of(scene), InputError);
   EXPECT_THROW(frame_scene(scene, 1.0F), InputError);
   scene.geometries.clear();

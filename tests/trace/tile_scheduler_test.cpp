@@ -10,7 +10,7 @@
 namespace promin {
 namespace {
 
-View make_view() {
+View make_tiled_view() {
   View view;
   view.size = uvec2(250, 130);  // 32 x 17 blocks
   view.samples_per_pixel = 50;
@@ -18,7 +18,7 @@ View make_view() {
 }
 
 TileScheduler cut(const TileOptions& options) {
-  const View view = make_view();
+  const View view = make_tiled_view();
   return {SceneConstants{}, view, {uvec2(0), view.size}, options};
 }
 
@@ -80,7 +80,7 @@ TEST(TileScheduler, PiecesAreNoLargerThanAsked) {
       }
     }
   }
-  View view = make_view();
+  View view = make_tiled_view();
   view.size = uvec2(4096);
   TileScheduler pieces(SceneConstants{}, view, {uvec2(0), view.size});
   const layout::Dispatch dispatch = pieces.next(1e9).dispatch;

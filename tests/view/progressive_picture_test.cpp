@@ -14,7 +14,7 @@
 namespace promin {
 namespace {
 
-const uvec2 kSize(150, 100);  // neither number is a multiple of the block's size
+const uvec2 kPictureSize(150, 100);  // neither number is a multiple of the block's size
 
 class ProgressivePictureTest : public test::DeviceTest {
  protected:
@@ -24,7 +24,7 @@ class ProgressivePictureTest : public test::DeviceTest {
         device(),
         upload_scene(device(), packed, {scene_.materials, scene_.textures, scene_.lights, scene_.environment}),
         features_of(scene_) | requests, 1.0);
-    picture.resize(kSize);
+    picture.resize(kPictureSize);
     return picture;
   }
 
@@ -51,7 +51,7 @@ class ProgressivePictureTest : public test::DeviceTest {
 TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {
   ProgressivePicture picture = make_picture();
   Renderer renderer = make_renderer(device(), scene_);
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   picture.want(view);
   for (const uint32_t samples : {1U, 4U, 16U}) {
     view.samples_per_pixel = samples;
@@ -63,7 +63,7 @@ TEST_F(ProgressivePictureTest, EveryLevelIsWhatTheRendererGives) {
 // In these frames one piece ends and the next begins, with all samples of some blocks and a few of others.
 TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
   Renderer renderer = make_renderer(device(), scene_);
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   view.samples_per_pixel = 16;
   const Image expected = renderer.render(view).image;
   for (const double units : {150.0, 1050.0, 3000.0}) {
@@ -81,7 +81,7 @@ TEST_F(ProgressivePictureTest, NoBudgetChangesABit) {
 TEST_F(ProgressivePictureTest, IsRefinedStepByStepAndThenRests) {
   ProgressivePicture picture = make_picture();
   picture.resize(uvec2(16, 16));
-  picture.want(test::make_view(kSize));
+  picture.want(test::make_view(kPictureSize));
   std::vector<uint32_t> levels;
   while (!picture.is_settled()) {
     trace(picture);
@@ -100,7 +100,7 @@ View with_target(View view, float error) {
 TEST_F(ProgressivePictureTest, EveryErrorIsWhatTheRendererGives) {
   ProgressivePicture picture = make_picture();
   Renderer renderer = make_renderer(device(), scene_);
-  const View view = with_target(test::make_view(kSize), 1.0F / 16.0F);
+  const View view = with_target(test::make_view(kPictureSize), 1.0F / 16.0F);
   picture.want(view);
   std::vector<float> errors;
   while (!picture.is_settled()) {
@@ -126,22 +126,22 @@ TEST_F(ProgressivePictureTest, RefinedFilmsAreAsIfTracedAndTellOfUnlitSurfaces) 
   ProgressivePicture picture = make_picture(layout::FEATURE_UNLIT_SHARE);
   ASSERT_TRUE(picture.has_unlit());
   picture.fix_scale(0.25);
-  const View view = with_target(test::make_view(kSize), 1.0F / 8.0F);
+  const View view = with_target(test::make_view(kPictureSize), 1.0F / 8.0F);
   picture.want(view);
   while (!picture.is_settled()) picture.trace();
   const gpu::Buffer& film = picture.film(picture.shown()->film);
   layout::FilmHead head;
   film.read(std::as_writable_bytes(std::span(&head, 1)), 0);
-  EXPECT_EQ(head.dispatch.window, uvec4(0, 0, kSize));
+  EXPECT_EQ(head.dispatch.window, uvec4(0, 0, kPictureSize));
   EXPECT_EQ(head.dispatch.sampling.x, 1U);
-  std::vector<vec4> records(size_t{2} * kSize.x * kSize.y);
+  std::vector<vec4> records(size_t{2} * kPictureSize.x * kPictureSize.y);
   film.read(std::as_writable_bytes(std::span(records)), Film::kPixelsOffset);
   TunedRendererOptions options;
   options.aovs.unlit = true;
   options.has_error_target = true;
   const RenderResult expected = make_renderer(device(), scene_, options).render(picture.shown()->view_of(view));
   EXPECT_TRUE(test::has_same_bits(read(picture), expected.image));
-  const std::vector<vec4> unlit(records.begin() + kSize.x * kSize.y, records.end());
+  const std::vector<vec4> unlit(records.begin() + kPictureSize.x * kPictureSize.y, records.end());
   EXPECT_EQ(unlit, expected.aovs.unlit);
   EXPECT_TRUE(std::ranges::any_of(unlit, [](const vec4& one) { return one.w == 1.0F; }));
 }
@@ -149,7 +149,7 @@ TEST_F(ProgressivePictureTest, RefinedFilmsAreAsIfTracedAndTellOfUnlitSurfaces) 
 // Samples in progress are lost when the view changes, and a pause delays samples that have not begun.
 TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
   ProgressivePicture picture = make_picture();
-  View view = with_target(test::make_view(kSize), 1.0F / 8.0F);
+  View view = with_target(test::make_view(kPictureSize), 1.0F / 8.0F);
   picture.want(view);
   while (!picture.has_recorded_list()) {
     picture.trace();
@@ -180,7 +180,7 @@ TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
 // If only the background is seen, the first samples are exact: after them only the final error is reported.
 TEST_F(ProgressivePictureTest, WhatIsExactIsShownOnceMore) {
   ProgressivePicture picture = make_picture();
-  View view = with_target(test::make_view(kSize), 1.0F / 4096.0F);
+  View view = with_target(test::make_view(kPictureSize), 1.0F / 4096.0F);
   view.camera.look = vec3(0, 1, 0);
   view.camera.up = vec3(0, 0, 1);
   picture.want(view);
@@ -193,13 +193,13 @@ TEST_F(ProgressivePictureTest, WhatIsExactIsShownOnceMore) {
     if (picture.shown()->error) errors.push_back(picture.shown()->error->target);
   }
   ASSERT_TRUE(picture.shown()->error);
-  ASSERT_EQ(picture.shown()->error->samples, 4U * kSize.x * kSize.y) << "something else is seen";
+  ASSERT_EQ(picture.shown()->error->samples, 4U * kPictureSize.x * kPictureSize.y) << "something else is seen";
   EXPECT_EQ(errors, (std::vector<float>{0.125F, 1.0F / 4096.0F}));
 }
 
 TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
   ProgressivePicture picture = make_picture();
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   picture.want(view);
   while (!picture.is_complete()) trace(picture);
   trace(picture);  // refining is under way
@@ -207,17 +207,17 @@ TEST_F(ProgressivePictureTest, ANewViewComesFirstInFewPixels) {
   picture.want(view);
   EXPECT_FALSE(picture.is_complete());
   trace(picture);
-  EXPECT_LT(picture.shown()->size.x, kSize.x);
+  EXPECT_LT(picture.shown()->size.x, kPictureSize.x);
   // The picture has the window's aspect ratio, to a pixel, and shows the new view.
   view.size = picture.shown()->size;
-  EXPECT_NEAR(view.size.x * kSize.y, view.size.y * kSize.x, kSize.x + kSize.y);
+  EXPECT_NEAR(view.size.x * kPictureSize.y, view.size.y * kPictureSize.x, kPictureSize.x + kPictureSize.y);
   EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
 }
 
 TEST_F(ProgressivePictureTest, AFirstPictureIsFinishedAlthoughTheViewChanges) {
   ProgressivePicture picture = make_picture();
   picture.fix_scale(1.0);
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   for (int frame = 0; !picture.shown(); ++frame) {
     ASSERT_LT(frame, 100);
     view.camera.eye.x += 0.01F;
@@ -229,11 +229,11 @@ TEST_F(ProgressivePictureTest, AFirstPictureIsFinishedAlthoughTheViewChanges) {
 
 TEST_F(ProgressivePictureTest, APausedPictureIsNotRefined) {
   ProgressivePicture picture = make_picture();
-  picture.want(test::make_view(kSize));
+  picture.want(test::make_view(kPictureSize));
   picture.pause(true);
   while (!picture.is_settled()) trace(picture);
   ASSERT_TRUE(picture.shown());
-  EXPECT_LT(picture.shown()->size.x, kSize.x);
+  EXPECT_LT(picture.shown()->size.x, kPictureSize.x);
   EXPECT_EQ(trace(picture), 0.0);
   picture.pause(false);
   EXPECT_FALSE(picture.is_settled());
@@ -241,7 +241,7 @@ TEST_F(ProgressivePictureTest, APausedPictureIsNotRefined) {
 
 TEST_F(ProgressivePictureTest, RestsWhenPausedWhileItIsRefined) {
   ProgressivePicture picture = make_picture();
-  picture.want(test::make_view(kSize));
+  picture.want(test::make_view(kPictureSize));
   while (!picture.is_complete()) trace(picture);
   trace(picture);  // refining is under way
   ASSERT_LT(picture.fraction_done(), 1.0);
@@ -254,14 +254,14 @@ TEST_F(ProgressivePictureTest, RestsWhenPausedWhileItIsRefined) {
 
 TEST_F(ProgressivePictureTest, IsRefusedWhereLoopsWereCut) {
   ProgressivePicture picture = make_picture();
-  picture.want(test::make_view(kSize));
+  picture.want(test::make_view(kPictureSize));
   trace(picture);
   EXPECT_THROW(picture.take_finished({.units = 1.0, .time_ms = 1.0, .has_cut_loops = true}), RunError);
 }
 
 TEST_F(ProgressivePictureTest, AFasterDeviceGetsMorePixels) {
   ProgressivePicture picture = make_picture();
-  View view = test::make_view(kSize);
+  View view = test::make_view(kPictureSize);
   picture.want(view);
   const double units = trace(picture);
   const uvec2 before = picture.shown()->size;

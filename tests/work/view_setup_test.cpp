@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 const Console kSilent(Verbosity::kQuiet);
 
-Scene make_scene() {
+Scene make_viewed_scene() {
   Scene scene;
   scene.file = "test.gltf";
   Camera main;
@@ -42,7 +42,7 @@ Scene make_scene() {
 }
 
 TEST(ViewSetupTest, TheFirstCameraIsTheDefaultAndOthersGoByNameOrNumber) {
-  const Scene scene = make_scene();
+  const Scene scene = make_viewed_scene();
   ViewOptions options;
   EXPECT_EQ(make_view(scene, options, kSilent).camera.name, "main");
   options.camera = "side";
@@ -56,7 +56,7 @@ TEST(ViewSetupTest, AnUnknownCameraListsThoseThereAre) {
     ViewOptions options;
     options.camera = selection;
     try {
-      make_view(make_scene(), options, kSilent);
+      make_view(make_viewed_scene(), options, kSilent);
       ADD_FAILURE() << "accepted " << selection;
     } catch (const UsageError& error) {
       EXPECT_THAT(list_problems(error), HasProblem("camera.unknown 0 (main), 1 (side)"));
@@ -66,17 +66,17 @@ TEST(ViewSetupTest, AnUnknownCameraListsThoseThereAre) {
 
 TEST(ViewSetupTest, WidthFollowsTheCamerasAspectRatio) {
   ViewOptions options;
-  EXPECT_EQ(make_view(make_scene(), options, kSilent).size, uvec2(1280, 720));
+  EXPECT_EQ(make_view(make_viewed_scene(), options, kSilent).size, uvec2(1280, 720));
   options.camera = "side";
-  EXPECT_EQ(make_view(make_scene(), options, kSilent).size, uvec2(1440, 720));
+  EXPECT_EQ(make_view(make_viewed_scene(), options, kSilent).size, uvec2(1440, 720));
   options.size = uvec2(400, 100);
-  const View view = make_view(make_scene(), options, kSilent);
+  const View view = make_view(make_viewed_scene(), options, kSilent);
   EXPECT_EQ(view.size, uvec2(400, 100));
-  EXPECT_EQ(view.camera.yfov, make_scene().cameras[1].yfov) << "the vertical field of view holds";
+  EXPECT_EQ(view.camera.yfov, make_viewed_scene().cameras[1].yfov) << "the vertical field of view holds";
 }
 
 TEST(ViewSetupTest, AResolutionOfTheFileIsTheDefault) {
-  Scene scene = make_scene();
+  Scene scene = make_viewed_scene();
   scene.cameras[1].resolution = uvec2(321, 123);
   ViewOptions options;
   EXPECT_EQ(make_view(scene, options, kSilent).size, uvec2(1280, 720)) << "of another camera";
@@ -88,7 +88,7 @@ TEST(ViewSetupTest, AResolutionOfTheFileIsTheDefault) {
 
 TEST(ViewSetupTest, AnAspectRatioWithoutAWidthIsRefused) {
   for (const float aspect_ratio : {1e-6F, 1e6F}) {
-    Scene scene = make_scene();
+    Scene scene = make_viewed_scene();
     scene.cameras[0].aspect_ratio = aspect_ratio;
     EXPECT_THROW(make_view(scene, {}, kSilent), UsageError);
   }
@@ -101,7 +101,7 @@ TEST(ViewSetupTest, AnOrthonormalPoseIsUsedAsItIs) {
   options.pose.up = dvec3(0.0, 0.800000012, 0.600000024);
   options.pose.fov_deg = 90.0;
   options.pose.near = 0.25;
-  const Camera camera = make_view(make_scene(), options, kSilent).camera;
+  const Camera camera = make_view(make_viewed_scene(), options, kSilent).camera;
   EXPECT_EQ(camera.eye, vec3(1.0F, 2.0F, 3.0F));
   EXPECT_EQ(camera.look, vec3(0.0F, 0.6F, -0.8F));
   EXPECT_EQ(camera.up, vec3(0.0F, 0.8F, 0.6F));
@@ -110,7 +110,7 @@ TEST(ViewSetupTest, AnOrthonormalPoseIsUsedAsItIs) {
 }
 
 TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
-  Scene scene = make_scene();
+  Scene scene = make_viewed_scene();
   scene.cameras[0].projection = Projection::kOrthographic;
   ViewOptions options;
   const auto say_and_view = [&] {
@@ -136,7 +136,7 @@ TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
   ViewOptions options;
   options.pose.direction = dvec3(3e14, 0.0, -4e14);
   options.pose.up = dvec3(0.2, 1e-3, 0.1);
-  const Camera camera = make_view(make_scene(), options, kSilent).camera;
+  const Camera camera = make_view(make_viewed_scene(), options, kSilent).camera;
   EXPECT_EQ(camera.look, vec3(0.6F, 0.0F, -0.8F));
   EXPECT_NEAR(glm::length(camera.up), 1.0F, 2.0F * kUnitRoundoff);
   EXPECT_NEAR(glm::dot(camera.look, camera.up), 0.0F, 2.0F * kUnitRoundoff);
@@ -146,10 +146,10 @@ TEST(ViewSetupTest, OtherDirectionsAreMadeOrthonormal) {
 TEST(ViewSetupTest, ADirectionAloneStandsUpright) {
   ViewOptions options;
   options.pose.direction = dvec3(1.0, -1.0, 0.0);
-  const Camera camera = make_view(make_scene(), options, kSilent).camera;
+  const Camera camera = make_view(make_viewed_scene(), options, kSilent).camera;
   EXPECT_NEAR(camera.up.x, std::sqrt(0.5F), 1e-6F);
   EXPECT_NEAR(camera.up.y, std::sqrt(0.5F), 1e-6F);
-  EXPECT_EQ(camera.eye, make_scene().cameras[0].eye) << "what is not given stays the camera's";
+  EXPECT_EQ(camera.eye, make_viewed_scene().cameras[0].eye) << "what is not given stays the camera's";
 }
 
 TEST(ViewSetupTest, DirectionsThatDoNotSayWhichWayIsUpAreRefused) {
@@ -162,7 +162,7 @@ TEST(ViewSetupTest, DirectionsThatDoNotSayWhichWayIsUpAreRefused) {
     ViewOptions options;
     options.pose.direction = look;
     options.pose.up = up;
-    EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+    EXPECT_THROW(make_view(make_viewed_scene(), options, kSilent), UsageError);
   }
 }
 
@@ -170,11 +170,11 @@ TEST(ViewSetupTest, ACropLiesWithinThePicture) {
   ViewOptions options;
   options.size = uvec2(64, 32);
   options.crop = PixelWindow{{0, 0}, {64, 32}};
-  EXPECT_NO_THROW(make_view(make_scene(), options, kSilent));
+  EXPECT_NO_THROW(make_view(make_viewed_scene(), options, kSilent));
   options.crop = PixelWindow{{0, 0}, {65, 32}};
-  EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+  EXPECT_THROW(make_view(make_viewed_scene(), options, kSilent), UsageError);
   options.crop = PixelWindow{{0, 0}, {64, 33}};
-  EXPECT_THROW(make_view(make_scene(), options, kSilent), UsageError);
+  EXPECT_THROW(make_view(make_viewed_scene(), options, kSilent), UsageError);
 }
 
 TEST(ViewSetupTest, LightsToLeaveOutAreNamedOnce) {
@@ -204,7 +204,7 @@ TEST(PoseOptionsTest, UpIsAnAxisByItsNameOrADirection) {
 }
 
 TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
-  Scene scene = make_scene();
+  Scene scene = make_viewed_scene();
   scene.is_classic = true;
   light_up(scene, {});
   ASSERT_EQ(scene.lights.size(), 1U);
@@ -214,21 +214,21 @@ TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
   light_up(scene, {});
   EXPECT_EQ(scene.lights.size(), 1U);
 
-  Scene ambient = make_scene();
+  Scene ambient = make_viewed_scene();
   ambient.is_classic = true;
   ambient.environment.ambient = vec3(0.5F);
   light_up(ambient, {});
   EXPECT_EQ(ambient.lights.size(), 1U);
   EXPECT_EQ(ambient.environment.ambient, vec3(0.5F)) << "the file's ambient light stays";
 
-  Scene other = make_scene();
+  Scene other = make_viewed_scene();
   EXPECT_TRUE(light_up(other, {}).has_studio_light);
   EXPECT_EQ(other.lights[0].kind, LightKind::kDirectional);
 }
 
 TEST(LightUpTest, TheBackgroundIsTheUsers) {
   const BackgroundChoice environment{.is_environment = true};
-  Scene scene = make_scene();
+  Scene scene = make_viewed_scene();
   const BackgroundChoice linear{.is_linear = true, .color = vec3(0.0F, 0.5F, 1.0F)};
   const AssumedLight assumed = light_up(scene, {.background = linear});
   EXPECT_FALSE(assumed.has_background);
@@ -236,24 +236,24 @@ TEST(LightUpTest, TheBackgroundIsTheUsers) {
   EXPECT_FALSE(scene.environment.backdrop);
   EXPECT_FALSE(scene.environment.shows_sky);
 
-  Scene before_color = make_scene();
+  Scene before_color = make_viewed_scene();
   light_up(before_color, {.background = BackgroundChoice{.color = vec3(0.0F, 0.04045F, 1.0F)}});
   const vec3 light(0.0F, 0.04045F / 12.92F, 1.0F);
   EXPECT_EQ(before_color.environment.backdrop, (Backdrop{light, light})) << "as it is shown";
   EXPECT_EQ(before_color.environment.background, light);
 
-  Scene studio = make_scene();
+  Scene studio = make_viewed_scene();
   light_up(studio, {.background = environment});
   EXPECT_TRUE(studio.environment.shows_sky);
 
   // Without a sky, the environment is ambient light.
-  Scene ambient = make_scene();
+  Scene ambient = make_viewed_scene();
   light_up(ambient, {.light = LightChoice::kHeadlight, .background = environment});
   EXPECT_FALSE(ambient.environment.shows_sky);
   EXPECT_EQ(ambient.environment.background, vec3(0.1F));
 
   // With another background, the file's own sky is no longer shown.
-  Scene sky = make_scene();
+  Scene sky = make_viewed_scene();
   sky.environment.sky = GradientSky{};
   sky.environment.shows_sky = true;
   light_up(sky, {});
@@ -263,7 +263,7 @@ TEST(LightUpTest, TheBackgroundIsTheUsers) {
 }
 
 TEST(ChooseDisplayTest, OptionsComeBeforeTheScene) {
-  Scene scene = make_scene();
+  Scene scene = make_viewed_scene();
   Light lamp;
   lamp.kind = LightKind::kDirectional;
   lamp.diffuse = vec3(201.0F);
@@ -352,7 +352,7 @@ TEST(ViewSetupTest, TheFramingIsTheUsersOrTheScenes) {
   EXPECT_NEAR(assumed.look.x, -0.478F, 1e-3F);
   EXPECT_EQ(camera_of(make_ball(), {.from = Framing::kFront}).look, vec3(0, 0, -1));
   Scene scene = make_ball();
-  scene.cameras = make_scene().cameras;
+  scene.cameras = make_viewed_scene().cameras;
   EXPECT_EQ(camera_of(scene, {}).eye, scene.cameras[0].eye);
   const Camera framed = camera_of(scene, {.from = Framing::kLeft});
   EXPECT_EQ(framed.look, vec3(1, 0, 0)) << "whatever cameras there are";
@@ -387,14 +387,14 @@ TEST(ViewSetupTest, AnEyeLooksAtTheSceneOrAtAPoint) {
   EXPECT_THROW(camera_of(scene, {.eye = eye, .look_at = eye}), UsageError);
   EXPECT_THROW(camera_of(scene, {.eye = dvec3(1e6 + 1.0, 2.0, 3.0)}), UsageError);
 
-  scene.cameras = make_scene().cameras;
+  scene.cameras = make_viewed_scene().cameras;
   EXPECT_EQ(camera_of(scene, {.eye = eye}).look, vec3(0, 0, -1)) << "the camera's";
   expect_looks_at(camera_of(scene, {.look_at = dvec3(1e6 + 1.0, 0, 0)}), dvec3(1, 0, 0));
 }
 
 TEST(ViewSetupTest, ACameraOfTheFileIsTurnedAndZoomed) {
   Scene scene = make_ball();
-  scene.cameras = make_scene().cameras;
+  scene.cameras = make_viewed_scene().cameras;
   const Camera right = camera_of(scene, {.orbit = {.azimuth_deg = 90.0}});
   EXPECT_NEAR(glm::length(right.eye - vec3(2, 0, 3)), 0.0F, 1e-6F) << "around (0, 0, 3)";
   const Camera near = camera_of(scene, {.zoom = 2.0});
@@ -404,7 +404,7 @@ TEST(ViewSetupTest, ACameraOfTheFileIsTurnedAndZoomed) {
 TEST(ViewSetupTest, AShareFramesTheSceneEvenIfItHasACamera) {
   Scene scene = make_ball();
   const Camera framed = camera_of(scene, {.fit = 0.5F});
-  scene.cameras = make_scene().cameras;
+  scene.cameras = make_viewed_scene().cameras;
   EXPECT_EQ(camera_of(scene, {.fit = 0.5F}).eye, framed.eye);
 }
 
@@ -431,7 +431,7 @@ TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
 }
 
 TEST(ViewSetupTest, ACameraOfTheFileShowsAtLeastWhatItShowedItsAuthor) {
-  Scene scene = make_scene();
+  Scene scene = make_viewed_scene();
   scene.cameras[0].aspect_ratio = 2.0F;
   EXPECT_EQ(camera_of(scene, {}, uvec2(200, 100)).yfov, 0.7F);
   EXPECT_EQ(camera_of(scene, {}, uvec2(300, 100)).yfov, 0.7F);

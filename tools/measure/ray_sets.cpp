@@ -10,7 +10,7 @@
 namespace promin::measure {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 /// Distance of a shadow ray's start from its surface, as a fraction of the scene's size.
 constexpr float kShadowOffset = 1e-4F;
 
@@ -23,7 +23,7 @@ float size_of(const world::Scene& scene) {
 
 Ray ray_towards(const dvec3& origin, const dvec3& target) {
   const vec3 start(origin);
-  return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), kInfinity};
+  return {start, 0.0F, vec3(glm::normalize(target - dvec3(start))), kNoEnd};
 }
 
 RaySet make_camera_rays(const Camera& camera, const uvec2& size) {
@@ -40,9 +40,9 @@ RaySet make_camera_rays(const Camera& camera, const uvec2& size) {
     for (uint32_t x = 0; x < size.x; ++x) {
       const dvec3 on_film = pixel * ((x + 0.5 - 0.5 * size.x) * right - (y + 0.5 - 0.5 * size.y) * up);
       if (is_orthographic) {
-        set.rays.push_back({vec3(dvec3(camera.eye) + on_film), camera.near, camera.look, kInfinity});
+        set.rays.push_back({vec3(dvec3(camera.eye) + on_film), camera.near, camera.look, kNoEnd});
       } else {
-        set.rays.push_back({camera.eye, camera.near, vec3(look + on_film), kInfinity});
+        set.rays.push_back({camera.eye, camera.near, vec3(look + on_film), kNoEnd});
       }
     }
   }
@@ -65,7 +65,7 @@ RaySet make_shadow_rays(const RaySet& camera_rays, std::span<const Hit> hits, co
     if (has_place(light.kind)) {
       set.rays.push_back({origin, 0.0F, light.position - origin, 1.0F});
     } else {
-      set.rays.push_back({origin, 0.0F, -light.direction, kInfinity});
+      set.rays.push_back({origin, 0.0F, -light.direction, kNoEnd});
     }
   }
   return set;
@@ -93,7 +93,7 @@ RaySet make_random_rays(const world::Scene& scene, size_t count) {
   set.rays.reserve(count);
   for (size_t i = 0; i < count; ++i) {
     const vec3 origin(point());
-    set.rays.push_back({origin, 0.0F, vec3(point() - dvec3(origin)), kInfinity});
+    set.rays.push_back({origin, 0.0F, vec3(point() - dvec3(origin)), kNoEnd});
   }
   return set;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/json_text.h"
 #include "formats/gltf/checks.h"
 #include "formats/gltf/draco.h"
 #include "formats/gltf/json_lookup.h"
@@ -27,7 +28,7 @@ struct Format {
 
 /// The attributes of vertices and of instances that the loader reads; "indices" stands for a primitive's indices,
 /// "inverseBindMatrices" for those of a skin.
-constexpr Format kFormats[] = {
+constexpr Format kAccessorFormats[] = {
     {"POSITION", "VEC3", kGltfFloat, {}},
     {"POSITION", "VEC3", kGltfByte, {}},
     {"POSITION", "VEC3", kGltfUnsignedByte, {}},
@@ -158,14 +159,14 @@ bool has_format(const json& accessor, std::string_view attribute) {
   const auto& type = accessor["type"].get_ref<const std::string&>();
   const int component_type = accessor["componentType"];
   const bool normalized = accessor.value("normalized", false);
-  return std::ranges::any_of(kFormats, [&](const Format& format) {
+  return std::ranges::any_of(kAccessorFormats, [&](const Format& format) {
     return format.component_type == component_type && format.attribute == attribute && format.type == type &&
            format.normalized.value_or(normalized) == normalized;
   });
 }
 
 std::string say_format(const json& accessor) {
-  return accessor["type"].get<std::string>() + " of " + accessor["componentType"].dump() +
+  return accessor["type"].get<std::string>() + " of " + json_text(accessor["componentType"]) +
          (accessor.value("normalized", false) ? ", normalized" : "");
 }
 
@@ -341,7 +342,8 @@ std::vector<bool> find_plain_accessors(const json& document) {
 
 bool is_read_attribute(std::string_view name) {
   name = first_of_sets(name);
-  return std::any_of(std::begin(kFormats), std::end(kFormats), [&](auto& format) { return format.attribute == name; });
+  return std::any_of(std::begin(kAccessorFormats), std::end(kAccessorFormats),
+                     [&](auto& format) { return format.attribute == name; });
 }
 
 uint64_t component_bytes(int component_type) {

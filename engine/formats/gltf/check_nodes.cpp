@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/json_text.h"
 #include "formats/gltf/checks.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/json_rule.h"
@@ -81,7 +82,7 @@ void make_affine(json& matrix, const std::string& place, bool is_strict, LoadRep
     const auto number = matrix[i].get<double>();
     if (number == wanted) continue;
     if (std::abs(number - wanted) > kMostRounding || is_strict) {
-      report.repair({"gltf.matrix.affine", "the matrix is not affine", matrix[i].dump(),
+      report.repair({"gltf.matrix.affine", "the matrix is not affine", json_text(matrix[i]),
                      place + ".matrix[" + std::to_string(i) + "]", "make its last row 0 0 0 1",
                      "its last row is read as 0 0 0 1"});
     }

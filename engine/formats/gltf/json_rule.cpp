@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/json_text.h"
+
 namespace promin {
 namespace {
 
@@ -18,7 +20,7 @@ using nlohmann::json;
 constexpr double kLargestExact = 0x1p53;
 
 std::string written(double x) {
-  std::string text = json(x).dump();
+  std::string text = json_text(json(x));
   if (text.ends_with(".0")) text.resize(text.size() - 2);
   return text;
 }
@@ -194,7 +196,7 @@ class RuleCheck {
 
   bool expect(bool is_met, const json& value, const Place& place, const std::string& wanted) {
     if (is_met) return true;
-    const std::string got = value.is_number() ? value.dump() : std::string("a JSON ") + value.type_name();
+    const std::string got = value.is_number() ? json_text(value) : std::string("a JSON ") + value.type_name();
     return fail("json.type", "another value", got, "is given where " + wanted + " is expected", place,
                 "write " + wanted);
   }
@@ -225,11 +227,11 @@ class RuleCheck {
     const bool is_rounded = number >= rule_.lo - lo_rounding && number <= rule_.hi + kMostRounding;
     const bool is_kept = rule_.is_clamped || (is_rounded && !is_strict_);
     if (!rule_.is_repaired || !is_kept || rule_.kind == JsonKind::kInteger) {
-      return fail("json.range", "a number", value.dump(), "is out of range", place, cure);
+      return fail("json.range", "a number", json_text(value), "is out of range", place, cure);
     }
     if (!is_rounded || is_strict_) {
-      report_.repair(
-          {"json.range", "a number is out of range", value.dump(), place.text(), cure, "it is clamped to " + range});
+      report_.repair({"json.range", "a number is out of range", json_text(value), place.text(), cure,
+                      "it is clamped to " + range});
     }
     value = std::clamp(number, rule_.lo, rule_.hi);
     return true;
@@ -258,12 +260,12 @@ class RuleCheck {
     const std::string cure = used_.empty() ? "add the array " + target + " that it points into"
                                            : "use an index from 0 to " + std::to_string(used_.size() - 1) +
                                                  ", because " + target + " has no other elements";
-    return fail("json.index", "an index", "index " + value.dump(), "is out of range", place, cure);
+    return fail("json.index", "an index", "index " + json_text(value), "is out of range", place, cure);
   }
 
   bool check_choice(json& value, const Place& place) {
     make_integer(value);
-    const std::string got = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string got = value.is_string() ? value.get<std::string>() : json_text(value);
     std::string_view rest = rule_.target;
     while (!rest.empty()) {
       const size_t end = std::min(rest.find('|'), rest.size());

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr float kLeastConeAngle = 1e-3F;
 
 /// Returns the kind of light for a type that the schema accepts. Throws std::logic_error for any other type.
-LightKind kind_of(const std::string& type) {
+LightKind light_kind_of(const std::string& type) {
   if (type == "directional") return LightKind::kDirectional;
   if (type == "point") return LightKind::kPoint;
   if (type == "spot") return LightKind::kSpot;
@@ -156,7 +156,7 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   Light light;
   const std::string name = node.value("name", "");
   light.name = name.empty() ? source.value("name", "") : name;
-  light.kind = kind_of(source["type"]);
+  light.kind = light_kind_of(source["type"]);
   const dvec3 position(placed.world_from_object[3]);
   if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kMaxCoordinate)) {
     report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "promin omits it"});

@@ -65,7 +65,7 @@ const char* find_wrong_stride(const Stream& stream) {
   return nullptr;
 }
 
-void check_view(const json& document, size_t index, LoadReport& report) {
+void check_packed_view(const json& document, size_t index, LoadReport& report) {
   const json& view = document["bufferViews"][index];
   const json* extension = find_meshopt(view);
   if (extension == nullptr) return;
@@ -94,7 +94,7 @@ void apply_filter(const Stream& stream, Bytes& bytes) {
   if (stream.filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), stream.count, stream.stride);
 }
 
-bool decode(const Stream& stream, std::span<const std::byte> compressed, Bytes& bytes) {
+bool decode_stream(const Stream& stream, std::span<const std::byte> compressed, Bytes& bytes) {
   const auto* source = reinterpret_cast<const unsigned char*>(compressed.data());
   const size_t size = compressed.size();
   if (stream.mode == "TRIANGLES") {
@@ -123,7 +123,7 @@ class Decoder {
                                   (compressed[0] & std::byte{0xF0}) == std::byte{kAttributesHeader};
     if (!has_room_for(stream, is_later_version, index)) return;
     Bytes bytes(stream.decoded_bytes());
-    if (!decode(stream, compressed, bytes)) {
+    if (!decode_stream(stream, compressed, bytes)) {
       return refuse("gltf.meshopt.damaged",
                     is_later_version
                         ? "the compressed bytes are damaged, or their version is unknown to this libmeshoptimizer: " +
@@ -178,7 +178,7 @@ const json* find_meshopt(const json& view) {
 }
 
 void check_gltf_meshopt(const json& document, LoadReport& report) {
-  for (size_t i = 0; i < elements_of(document, "bufferViews").size(); ++i) check_view(document, i, report);
+  for (size_t i = 0; i < elements_of(document, "bufferViews").size(); ++i) check_packed_view(document, i, report);
 }
 
 void decode_gltf_meshopt(GltfDocument& document, const std::vector<bool>& is_needed_view, LoadReport& report) {

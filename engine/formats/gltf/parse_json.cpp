@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/json_text.h"
+
 namespace promin {
 namespace {
 
@@ -62,9 +64,9 @@ std::string bound_numbers(std::string_view text) {
 /// The text is changed only if the parser reports a number beyond the range of double, because very few files have one.
 json parse_bounded(std::string_view text) {
   try {
-    return json::parse(text);
+    return read_json(text);
   } catch (const json::out_of_range&) {
-    return json::parse(bound_numbers(text));
+    return read_json(bound_numbers(text));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/json_text.h"
 #include "formats/gltf/json_lookup.h"
 #include "promin/load_scene.h"
 #include "scene/limits.h"
@@ -61,10 +62,10 @@ class ShapeReader {
     }
     for (const NamedSize& size : sizes_of(shape, at_)) {
       if (is_valid(size)) continue;
-      report_.refuse(
-          "gltf.shape.size",
-          "the " + std::string(size.name) + " of shape " + title_ + " is " + json(size.size).dump() + " in the world",
-          node, "use a scale that keeps it between 1e-22 and 1e15");
+      report_.refuse("gltf.shape.size",
+                     "the " + std::string(size.name) + " of shape " + title_ + " is " + json_text(json(size.size)) +
+                         " in the world",
+                     node, "use a scale that keeps it between 1e-22 and 1e15");
     }
     return shape;
   }

@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 /// Sets the last row of a joint's matrix to 0 0 0 1. In a valid file the row differs from this only by rounding.
-void make_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
+void make_joint_affine(dmat4& matrix, const std::string& place, LoadReport& report) {
   for (int column = 0; column < 4; ++column) {
     const double wanted = column == 3 ? 1.0 : 0.0;
     double& number = matrix[column][3];
@@ -49,7 +49,7 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
     for (int i = 0; i < 16; ++i) {
       matrices[joint][i / 4][i % 4] = static_cast<double>(numbers[16 * joint + static_cast<size_t>(i)]);
     }
-    make_affine(matrices[joint], place + ", element " + std::to_string(joint), report);
+    make_joint_affine(matrices[joint], place + ", element " + std::to_string(joint), report);
   }
   return matrices;
 }

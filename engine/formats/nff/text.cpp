@@ -22,7 +22,7 @@ namespace {
 /// up to 1e15.
 constexpr double kMostFactor = 1e7;
 /// The smallest sine of the angle between view direction and up vector. With a smaller angle the view has no top.
-constexpr double kLeastSine = 1e-6;
+constexpr double kLeastViewSine = 1e-6;
 
 /// The words of a view statement.
 constexpr std::string_view kViewParts[] = {"from", "at", "up", "angle", "hither", "resolution"};
@@ -273,7 +273,7 @@ class NffParser {
     const dvec3 look = glm::normalize(*at - *from);
     const dvec3 side = glm::cross(look, glm::normalize(*up));
     // The comparison is written so that NaN fails too; coinciding points give NaN.
-    if (!(glm::length(side) >= kLeastSine)) {
+    if (!(glm::length(side) >= kLeastViewSine)) {
       return leave_out("nff.view.direction",
                        "has equal points from and at, or a vector up that is 0 or parallel to the view");
     }

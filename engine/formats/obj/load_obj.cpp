@@ -169,7 +169,7 @@ std::vector<uint32_t> materials_of(const ObjText& text, const ObjGroup& group, c
   return materials;
 }
 
-bool has_texture(const Material& material) {
+bool shows_texture(const Material& material) {
   bool has_any = false;
   for_each_slot(material, [&](const TextureSlot& slot, const char* /*name*/, ImageUse /*use*/) {
     has_any = has_any || slot.exists();
@@ -209,7 +209,7 @@ Scene load_obj(const LoadOptions& /*options*/, LoadReport& report) {
   }
 
   std::vector<bool> is_textured;
-  for (const Material& material : scene.materials) is_textured.push_back(has_texture(material));
+  for (const Material& material : scene.materials) is_textured.push_back(shows_texture(material));
   MeshBuilder builder(text, report);
   for (const ObjGroup& group : text.groups) {
     std::vector<uint32_t> materials = materials_of(text, group, indices, default_material);

@@ -142,7 +142,7 @@ void take_alpha(const MtlMaterial& source, Material& material, LoadReport& repor
   if (material.alpha < 1.0F || has_map) material.alpha_mode = AlphaMode::kBlend;
 }
 
-MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& textures) {
+MetallicRoughness metallic_roughness_of_mtl(const MtlMaterial& source, ObjTextures& textures) {
   // If there is a map, it alone determines the value.
   const auto share = [&](const char* keyword, double otherwise) {
     const bool has_map = source.find_map(std::string("map_") + keyword) != nullptr;
@@ -160,7 +160,7 @@ MetallicRoughness metallic_roughness_of(const MtlMaterial& source, ObjTextures& 
   return model;
 }
 
-Phong phong_of(const MtlMaterial& source, ObjTextures& textures, LoadReport& report) {
+Phong phong_of_mtl(const MtlMaterial& source, ObjTextures& textures, LoadReport& report) {
   const double illum = illum_of(source);
   Phong phong;
   phong.diffuse = color_of(source, "Kd", 0.8);
@@ -201,7 +201,7 @@ void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& ma
   material.phong().ambient = material.phong().diffuse = vec3(0.0F);
 }
 
-void warn_about_what_is_ignored(const MtlMaterial& source, LoadReport& report) {
+void warn_about_ignored_lines(const MtlMaterial& source, LoadReport& report) {
   const std::string title = "material " + quote(source.name);
   if (opacity_of(source) == 1.0F && (illum_of(source) == 4.0 || illum_of(source) == 9.0)) {
     report.warn(title + " is glass (illum " + std::to_string(static_cast<int>(illum_of(source))) +
@@ -250,7 +250,7 @@ std::map<std::string, MtlMaterial> read_mtl_files(const std::vector<std::string>
   for (const std::string& library : libraries) {
     for (const std::string& file : find_library(library, report)) {
       for (MtlMaterial& source : read_mtl_file(file, report)) {
-        warn_about_what_is_ignored(source, report);
+        warn_about_ignored_lines(source, report);
         materials.emplace(source.name, std::move(source));
       }
     }
@@ -269,12 +269,12 @@ void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& s
   take_alpha(source, material, report);
   if (is_metallic_roughness(source)) {
     warn_of_unused_maps(source, {"map_Ks"}, report);
-    material.model = metallic_roughness_of(source, textures);
+    material.model = metallic_roughness_of_mtl(source, textures);
   } else if (illum_of(source) == 0.0) {
     make_colored(source, textures, material, report);
     return;
   } else {
-    material.model = phong_of(source, textures, report);
+    material.model = phong_of_mtl(source, textures, report);
   }
   material.emissive = color_of(source, "Ke", 0.0);
   material.emissive_texture = textures.read_slot(source.find_map("map_Ke"), ImageUse::kColor);

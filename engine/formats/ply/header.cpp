@@ -14,7 +14,7 @@ namespace {
 constexpr size_t kMaxNames = 1000;
 constexpr std::string_view kEnd = "end_header";
 constexpr std::string_view kTextureFile = "TextureFile";
-const std::string kExportAgain = "export the file again";
+const std::string kExportPly = "export the file again";
 
 struct TypeName {
   std::string_view name;
@@ -95,7 +95,7 @@ class HeaderParser {
       }
       read_statement(lines_.line());
     }
-    refuse("ply.header.short", "the header does not end", kExportAgain);
+    refuse("ply.header.short", "the header does not end", kExportPly);
     return {};
   }
 
@@ -107,7 +107,7 @@ class HeaderParser {
   void finish() {
     out_.size_bytes = lines_.next();
     out_.line_count = lines_.number();
-    if (!has_format_) refuse("ply.header.format", "the header does not contain the format", kExportAgain);
+    if (!has_format_) refuse("ply.header.format", "the header does not contain the format", kExportPly);
     check_counts(file_.size() - out_.size_bytes);
   }
 
@@ -154,14 +154,14 @@ class HeaderParser {
     if (!count || *count < 0)
       refuse("ply.header.count", quote(word) + " is not a number of rows", "write \"element NAME COUNT\"");
     if (find_named(out_.elements, name) != nullptr)
-      refuse("ply.header.twice", "there are two elements " + quote(name), kExportAgain);
+      refuse("ply.header.twice", "there are two elements " + quote(name), kExportPly);
     if (!has_room(out_.elements, "elements")) return;
     out_.elements.push_back(
         {.name = std::string(name), .row_count = static_cast<uint64_t>(std::max(count.value_or(0), int64_t{0}))});
   }
 
   void read_property(std::string_view line) {
-    if (out_.elements.empty()) return refuse("ply.header.order", "a property comes before any element", kExportAgain);
+    if (out_.elements.empty()) return refuse("ply.header.order", "a property comes before any element", kExportPly);
     PlyProperty property;
     std::string_view type = take_word(line);
     property.is_list = type == "list";
@@ -173,7 +173,7 @@ class HeaderParser {
     property.name = take_word(line);
     std::vector<PlyProperty>& properties = out_.elements.back().properties;
     if (find_named(properties, property.name) != nullptr) {
-      refuse("ply.header.twice", "there are two properties " + quote(property.name), kExportAgain);
+      refuse("ply.header.twice", "there are two properties " + quote(property.name), kExportPly);
     }
     if (has_room(properties, "properties")) properties.push_back(property);
   }
@@ -183,7 +183,7 @@ class HeaderParser {
   bool has_room(const std::vector<Named>& all, const std::string& what) {
     if (all.size() < kMaxNames) return true;
     report_.refuse("ply.header.large", "the header has more than " + std::to_string(kMaxNames) + " " + what, "",
-                   kExportAgain);
+                   kExportPly);
     return false;
   }
 

@@ -22,7 +22,7 @@
 namespace promin {
 namespace {
 
-constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
 bool has_property(const PlyElement& element, std::string_view name) {
   return std::ranges::find(element.properties, name, &PlyProperty::name) != element.properties.end();
@@ -38,7 +38,7 @@ bool has_uvs(const PlyElement& element) {
   return has("s") || has("u") || has("texture_u") || has("texture_s") || has("texcoord");
 }
 
-void warn_about_what_is_ignored(const PlyHeader& header, LoadReport& report) {
+void warn_about_ignored_elements(const PlyHeader& header, LoadReport& report) {
   bool are_uvs_there = false;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex" || element.name == "face") {
@@ -75,7 +75,7 @@ void check_elements(const PlyHeader& header, LoadReport& report) {
   if (!has_property(*vertices, "x") || !has_property(*vertices, "y") || !has_property(*vertices, "z")) {
     report.refuse("ply.vertices.missing", "the vertices have no x, y and z", "", "export the mesh with positions");
   }
-  if (vertices->row_count >= kUnused)
+  if (vertices->row_count >= kNone)
     report.refuse("ply.vertices.many", "the file has too many vertices", "", "divide the mesh into several files");
   if (vertices->row_count == 0 || lists_vertices(header.find("face")) || lists_vertices(header.find("tristrips")))
     return;
@@ -86,7 +86,7 @@ void check_elements(const PlyHeader& header, LoadReport& report) {
 /// Makes a mesh from the content of a file.
 class MeshMaker {
  public:
-  /// `material_of_texture` has the material of the faces with each texture file; kUnused if its picture cannot be
+  /// `material_of_texture` has the material of the faces with each texture file; kNone if its picture cannot be
   /// shown.
   MeshMaker(const PlyBody& body, const std::vector<uint32_t>& material_of_texture, LoadReport& report)
       : body_(body),
@@ -99,7 +99,7 @@ class MeshMaker {
 
   Mesh make() {
     if (is_split_) {
-      newest_vertex_.resize(body_.positions.size(), kUnused);
+      newest_vertex_.resize(body_.positions.size(), kNone);
     } else {
       add_vertices();
     }
@@ -117,21 +117,20 @@ class MeshMaker {
   static constexpr int kMostTries = 32;
 
   bool shows_textures() const {
-    return std::ranges::any_of(material_of_texture_, [](uint32_t material) { return material != kUnused; });
+    return std::ranges::any_of(material_of_texture_, [](uint32_t material) { return material != kNone; });
   }
 
   /// Adds the vertices that faces use, in the file's order. Unused vertices may have any content. Vertices without
   /// normals are added later, with their triangles.
   void add_vertices() {
-    new_index_.resize(body_.positions.size(), kUnused);
+    new_index_.resize(body_.positions.size(), kNone);
     for (const uint32_t corner : body_.corners) new_index_[corner] = 0;
     mesh_.positions.reserve(body_.positions.size());
     mesh_.normals.reserve(body_.normals.size());
     mesh_.colors.reserve(body_.colors.size());
     if (has_uvs_) mesh_.uvs.reserve(body_.uvs.size());
     for (uint32_t vertex = 0; vertex < new_index_.size(); ++vertex) {
-      if (new_index_[vertex] == kUnused || !is_in_range(dvec3(body_.positions[vertex])) || !has_normal(vertex))
-        continue;
+      if (new_index_[vertex] == kNone || !is_in_range(dvec3(body_.positions[vertex])) || !has_normal(vertex)) continue;
       new_index_[vertex] = add_vertex(look_of(vertex, 0));
       if (has_normals_) mesh_.normals.push_back(body_.normals[vertex]);
     }
@@ -168,14 +167,14 @@ class MeshMaker {
     mesh_.positions.push_back(body_.positions[look.vertex]);
     if (has_colors_) mesh_.colors.push_back(look.color);
     if (has_uvs_) mesh_.uvs.push_back(look.uv);
-    if (is_split_) previous_vertex_.push_back(kUnused);
+    if (is_split_) previous_vertex_.push_back(kNone);
     return static_cast<uint32_t>(mesh_.positions.size() - 1);
   }
 
   /// Returns the vertex with these attributes. The vertices at one position of the file form a chain, the newest first.
   uint32_t find_or_add_vertex(const Look& look) {
     uint32_t known = newest_vertex_[look.vertex];
-    for (int i = 0; known != kUnused && i < kMostTries; known = previous_vertex_[known], ++i) {
+    for (int i = 0; known != kNone && i < kMostTries; known = previous_vertex_[known], ++i) {
       const bool is_same =
           (!has_colors_ || mesh_.colors[known] == look.color) && (!has_uvs_ || mesh_.uvs[known] == look.uv);
       if (is_same) return known;
@@ -211,10 +210,10 @@ class MeshMaker {
     if (has_uvs_) mesh_.triangle_materials.resize(mesh_.triangles.size(), material_of_polygon());
   }
 
-  /// Returns the material of the current polygon; kUnused if the polygon shows no picture.
+  /// Returns the material of the current polygon; kNone if the polygon shows no picture.
   uint32_t material_of_polygon() const {
     const uint32_t texture = body_.face_textures.empty() ? 0 : body_.face_textures[polygon_];
-    return texture == PlyBody::kNoTexture ? kUnused : material_of_texture_[texture];
+    return texture == PlyBody::kNoTexture ? kNone : material_of_texture_[texture];
   }
 
   /// Adds a triangle. `places` are the positions of its corners in the polygon.
@@ -271,7 +270,7 @@ class MeshMaker {
 };
 
 /// Adds a material for each texture file whose picture can be shown, with its image and texture. Returns the index of
-/// each file's material; kUnused for a file without a material.
+/// each file's material; kNone for a file without a material.
 std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool takes_texels, Scene& scene,
                                    LoadReport& report) {
   std::vector<PictureSource> sources;
@@ -291,7 +290,7 @@ std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool t
   std::vector<uint32_t> materials;
   for (const PictureSource& source : sources) {
     if (source.problem) {
-      materials.push_back(kUnused);
+      materials.push_back(kNone);
       continue;
     }
     materials.push_back(static_cast<uint32_t>(scene.materials.size()));
@@ -312,7 +311,7 @@ std::vector<uint32_t> add_textures(const std::vector<std::string>& files, bool t
 void add_mesh(Mesh mesh, Scene& scene) {
   const auto grey = static_cast<uint32_t>(scene.materials.size());
   std::vector<uint32_t>& materials = mesh.triangle_materials;
-  std::ranges::replace(materials, kUnused, grey);
+  std::ranges::replace(materials, kNone, grey);
   if (materials.empty() || std::ranges::find(materials, grey) != materials.end()) {
     scene.materials.emplace_back().name = "default";
   }
@@ -331,7 +330,7 @@ Scene load_ply(const LoadOptions& options, LoadReport& report) {
   report.throw_if_refused();
   check_elements(header, report);
   report.throw_if_refused();
-  warn_about_what_is_ignored(header, report);
+  warn_about_ignored_elements(header, report);
   if (has_rounded_coordinates(header)) report.note_rounded_coordinates();
   const PlyBody body = read_ply_body(file, header, report);
   report.throw_if_refused();

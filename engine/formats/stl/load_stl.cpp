@@ -27,8 +27,8 @@ static_assert(std::endian::native == std::endian::little, "the numbers of the fi
 
 // Layout of a binary file: a header with any content, the number of facets, and then the facets. A facet has a normal,
 // three corners and two bytes.
-constexpr size_t kHeaderBytes = 80;
-constexpr size_t kFirstFacet = kHeaderBytes + 4;
+constexpr size_t kStlHeaderBytes = 80;
+constexpr size_t kFirstFacet = kStlHeaderBytes + 4;
 constexpr size_t kFacetBytes = 50;
 constexpr size_t kNormalBytes = 12;
 constexpr size_t kCornersBytes = 36;
@@ -41,7 +41,7 @@ Number read_number(std::string_view file, size_t offset) {
 }
 
 uint64_t facet_count(std::string_view file) {
-  return read_number<uint32_t>(file, kHeaderBytes);
+  return read_number<uint32_t>(file, kStlHeaderBytes);
 }
 
 bool has_size_of_binary(std::string_view file) {
@@ -69,9 +69,9 @@ class FacetColors {
       has_codes_ = has_codes_ || code != 0;
       has_marks_ = has_marks_ || (code & kMark) != 0;
     }
-    const std::string_view header = file.substr(0, kHeaderBytes);
+    const std::string_view header = file.substr(0, kStlHeaderBytes);
     const size_t mark = header.find(kDefault);
-    is_magics_ = mark != std::string_view::npos && mark + kDefault.size() + 3 <= kHeaderBytes;
+    is_magics_ = mark != std::string_view::npos && mark + kDefault.size() + 3 <= kStlHeaderBytes;
     if (!is_magics_) return;
     for (int i = 0; i < 3; ++i) {
       const auto code = static_cast<uint8_t>(header[mark + kDefault.size() + static_cast<size_t>(i)]);

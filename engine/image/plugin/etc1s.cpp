@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::span<const unsigned char>;
 
-[[noreturn]] void refuse() {
+[[noreturn]] void refuse_data() {
   throw std::runtime_error("its BasisLZ data is damaged");
 }
 
@@ -46,7 +46,7 @@ class PrefixCode {
       first += counts_[length];
       place += counts_[length];
     }
-    refuse();
+    refuse_data();
   }
 
  private:
@@ -60,7 +60,7 @@ PrefixCode read_code(BitReader& bits) {
   const uint32_t symbol_count = bits.take(14);
   if (symbol_count == 0) return PrefixCode({});
   const uint32_t length_count = bits.take(5);
-  if (length_count > kOrder.size()) refuse();
+  if (length_count > kOrder.size()) refuse_data();
   std::vector<uint8_t> small(kOrder.size());
   for (uint32_t i = 0; i < length_count; ++i) small[kOrder[i]] = static_cast<uint8_t>(bits.take(3));
   const PrefixCode code_of_lengths(small);
@@ -72,7 +72,7 @@ PrefixCode read_code(BitReader& bits) {
       continue;
     }
     const bool is_repeat = symbol >= 19;
-    if (is_repeat && (lengths.empty() || lengths.back() == 0)) refuse();
+    if (is_repeat && (lengths.empty() || lengths.back() == 0)) refuse_data();
     const uint8_t length = is_repeat ? lengths.back() : 0;
     const uint32_t run = symbol == 17   ? 3 + bits.take(3)
                          : symbol == 18 ? 11 + bits.take(7)
@@ -80,7 +80,7 @@ PrefixCode read_code(BitReader& bits) {
                                         : 7 + bits.take(7);
     lengths.insert(lengths.end(), run, length);
   }
-  if (lengths.size() > symbol_count) refuse();
+  if (lengths.size() > symbol_count) refuse_data();
   return PrefixCode(lengths);
 }
 
@@ -91,7 +91,7 @@ uint32_t take_chunks(BitReader& bits, uint32_t chunk_bits) {
     number |= bits.take(chunk_bits) << shift;
     if (bits.take(1) == 0) return number;
   }
-  refuse();
+  refuse_data();
 }
 
 /// The four colours of a block, indexed by selector.
@@ -143,7 +143,7 @@ std::vector<Palette> read_palettes(Bytes bytes, uint32_t count) {
 std::vector<Selectors> read_selectors(Bytes bytes, uint32_t count) {
   BitReader bits(bytes);
   // These bits request codebooks outside the file. No version of the format has them.
-  if (bits.take(2) != 0) refuse();
+  if (bits.take(2) != 0) refuse_data();
   const bool is_raw = bits.take(1) != 0;
   const PrefixCode code = is_raw ? PrefixCode({}) : read_code(bits);
   Selectors rows{};
@@ -168,7 +168,7 @@ class History {
     if (next_ == values_.size()) next_ = values_.size() / 2;
   }
   uint32_t use(size_t place) {
-    if (place >= values_.size()) refuse();
+    if (place >= values_.size()) refuse_data();
     const uint32_t value = values_[place];
     std::swap(values_[place / 2], values_[place]);
     return value;
@@ -213,7 +213,7 @@ class SliceReader {
   std::pair<uint32_t, uint32_t> read(uint32_t row, uint32_t column) {
     const uint32_t palette = read_palette(row, column);
     const uint32_t selectors = read_selectors();
-    if (palette >= palette_count_ || selectors >= selector_count_) refuse();
+    if (palette >= palette_count_ || selectors >= selector_count_) refuse_data();
     return {palette, selectors};
   }
 
@@ -245,7 +245,8 @@ class SliceReader {
     }
     const uint32_t from = prediction_ & 3;
     prediction_ >>= 2;
-    if ((from == 0 && column == 0) || (from == 1 && row == 0) || (from == 2 && (row == 0 || column == 0))) refuse();
+    if ((from == 0 && column == 0) || (from == 1 && row == 0) || (from == 2 && (row == 0 || column == 0)))
+      refuse_data();
     const uint32_t above_left = above_left_;
     above_left_ = above_[column];
     if (from == 1) last_palette_ = above_[column];
@@ -293,7 +294,7 @@ class SliceReader {
 };
 
 Bytes part_of(Bytes bytes, uint64_t place, uint64_t count) {
-  if (place > bytes.size() || count > bytes.size() - place) refuse();
+  if (place > bytes.size() || count > bytes.size() - place) refuse_data();
   return bytes.subspan(place, count);
 }
 
@@ -316,7 +317,7 @@ struct Globals {
     }
     // The image descriptions of all levels come before the codebooks, which are the rest of the data.
     const uint64_t codebook_bytes = uint64_t{lengths[0]} + lengths[1] + lengths[2] + lengths[3];
-    if (bytes.size() < kHeadBytes + kImageBytes + codebook_bytes) refuse();
+    if (bytes.size() < kHeadBytes + kImageBytes + codebook_bytes) refuse_data();
     const uint64_t at = bytes.size() - codebook_bytes;
     palettes = read_palettes(part_of(bytes, at, lengths[0]), palette_count);
     selectors = read_selectors(part_of(bytes, at + lengths[0], lengths[1]), selector_count);

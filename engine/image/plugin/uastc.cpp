@@ -12,7 +12,7 @@
 
 namespace {
 
-[[noreturn]] void refuse() {
+[[noreturn]] void refuse_block() {
   throw std::runtime_error("a UASTC block is damaged");
 }
 
@@ -94,12 +94,12 @@ size_t read_mode(BitReader& bits) {
     const auto* const mode = std::ranges::find_if(kModes, is_it);
     if (mode != kModes.end()) return static_cast<size_t>(mode - kModes.begin());
   }
-  refuse();
+  refuse_block();
 }
 
 template <typename Patterns>
 Subsets unpack_pattern(const Patterns& patterns, uint32_t index, uint32_t bits_of_texel) {
-  if (index >= patterns.size()) refuse();
+  if (index >= patterns.size()) refuse_block();
   Subsets subsets{};
   const uint32_t mask = (1U << bits_of_texel) - 1;
   for (uint32_t i = 0; i < kTexels; ++i) {

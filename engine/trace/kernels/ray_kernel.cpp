@@ -33,10 +33,6 @@ vk::DeviceSize hits_size(size_t record_count) {
   return sizeof(layout::Dispatch) + record_count * sizeof(layout::HitRecord);
 }
 
-bool asks_for_crossings(HitQuery query) {
-  return query == HitQuery::kCount || query == HitQuery::kAll;
-}
-
 std::span<const uint32_t> spirv_of(const RayKernelOptions& options) {
   if (!options.spirv.empty()) return options.spirv;
   return asks_for_crossings(options.query) ? crossings_spirv() : cast_spirv();

@@ -26,6 +26,11 @@ std::span<const uint32_t> cast_spirv();
 /// Returns the SPIR-V of shaders/cast/crossings.comp, which makes counts and lists.
 std::span<const uint32_t> crossings_spirv();
 
+/// Returns whether the query counts or lists all intersections of a ray.
+inline bool asks_for_crossings(HitQuery query) {
+  return query == HitQuery::kCount || query == HitQuery::kAll;
+}
+
 struct RayKernelOptions {
   /// SPIR-V of another kernel with the bindings of shaders/cast/cast_bindings.glsl, for tests and measurements. Its
   /// workgroups must take their work from shaders/shared/group_rows.glsl. Empty for promin's own kernel of the query.

@@ -51,10 +51,6 @@ struct OrderedRays {
   }
 };
 
-bool asks_for_crossings(HitQuery query) {
-  return query == HitQuery::kCount || query == HitQuery::kAll;
-}
-
 /// Returns a callback that converts the progress of `count` rays from `first` on to a fraction of all rays.
 ProgressCallback part_of(const ProgressCallback& progress, size_t first, size_t count, size_t all) {
   if (!progress) return {};

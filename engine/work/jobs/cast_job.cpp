@@ -12,6 +12,7 @@
 
 #include "core/count_of.h"
 #include "core/divide_up.h"
+#include "core/json_text.h"
 #include "promin/caster.h"
 #include "promin/error.h"
 #include "rays/npy.h"
@@ -32,7 +33,7 @@ using Json = nlohmann::ordered_json;
 /// Names of the queries, indexed by HitQuery.
 constexpr std::array<std::string_view, 4> kQueryNames = {"nearest", "any", "count", "all"};
 
-std::string_view name_of(HitQuery query) {
+std::string_view name_of_query(HitQuery query) {
   return kQueryNames[static_cast<size_t>(query)];
 }
 
@@ -72,7 +73,7 @@ std::vector<RayRange> cut_rays(uint64_t count, const CastSpec& options) {
   return ranges;
 }
 
-std::vector<std::string> name_pieces(const std::vector<RayRange>& ranges) {
+std::vector<std::string> name_ray_pieces(const std::vector<RayRange>& ranges) {
   std::vector<std::string> names;
   for (const RayRange& range : ranges) names.push_back(fmt::format("r{:012}-{:012}", range.begin, range.end));
   return names;
@@ -88,10 +89,10 @@ struct HitPiece {
 
 std::string encode(const HitPiece& piece) {
   const Json json = {{"driver", piece.driver},
-                     {"query", name_of(piece.query)},
+                     {"query", name_of_query(piece.query)},
                      {"first_ray", piece.rays.begin},
                      {"rays", piece.rays.count()}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 /// Reads the description of a piece and checks its bytes against it. Throws InputError.
@@ -100,7 +101,7 @@ HitPiece decode(const jobs::Content& content, const fs::path& file) {
       {"job.piece.kind", "the piece does not contain hits", file.string(), "remove it and run the job again"});
   HitPiece piece;
   try {
-    const Json json = Json::parse(content.description);
+    const Json json = read_ordered_json(content.description);
     const auto query = std::ranges::find(kQueryNames, json.at("query").get<std::string>());
     if (query == kQueryNames.end()) throw bad;
     piece.query = static_cast<HitQuery>(query - kQueryNames.begin());
@@ -134,7 +135,7 @@ class RayJob : public PlannedJob {
     manifest_.options.emplace_back("rays", std::to_string(rays_->count()));
     add_scene_files(manifest_, sources);
     manifest_.files.push_back(rays_->describe());
-    manifest_.pieces = name_pieces(ranges_);
+    manifest_.pieces = name_ray_pieces(ranges_);
     spec_ = write_spec_of_pieces(options);
   }
 

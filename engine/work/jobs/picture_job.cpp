@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/divide_up.h"
+#include "core/json_text.h"
 #include "promin/error.h"
 #include "work/jobs/missing_pieces.h"
 #include "work/pictures/frame_plan.h"
@@ -37,7 +38,7 @@ Json json_of(const PixelWindow& window) {
   return {window.lo.x, window.lo.y, window.hi.x, window.hi.y};
 }
 
-PixelWindow window_of(const Json& json) {
+PixelWindow read_window(const Json& json) {
   return {uvec2(json.at(0).get<uint32_t>(), json.at(1).get<uint32_t>()),
           uvec2(json.at(2).get<uint32_t>(), json.at(3).get<uint32_t>())};
 }
@@ -324,7 +325,7 @@ jobs::Content encode_part(const PicturePart& part) {
                {"metadata", part.metadata}};
   if (part.frame) json["frame"] = *part.frame;
   if (part.error) json["error"] = json_of(*part.error);
-  jobs::Content content{json.dump(-1, ' ', false, Json::error_handler_t::replace), {}};
+  jobs::Content content{json_text(json), {}};
   const auto append = [&](const auto& values) {
     const auto bytes = std::as_bytes(std::span(values));
     content.bytes.insert(content.bytes.end(), bytes.begin(), bytes.end());
@@ -339,11 +340,11 @@ PicturePart decode_part(const jobs::Content& content, const fs::path& file) {
       {"job.piece.kind", "the piece is not part of a picture", file.string(), "remove it and run the job again"});
   PicturePart part;
   try {
-    const Json json = Json::parse(content.description);
+    const Json json = read_ordered_json(content.description);
     if (json.contains("frame")) part.frame = json.at("frame").get<uint32_t>();
     part.full_size = uvec2(json.at("full_size").at(0).get<uint32_t>(), json.at("full_size").at(1).get<uint32_t>());
-    part.window = window_of(json.at("window"));
-    part.part = window_of(json.at("part"));
+    part.window = read_window(json.at("window"));
+    part.part = read_window(json.at("part"));
     part.display.exposure_ev = json.at("exposure_ev");
     part.display.tone_mapping = choice_of<ToneMapping>(json.at("tone_mapping"), tone_mapping_names().size());
     part.display.dithers = json.at("dithers");

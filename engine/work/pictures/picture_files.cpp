@@ -23,21 +23,21 @@ constexpr uint32_t kLeastRows = 8;
 
 // Returns an AOV's channels. The overloads differ in the type of its values, which are moved.
 
-void add_channels(const std::string& name, std::string_view /*components*/, std::vector<uint32_t> values,
-                  std::vector<Channel>& channels) {
+void add_aov_channels(const std::string& name, std::string_view /*components*/, std::vector<uint32_t> values,
+                      std::vector<Channel>& channels) {
   channels.push_back({name, true, std::move(values)});
 }
 
-void add_channels(const std::string& name, std::string_view /*components*/, std::vector<float> values,
-                  std::vector<Channel>& channels) {
+void add_aov_channels(const std::string& name, std::string_view /*components*/, std::vector<float> values,
+                      std::vector<Channel>& channels) {
   Channel channel{name, false, std::vector<uint32_t>(values.size())};
   std::ranges::transform(values, channel.values.begin(), [](float value) { return std::bit_cast<uint32_t>(value); });
   channels.push_back(std::move(channel));
 }
 
 template <typename Vector>
-void add_channels(const std::string& name, std::string_view components, std::vector<Vector> values,
-                  std::vector<Channel>& channels) {
+void add_aov_channels(const std::string& name, std::string_view components, std::vector<Vector> values,
+                      std::vector<Channel>& channels) {
   for (int axis = 0; axis < Vector::length(); ++axis) {
     Channel channel{name + "." + components[static_cast<size_t>(axis)], false, std::vector<uint32_t>(values.size())};
     std::ranges::transform(values, channel.values.begin(),
@@ -51,7 +51,7 @@ void add_channels(const std::string& name, std::string_view components, std::vec
 std::vector<Channel> make_channels(const Scene& scene, Aovs aovs, const AovSet& choice, bool hides_unlit) {
   std::vector<Channel> channels;
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
-  if (choice.FIELD) add_channels(CHANNEL, COMPONENTS, std::move(aovs.FIELD), channels);
+  if (choice.FIELD) add_aov_channels(CHANNEL, COMPONENTS, std::move(aovs.FIELD), channels);
 #include "promin/kinds/aovs.def"
   for (Channel& channel : channels) channel.is_hidden = hides_unlit && channel.name.starts_with("unlit.");
   if (choice.cryptomatte) {

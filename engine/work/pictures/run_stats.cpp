@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "core/json_text.h"
 #include "image/picture_endings.h"
 
 namespace promin::work {
@@ -170,7 +171,7 @@ std::string to_json(const RunStats& stats) {
   }
   if (stats.frames.empty() && !stats.errors.empty()) json["error"] = json_of_error(stats, 0);
   if (stats.view) json["view"] = json_of_view(*stats.view, stats.display);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace promin::work

@@ -20,6 +20,7 @@
 #include <type_traits>
 
 #include "core/file.h"
+#include "core/json_text.h"
 #include "core/suggest.h"
 #include "core/utf8.h"
 #include "formats/gltf/parse_json.h"
@@ -46,7 +47,7 @@ struct WrongValue {
 };
 
 std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 [[noreturn]] void refuse_value(const std::string& takes, const Json& value) {
@@ -56,7 +57,7 @@ std::string text_of(const Json& json) {
 /// Returns a number with the fewest digits that reproduce it.
 template <typename Number>
 Json write_number(Number value) {
-  return Json::parse(fmt::format("{}", value));
+  return read_ordered_json(fmt::format("{}", value));
 }
 
 /// Reads a number in a range. The range applies to the number as stored, because the shortest digits of a float
