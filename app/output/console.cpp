@@ -10,7 +10,7 @@
 
 #include "core/stopwatch.h"
 #include "core/utf8.h"
-#include "output/run_program.h"
+#include "output/message_of.h"
 #include "promin/error.h"
 
 namespace promin::app {

@@ -20,57 +20,13 @@
 #include "commands/manual.h"
 #include "core/address_space.h"
 #include "core/parallel.h"
+#include "output/message_of.h"
 #include "promin/error.h"
 
 namespace promin::app {
 namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kWrongUsage = 2, kBadInput = 3, kNoDevice = 4, kDiffers = 5 };
-
-/// The library's words for a setting, which do not name options, and the command line's words that replace them.
-struct Wording {
-  Setting setting;
-  std::string_view words;
-  std::string_view with_option;
-};
-
-constexpr Wording kWordings[] = {{Setting::kDepth, "use a smaller depth", "lower --max-depth"},
-                                 {Setting::kDevice, "another device", "another --device"},
-                                 {Setting::kBuilder, "the builder", "--builder"},
-                                 {Setting::kTextureMemory, "the memory for textures", "--texture-memory"}};
-
-std::string_view option_of(Setting setting) {
-  switch (setting) {
-    case Setting::kNone:
-      return "";
-    case Setting::kDepth:
-      return "--max-depth";
-    case Setting::kDevice:
-      return "--device";
-    case Setting::kBuilder:
-      return "--builder";
-    case Setting::kTextureMemory:
-      return "--texture-memory";
-  }
-  return "";
-}
-
-/// Replaces the words about the problem's setting by the command line's option. If none of the library's words occurs,
-/// the option is appended to the cure, so that it is always named.
-void name_option(Problem& problem) {
-  if (problem.setting == Setting::kNone) return;
-  bool is_named = false;
-  for (const Wording& wording : kWordings) {
-    if (wording.setting != problem.setting) continue;
-    for (std::string* text : {&problem.where, &problem.cure}) {
-      const size_t at = text->find(wording.words);
-      if (at == std::string::npos) continue;
-      text->replace(at, wording.words.size(), wording.with_option);
-      is_named = true;
-    }
-  }
-  if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
-}
 
 /// Returns a problem for a system error that has no sentence of its own.
 Problem explain(const std::system_error& error) {
@@ -111,17 +67,6 @@ void print_manual(const CLI::App& program, const std::string& kind) {
 }
 
 }  // namespace
-
-std::string message_of(Problem problem) {
-  name_option(problem);
-  return problem.sentence();
-}
-
-std::string message_of(const Error& error) {
-  std::vector<Problem> problems = error.problems();
-  for (Problem& problem : problems) name_option(problem);
-  return Error(problems).what();
-}
 
 void run_command(const std::string& name, const std::string& help,
                  std::initializer_list<Command (*)(CLI::App& program)> add_commands, int argc,

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "options/arguments.h"
-#include "promin/error.h"
 
 namespace promin::app {
 
@@ -19,9 +18,5 @@ int run_program(const std::string& name, const std::string& help,
 /// Reads the command line and runs the command. Throws the command's exceptions, and UsageError if there is no command.
 void run_command(const std::string& name, const std::string& help,
                  std::initializer_list<Command (*)(CLI::App& program)> add_commands, int argc, const char* const* argv);
-
-/// Returns the sentence of a problem or error, with this command line's options in place of the library's settings.
-std::string message_of(Problem problem);
-std::string message_of(const Error& error);
 
 }  // namespace promin::app

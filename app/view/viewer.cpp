@@ -12,7 +12,7 @@
 
 #include "output/deferred_signals.h"
 #include "output/explanation.h"
-#include "output/run_program.h"
+#include "output/message_of.h"
 #include "promin/error.h"
 #include "promin/image.h"
 #include "work/pictures/view_setup.h"

@@ -9,8 +9,8 @@
 // The library's parser and writer of JSON, compiled once for all files that use them.
 namespace promin {
 
-/// Returns the value as text: on one line, or with `indent` spaces for each level if `indent` >= 0. Bytes that are not
-/// UTF-8 are replaced.
+/// Returns the value as text, on one line if `indent` is negative, else with `indent` spaces for each level. Bytes that
+/// are not UTF-8 are replaced.
 std::string json_text(const nlohmann::json& value, int indent = -1);
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 

@@ -294,27 +294,27 @@ INSTANTIATE_TEST_SUITE_P(Table, BadUriTest, testing::ValuesIn(kBadUris),
 
 // The next tests check faults of files.
 
-class BadFileTest : public SceneFolder {};
+class BadGltfFileTest : public SceneFolder {};
 
-TEST_F(BadFileTest, MissingFoldersAndEmptyFilesSayWhy) {
+TEST_F(BadGltfFileTest, MissingFoldersAndEmptyFilesSayWhy) {
   EXPECT_THAT(refusal(folder_ / "none.gltf"), HasProblem("file.missing"));
   fs::create_directories(folder_ / "a.glb");
   EXPECT_THAT(refusal(folder_ / "a.glb"), HasProblem("file.folder"));
   EXPECT_THAT(refusal("b.gltf", ""), HasProblem("file.empty"));
 }
 
-TEST_F(BadFileTest, UnknownEndingsNameTheKnownOnes) {
+TEST_F(BadGltfFileTest, UnknownEndingsNameTheKnownOnes) {
   EXPECT_THAT(refusal("scene.fbx", "x"), HasSubstr("\".fbx\""));
   EXPECT_THAT(refusal("scene.fbx", "x"), HasSubstr(".gltf, .glb, .obj"));
 }
 
-TEST_F(BadFileTest, BrokenJsonNamesTheLine) {
+TEST_F(BadGltfFileTest, BrokenJsonNamesTheLine) {
   EXPECT_THAT(refusal("a.gltf", "{\n\"asset\": ]}"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("a.gltf", "{\"a\": \"\xff\xfe\"}"), HasProblem("json.syntax"));
   EXPECT_THAT(refusal("a.gltf", "[]"), HasProblem("json.type"));
 }
 
-TEST_F(BadFileTest, DeepNestingIsRefusedBeforeItIsParsed) {
+TEST_F(BadGltfFileTest, DeepNestingIsRefusedBeforeItIsParsed) {
   EXPECT_THAT(refusal("a.gltf", std::string(20'000, '[')), HasProblem("json.depth 20000"));
   const std::string objects = [] {
     std::string text;
@@ -327,7 +327,7 @@ TEST_F(BadFileTest, DeepNestingIsRefusedBeforeItIsParsed) {
       << "brackets in strings do not count";
 }
 
-TEST_F(BadFileTest, GlbLengthsAreChecked) {
+TEST_F(BadGltfFileTest, GlbLengthsAreChecked) {
   const std::string good = triangle_gltf().glb();
   ASSERT_EQ(refusal("a.glb", good), "");
   const auto spoiled = [&](size_t offset, size_t value) {
@@ -348,7 +348,7 @@ TEST_F(BadFileTest, GlbLengthsAreChecked) {
   EXPECT_THAT(spoiled(binary + 4, 7), HasSubstr("has no bytes")) << "a chunk of unknown type is skipped";
 }
 
-TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
+TEST_F(BadGltfFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["bufferViews"][1]["byteLength"] = 12;
   std::string bytes = gltf.glb();
@@ -358,7 +358,7 @@ TEST_F(BadFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
 }
 
 /// A buffer's bytes are needed as soon as something reads from the buffer.
-TEST_F(BadFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
+TEST_F(BadGltfFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
   const auto refuse_without = [&](const std::function<void(GltfBuilder&)>& use) {
     GltfBuilder gltf = triangle_gltf();
     gltf.text();
@@ -388,7 +388,7 @@ TEST_F(BadFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
   }
 }
 
-TEST_F(BadFileTest, AllProblemsOfAFileComeTogether) {
+TEST_F(BadGltfFileTest, AllProblemsOfAFileComeTogether) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["nodes"][0]["mesh"] = 5;
   gltf.json["accessors"][0]["type"] = "VEC9";
@@ -400,7 +400,7 @@ TEST_F(BadFileTest, AllProblemsOfAFileComeTogether) {
   EXPECT_THAT(message, HasSubstr("meshes[0].primitives[0].mode"));
 }
 
-TEST_F(BadFileTest, ManyProblemsAreCutShort) {
+TEST_F(BadGltfFileTest, ManyProblemsAreCutShort) {
   GltfBuilder gltf = triangle_gltf();
   for (int i = 0; i < 1000; ++i) gltf.add_node({{"mesh", 100 + i}});
   const std::string message = refusal("a.gltf", gltf.text());
@@ -408,7 +408,7 @@ TEST_F(BadFileTest, ManyProblemsAreCutShort) {
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 50);
 }
 
-TEST_F(BadFileTest, MessagesStayOnTheirLines) {
+TEST_F(BadGltfFileTest, MessagesStayOnTheirLines) {
   GltfBuilder gltf = triangle_gltf();
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["A\nB"] = 99;
   EXPECT_THAT(refusal("a.gltf", gltf.text()), HasSubstr("attributes.A?B"));

@@ -17,7 +17,7 @@
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
 #include "shared/layout.h"
-#include "trace/render/renderer_impl.h"
+#include "trace/render/make_renderer.h"
 
 namespace promin {
 namespace {

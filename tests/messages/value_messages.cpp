@@ -160,7 +160,7 @@ std::vector<MessageCase> cases_of_views() {
   };
 }
 
-const Image kPicture = {{2, 2}, std::vector<vec3>(4, vec3(0.5F))};
+const Image kFlatPicture = {{2, 2}, std::vector<vec3>(4, vec3(0.5F))};
 
 std::vector<MessageCase> cases_of_pictures() {
   return {
@@ -173,16 +173,16 @@ std::vector<MessageCase> cases_of_pictures() {
       {"picture.size",
        [] {
          const std::vector<Channel> channels = {{"Z", false, {1}}};
-         write_image("a.exr", kPicture, {}, std::nullopt, channels);
+         write_image("a.exr", kFlatPicture, {}, std::nullopt, channels);
        }},
       {"picture.crop",
        [] {
-         write_image("a.exr", kPicture, {}, CropPlacement{{1, 1}, {2, 2}});
+         write_image("a.exr", kFlatPicture, {}, CropPlacement{{1, 1}, {2, 2}});
        }},
-      {"output.ending", [] { write_image("a.gif", kPicture); }},
+      {"output.ending", [] { write_image("a.gif", kFlatPicture); }},
       {"picture.pair.sizes",
        [] {
-         static_cast<void>(compare_pictures(kPicture, {{1, 2}, std::vector<vec3>(2)}));
+         static_cast<void>(compare_pictures(kFlatPicture, {{1, 2}, std::vector<vec3>(2)}));
        }},
       {"file.missing", [] { static_cast<void>(read_image("none.exr")); }},
       {"picture.format",

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,35 +10,11 @@
 #include "promin/renderer.h"
 #include "scene/features.h"
 #include "trace/film/film.h"
-#include "trace/kernels/picture_shaders.h"
+#include "trace/render/make_renderer.h"
 
 // Access to the implementation of Renderer. The window needs it, because it records its own frames; tests and
 // measurements need it too.
 namespace promin {
-
-/// Options for tests and measurements that pictures do not need.
-struct TunedRendererOptions : RendererOptions {
-  /// Features to compile even if the scene does not use them. With all features, measurements find the gain of
-  /// specialisation; with the features of several small scenes, these scenes share their kernels. The image keeps its
-  /// bits.
-  FeatureMask more_features = {};
-  /// Target for the longest time of a single dispatch. If empty, the device profile decides.
-  std::optional<double> target_dispatch_ms = std::nullopt;
-  /// The number of pixels that a lane traces together: 1, 2 or 4. If empty, the device profile decides. The image keeps
-  /// its bits.
-  std::optional<uint32_t> packet_size = std::nullopt;
-  /// A fixed number of 8x8 blocks per dispatch, for tests that tiles do not change bits. If 0, the number is adapted.
-  uint32_t blocks_per_dispatch = 0;
-  /// If true, shaders read the scene from storage buffers even if texel buffers can hold it. The image keeps its bits.
-  bool avoids_texels = false;
-  /// The shaders. Renderer::explain() does not use other shaders with the same bindings.
-  PictureShaders shaders = picture_shaders();
-  /// A BVH file that is shared with other processes (pack_scene_sharing). It is not used if `bvh` names a file.
-  std::optional<std::filesystem::path> shared_bvh = std::nullopt;
-  /// A function that changes the packed scene before it is uploaded, for shaders that read another layout. Empty for no
-  /// change.
-  std::function<PackedScene(PackedScene)> repack = {};
-};
 
 /// A scene on a device and the features that its parts use, which determine the pipeline of a picture.
 class SceneOnDevice {
@@ -81,24 +56,5 @@ class SceneOnDevice {
   PrimitiveNumbers numbers_;
   std::shared_ptr<DeviceScene> device_scene_;
 };
-
-struct RendererAccess {
-  /// Makes a Renderer like its constructor, for a valid scene in world space.
-  static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
-  static SceneOnDevice& scene_of(Renderer& renderer);
-  static const SceneOnDevice& scene_of(const Renderer& renderer);
-};
-
-inline Renderer make_renderer(const gpu::Device& device, const world::Scene& scene,
-                              const TunedRendererOptions& options) {
-  return RendererAccess::make(device, scene, options);
-}
-inline Renderer make_renderer(const gpu::Device& device, const world::Scene& scene,
-                              const RendererOptions& options = {}) {
-  return RendererAccess::make(device, scene, TunedRendererOptions{options});
-}
-inline Renderer make_renderer(const gpu::Device& device, const Scene& scene, const TunedRendererOptions& options) {
-  return RendererAccess::make(device, world::flatten(scene), options);
-}
 
 }  // namespace promin

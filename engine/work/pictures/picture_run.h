@@ -13,7 +13,7 @@
 #include "promin/renderer.h"
 #include "promin/scene.h"
 #include "promin/view.h"
-#include "trace/render/renderer_impl.h"
+#include "trace/render/make_renderer.h"
 #include "work/pictures/frame_plan.h"
 #include "work/pictures/messages.h"
 #include "work/pictures/picture_files.h"
