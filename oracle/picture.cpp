@@ -589,7 +589,7 @@ class Tracer {
     bool is_followed = false;
   };
 
-  /// Adds the refracted ray, or one ray of each colour if the face separates them.
+  /// Adds the refracted ray, or one refracted ray for each colour if the face disperses light.
   void add_refracted(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error, const Way& way,
                      const BoundedResponse& response, const Media& beyond, std::vector<Child>& children) const {
     const auto face_of = [&](int color) {

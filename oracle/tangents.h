@@ -8,8 +8,8 @@
 #include "oracle/oracle.h"
 
 /// Computes by brute force the tangents that baking tools use: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited",
-/// 2008, It follows the rules of its author's implementation for triangles without area. The coordinates are (u, 1 -
-/// v).
+/// 2008. For triangles without area, the code follows the rules of Mikkelsen's implementation. Texture coordinates are
+/// (u, 1 - v).
 namespace promin::oracle {
 
 /// The tangent of a corner.

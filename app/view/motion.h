@@ -44,7 +44,7 @@ class MotionSum {
   void pan(const dvec2& pixels) { sum_.pan += pixels; }
   void turn_light(double pixels) { sum_.light += pixels; }
   void zoom(double steps) { sum_.zoom += steps; }
-  /// Records that all keys go up, because the window has lost the keyboard focus.
+  /// Releases all keys, because the window has lost the keyboard focus.
   void release_all(double time);
 
   /// Returns the motion since the last call.

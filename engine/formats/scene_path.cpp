@@ -115,7 +115,8 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
     return refuse("file.kind", "a file is not a regular file", "give a file");
   if (!fs::exists(status)) {
     if (must_exist)
-      return refuse("file.missing", "a file does not exist", "put it beside the scene", suggest_path(folder, path));
+      return refuse("file.missing", "a referenced file does not exist", "put it beside the scene",
+                    suggest_path(folder, path));
     return std::nullopt;
   }
   return file;

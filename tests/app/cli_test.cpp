@@ -273,7 +273,7 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
     expect_failure(run({"render", "square.gltf", "--size", "300", "300", "-o", output, "--quiet"}), 1, output);
     EXPECT_EQ(read(output), "old");
   }
-  // There is no room even for the bytes before the rows, or for more of a message; libpng has nothing to add.
+  // The disk has no room for the bytes before the rows, and only for 50 bytes of the message. libpng prints nothing.
   fill_disk(50);
   const ProcessResult early = run({"render", "square.gltf", "-o", "old.png", "--quiet"});
   EXPECT_EQ(early.exit_code, 1);
@@ -438,7 +438,7 @@ TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
       "images": [{"uri": "../pictures/none.png"}])");
   write("models/square.gltf", text);
   EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leads out of the scene's folder"));
-  EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a file does not exist"));
+  EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a referenced file does not exist"));
   expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "scene.root.folder none:");
   expect_failure(run({"info", "models/square.gltf", "--strict"}), 3, "--root DIR");
 }
@@ -455,7 +455,7 @@ TEST_F(CliTest, InfoTellsTexturesBySize) {
   const ProcessResult info = run({"info", "pixel.gltf"});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, ContainsRegex("textures +2 of 2 images \\(1 of 1x1, 1 absent\\), 0.000 MB on the device\n"));
-  EXPECT_THAT(info.out, HasSubstr("image images[1]: a file does not exist (\"none.png\"); "));
+  EXPECT_THAT(info.out, HasSubstr("image images[1]: a referenced file does not exist (\"none.png\"); "));
 }
 
 /// Returns the square with a texture whose PNG has a wrong byte among its texels.

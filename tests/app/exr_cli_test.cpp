@@ -211,7 +211,7 @@ TEST_F(ExrCliTest, TheHeaderTellsHowErrorsAreMeasured) {
   EXPECT_NE(shown.channels, linear.channels);
 }
 
-// The file has the parts whose sum is beauty.
+// The file has all AOVs of light. Their sum is the picture.
 TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
   const ReadExr exr = render_exr({"--spp", "16", "--background", "linear:0.5,0.25,1", "--aov",
                                   "emission,direct,indirect,reflection,transmission,background"});

@@ -113,7 +113,7 @@ TEST_F(SpecPictureCliTest, AnotherBuildGoesOnIfItGivesTheSameBits) {
   EXPECT_THAT(
       other.err,
       HasSubstr(
-          "the job's pieces were made by another build of promin, and this build computes other bits for piece "));
+          "the job's pieces were made by another build of promin, and this build computes different bits for piece "));
   EXPECT_FALSE(std::filesystem::exists(job.file_of(1)));
 }
 

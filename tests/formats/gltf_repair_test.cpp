@@ -245,7 +245,7 @@ const Repair kRepairs[] = {
      [](auto& g) {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNan, 0, 1}, "VEC2");
      },
-     "meshes[0].primitives[0].attributes.TEXCOORD_0, element 1: a texture coordinate is not finite or beyond 1e15 "
+     "meshes[0].primitives[0].attributes.TEXCOORD_0, element 1: a texture coordinate is beyond 1e15 or not finite "
      "(nan); 0 is used"},
     {"AttributeCounts",
      [](auto& g) {
@@ -608,8 +608,9 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   gltf.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 36}});
   gltf.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings, ElementsAre("buffers[1]: a buffer of images cannot be read: a file does not exist "
-                                          "(\"none.bin\"); promin omits its images"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("buffers[1]: a buffer of images cannot be read: a referenced file does not exist "
+                          "(\"none.bin\"); promin omits its images"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kTriangle);
 }
 

@@ -448,13 +448,14 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
     EXPECT_EQ(scene.materials.at(0).name == "default", !only_mesh(scene).uvs.size()) << name;
     return scene.warnings;
   };
-  EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("a file does not exist (\"none.png\")")));
+  EXPECT_THAT(warnings("none.png", uvs, "0 0"),
+              ElementsAre(HasSubstr("a referenced file does not exist (\"none.png\")")));
   EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leads out of the scene's folder")));
   EXPECT_THAT(warnings("C:\\scans\\a.png", uvs, "0 0"), IsEmpty()) << "a path of another machine";
   EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("format is unknown")));
   EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));
   EXPECT_THAT(warnings("a.png", uvs, "nan 0"),
-              ElementsAre("line 15: a texture coordinate is not finite or beyond 1e15, and 2 more; 0 is used"));
+              ElementsAre("line 15: a texture coordinate is beyond 1e15 or not finite, and 2 more; 0 is used"));
 }
 
 TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {

@@ -212,7 +212,7 @@ Mesh make_box_mesh(uint32_t n) {
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     const float side = face % 2 == 0 ? 1.0F : -1.0F;
     for (const vec3& p : grid.positions) {
-      // The numbers are the same on either side of an edge.
+      // Two faces compute equal coordinates at their common edge.
       const float a = 2.0F * p.x / static_cast<float>(n) - 1.0F;
       const float b = 2.0F * p.y / static_cast<float>(n) - 1.0F;
       const vec3 local = side > 0.0F ? vec3(a, b, 1) : vec3(b, a, -1);

@@ -157,15 +157,16 @@ TEST_F(JobTest, PiecesOfAnotherJobAreForeign) {
 TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   Job::create(job_folder_, make_manifest());
   const std::pair<void (*)(Manifest&), const char*> cases[] = {
-      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", but \"8\" now"},
-      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", but is not given or has its default value now"},
+      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", but now it is \"8\""},
+      {[](Manifest& m) { m.options.pop_back(); },
+       "its --spp is \"4\", but now it is not given or has its default value"},
       {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
-       "its --crop is not given or has its default value, but is \"0 0 1 1\" now"},
-      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", but \"2\" now"},
+       "its --crop is not given or has its default value, but now it is \"0 0 1 1\""},
+      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", but now it is \"2\""},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
-      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", but \"b.gltf\" now"},
+      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", but now it is \"b.gltf\""},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
-      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, but 4 now"},
+      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, but the number is now 4"},
       {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is called other now"},
       {[](Manifest& m) { m.kind = "rays"; }, "its kind is \"bytes\""}};
   for (const auto& [change, sentence] : cases) {
@@ -229,10 +230,11 @@ TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
   EXPECT_EQ(check_build(job, {"elsewhere", "print", "two"}, other), std::nullopt) << "other devices have other bits";
   EXPECT_EQ(check_build(job, {"here", "other", "two"}, other), std::nullopt);
   EXPECT_THAT(made, ElementsAre(2U, 2U));
-  EXPECT_THAT(refusal_of<UsageError>([&] {
-                check_build(job, {"here", "print", "two"}, other);
-              }),
-              HasSubstr("were made by another build of promin, and this build computes other bits for piece part2"));
+  EXPECT_THAT(
+      refusal_of<UsageError>([&] {
+        check_build(job, {"here", "print", "two"}, other);
+      }),
+      HasSubstr("were made by another build of promin, and this build computes different bits for piece part2"));
   // After a build has made a piece, its processes need no proof.
   make_piece(job, 0, {"here", "print", "two"}, make_content);
   EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);

@@ -304,7 +304,7 @@ Mesh make_soup(uint32_t seed) {
 /// The agreement of tangents with the oracle's.
 struct Agreement {
   size_t corners = 0;
-  /// The number of corners in no group that have a direction all the same.
+  /// The number of corners that have a direction although they belong to no group.
   size_t left = 0;
   /// The number of corners at which directions nearly cancel, so that rounding decides.
   size_t unsure = 0;
@@ -319,8 +319,8 @@ struct Agreement {
   }
 };
 
-/// From this angle on, the oracle leaves the result open. The product drops sums of 1e-12 of their parts, which
-/// rounding in double turns by as much.
+/// If the error reaches this angle, the oracle does not decide the result. The product drops sums below 1e-12 of their
+/// parts, because rounding in double can turn such sums by this angle.
 constexpr oracle::Real kUnsure = 1e-4L;
 
 /// Compares a mesh's tangents with the oracle's, corner by corner.

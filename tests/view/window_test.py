@@ -543,7 +543,7 @@ def turns_the_light(bin_folder, scenes, folder):
         session.expect_same_picture(2, turned)
         pictures = [(folder / f"promin-000{number}.png").read_bytes() for number in (1, 2)]
         expect(pictures[0] != pictures[1], "the light was not turned")
-        # A pixel is explained in the rotated light.
+        # This click explains a pixel while the light is rotated.
         viewer.xdotool("mousemove", "--window", viewer.window, 80, 50, "click", 1)
         session.quit()
 

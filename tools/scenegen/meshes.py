@@ -36,8 +36,8 @@ def box(width, height, depth):
 
 
 def tiled(mesh, tile_size):
-    """Returns the flat triangles of a mesh. The texture coordinates of each run along the two axes that it faces
-    least."""
+    """Returns the flat triangles of a mesh. The texture coordinates of each triangle are its coordinates along the two
+    axes with the smallest components of its normal."""
     positions, uvs = [], []
     for corners in zip(*[iter(mesh.indices)] * 3):
         a, b, c = (mesh.positions[i] for i in corners)

@@ -17,7 +17,7 @@ float dot2(vec2 a, vec2 b) {
 
 // A triangle projected to a plane, such that the ray passes through the plane's origin.
 struct ShearedTriangle {
-  bool may_be_met;  // whether the ray may hit it, as far as the areas show; cross_triangle decides
+  bool may_be_met;  // whether the tests so far allow a hit; cross_triangle decides
   float least;      // the smallest area; negative if an area and the determinant have different signs
   float determinant;
   vec2 a;
