@@ -37,7 +37,7 @@ struct Motion {
 /// Adds up motion between frames, event by event, so that the distance does not depend on the times of frames.
 class MotionSum {
  public:
-  /// Records that a key goes down or up at a time in seconds, which never decreases.
+  /// Records that a key is pressed or released at a time in seconds, which never decreases.
   void set(Hold hold, bool is_down, double time);
   void turn(const dvec2& pixels) { sum_.turn += pixels; }
   void orbit(const dvec2& pixels) { sum_.orbit += pixels; }

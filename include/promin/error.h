@@ -56,7 +56,7 @@ class ProblemCode {
   std::string_view text_;
 };
 
-/// Describes one problem for people.
+/// Describes one problem in words.
 struct PROMIN_EXPORT Problem {
   /// The kind of the problem.
   ProblemCode code;

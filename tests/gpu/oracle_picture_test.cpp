@@ -121,7 +121,7 @@ TEST_P(OraclePictureTest, AgreesWithTheOracle) {
   oracle::PictureBounds bounds;
   if (std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); })) {
     view.max_depth = kMaxDepthOfGlass;
-    // Near the angle of total reflection, the oracle is not sure.
+    // Near the angle of total reflection, the oracle is not certain.
     bounds.unsure_share = 0.1;
   }
   EXPECT_TRUE(compare(scene, view, bounds).passes());
@@ -163,7 +163,7 @@ TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
 TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
   View view = test::make_view(make_size());
   view.max_depth = kMaxDepthOfGlass;
-  // Near the angle of total reflection, the oracle is not sure.
+  // Near the angle of total reflection, the oracle is not certain.
   EXPECT_TRUE(
       compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1})
           .passes());
@@ -299,7 +299,7 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   const View view = test::make_gallery_view(kSizeOfTextures);
   const oracle::Picture truth = oracle::render(scene, view);
   oracle::PictureBounds bounds = kOfTextures;
-  // Highlights are narrow across a grain, so the oracle is not sure at their edges.
+  // Highlights are narrow across a grain, so the oracle is not certain at their edges.
   bounds.unsure_share = 0.015;
   // The explained error includes the errors of the sky's maps.
   bounds.plain_mean = 1e-3L;
