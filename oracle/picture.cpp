@@ -237,8 +237,8 @@ class Tracer {
   }
 
   /// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends
-  /// contributes alpha * (what it sends, with the environment in place of a mirror ray) + (1 - alpha) * (the radiance
-  /// from behind).
+  /// contributes alpha * (its light, with the environment in place of a mirror ray) + (1 - alpha) * (the radiance from
+  /// behind).
   Radiance trace(const Ray& ray, const Seen& seen, const Way& way) const {
     Radiance sum = trace_hit(ray, seen.hit, way);
     if (seen.is_at_cutoff) sum.error += kUnknown;

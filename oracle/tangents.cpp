@@ -229,7 +229,7 @@ class Tangents {
   uint32_t uv_set_;
   std::vector<Face> faces_;
   std::vector<int> vertices_;
-  /// The hand of each group.
+  /// The handedness of each group.
   std::vector<int> hands_;
 };
 

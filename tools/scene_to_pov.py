@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a promin glTF scene as a POV-Ray 3.7 scene that POV-Ray shades by the same formulas.
 
-What POV-Ray cannot say in the same way is refused. Render with:
+Features that POV-Ray cannot express in the same way are refused. Render with:
     povray +Iout.pov +Oout.exr +FE +W1024 +H1024 -A -D
 """
 

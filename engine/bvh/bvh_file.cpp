@@ -163,7 +163,8 @@ class TreeCheck {
     if (tree_.nodes.empty()) refuse("bvh.file.tree", file_, "the BVH file has no nodes");
     if (tree_.nodes.size() > layout::MAX_NODES) refuse("bvh.file.tree", file_, "the BVH file has too many nodes");
     entries_[0] = 0;
-    // A child comes after its parent, so the tree has no cycle, and each node is marked as reached before its turn.
+    // A child comes after its parent, so the tree has no cycle, and each node is marked as reached before the loop
+    // visits it.
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     if (most_entries_ != tree_.stack_size) {
       refuse("bvh.file.tree", file_,

@@ -204,7 +204,7 @@ std::optional<Header> read_header_of(const fs::path& file) {
   return read_header(magic + "\n" + line + "\n");
 }
 
-/// The content of a piece, or its fault without place and cure.
+/// The content of a piece, or a description of its fault without the place and without advice.
 using Reading = std::variant<Content, Problem>;
 
 Reading read_piece(const fs::path& file, const std::string& job, const std::string& name) {

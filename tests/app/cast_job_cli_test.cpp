@@ -156,7 +156,7 @@ TEST_F(CastJobCliTest, WrongUseIsRefused) {
   expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "output.ending \".npy\"");
 }
 
-// The piece being written is not there; the pieces before it are.
+// The piece that was being written does not exist. The earlier pieces exist.
 TEST_F(CastJobCliTest, AFullDiskLeavesWholePieces) {
   write_rays("rays.npy", make_rays(20000));
   expect_done(cast({"-o", "whole.npy"}));

@@ -31,8 +31,8 @@ v 0 1 0
 f 1 2 3
 )";
 
-/// A unit square at z = 0 with a material of Phong's model, whose kernels compile fastest, a point source and two
-/// cameras.
+/// A unit square at z = 0 with a point source and two cameras. Its material is Phong's model, whose kernels compile
+/// fastest.
 inline constexpr const char* kSquareGltf =
     R"({
   "asset": {"version": "2.0"},
@@ -114,7 +114,7 @@ class CliTest : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  /// Returns the names of the files in the folder, without the scenes.
+  /// Returns the names of the files in the folder except the scenes.
   std::set<std::string> files() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder())) names.insert(entry.path().filename());

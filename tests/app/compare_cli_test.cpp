@@ -30,7 +30,7 @@ class CompareCliTest : public CliTest {
   }
 
   ProcessResult compare(const OptionValues& more) const {
-    // At so low a resolution FLIP's filters are small and fast.
+    // At such a low resolution FLIP's filters are small and fast.
     OptionValues arguments = {"compare", "--pixels-per-degree", "5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
@@ -114,8 +114,8 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
 
-/// The fixture has two EXRs of the same colours, one in one part and one in several. They have 200 rows, which is more
-/// than are held at a time.
+/// The fixture has two EXRs of the same colours, one in one part and one in several. They have 200 rows, more than the
+/// program holds in memory at a time.
 class CompareChannelsCliTest : public CompareCliTest {
  protected:
   static constexpr uvec2 kSize{600, 200};

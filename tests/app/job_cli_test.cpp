@@ -55,7 +55,8 @@ TEST_F(JobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   }
 }
 
-// The pieces tell which surfaces are unlit, so that they are shown unchanged, whatever files the job begins with.
+// The pieces record which surfaces are unlit, so that these are shown unchanged, regardless of the files with which the
+// job begins.
 TEST_F(JobCliTest, PiecesTellOfUnlitSurfaces) {
   write("square.gltf", make_mixed_gltf());
   expect_done(render({"--spp", "4", "-o", "whole.exr", "-o", "whole.png"}));
@@ -119,7 +120,7 @@ TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
   expect_done(again);
   EXPECT_THAT(again.out, testing::StartsWith("all 5 pieces were made before: "));
   EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
-  // A refused program does not say that it wrote something.
+  // If the command is refused, it does not report that it wrote a file.
   const ProcessResult refused = run({"render", "square.gltf", "--job", "job", "--aov", "normal"});
   expect_failure(refused, 2, "job: the folder belongs to another job: ");
   EXPECT_THAT(refused.err, testing::Not(HasSubstr("writing")));

@@ -21,7 +21,7 @@ using testing::SizeIs;
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 const std::vector<vec3> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-/// A change that makes a document faulty but leaves its geometry clear, and the warning that it gives.
+/// A change that makes a document faulty without making its geometry ambiguous, and the warning that it causes.
 struct Repair {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;

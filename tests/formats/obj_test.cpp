@@ -128,8 +128,8 @@ TEST_F(ObjTest, StatementsGoOnBehindABackslash) {
   EXPECT_EQ(scene.objects.at(0).name, "name");
 }
 
-// The text is Latin-1, as older programs write it. Messages that quote it are still UTF-8, wherever a quoted word is
-// cut.
+// The text is Latin-1, as older programs write it. Messages that quote it are still valid UTF-8, even if a quoted word
+// is shortened.
 TEST_F(ObjTest, NamesAreShownInUtf8) {
   write("latin.mtl", "newmtl m\xFCller\n");
   const LoadedScene scene =
@@ -192,7 +192,7 @@ TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
   EXPECT_THAT(refusal(kSquare + "f 1 2\nf 3 4\n"), HasProblem("obj.faces.none"));
 }
 
-// The next tests check faults that lose only colours, shading or something that no face shows.
+// The next tests check faults that affect only colours, shading or data that no face uses.
 
 TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");

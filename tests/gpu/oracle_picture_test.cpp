@@ -32,8 +32,8 @@ uint64_t count_primitives(const world::Scene& scene) {
   return count;
 }
 
-/// Returns the size of pictures that do not depend on the size of pixels: a quarter of the pixels of thorough tests,
-/// because brute force takes long. The smaller pictures show the same shapes, materials and lights.
+/// Returns the size of pictures whose bounds do not depend on the size of pixels. It has a quarter of the pixels of
+/// thorough tests, because brute force takes long. The smaller pictures show the same shapes, materials and lights.
 uvec2 make_size() {
   return test::is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
 }
@@ -356,8 +356,8 @@ TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   }
 }
 
-// The largest possible errors of the maps explain most of the differences of these pictures; the mean of the rest is
-// small.
+// The largest possible errors of the maps explain most differences of these pictures. The mean of the remaining
+// differences is small.
 TEST_F(OraclePictureTest, AGradientAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_under_sky(test::make_gradient());
   EXPECT_TRUE(

@@ -46,7 +46,7 @@ Content make_content(size_t piece) {
 
 class JobTest : public TempFolder {
  protected:
-  /// Returns the pieces that were made, and adds those that were bad.
+  /// Returns the pieces that were made, and stores the bad pieces in bad_.
   std::vector<size_t> run(const Job& job, const Share& share = {}) {
     std::vector<size_t> made;
     bad_.clear();
@@ -235,7 +235,7 @@ TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
         check_build(job, {"here", "print", "two"}, other);
       }),
       HasSubstr("were made by another build of promin, and this build computes different bits for piece part2"));
-  // After a build has made a piece, its processes need no proof.
+  // After a build has made a piece, further processes of this build need not make it again as a proof.
   make_piece(job, 0, {"here", "print", "two"}, make_content);
   EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);
   // A bad piece is not a proof.
@@ -330,7 +330,7 @@ TEST_F(JobTest, HashesOfFilesAreKnownByTheirStamps) {
   KnownHashes first(folder_);
   EXPECT_EQ(first.describe(file).sha256, sha256_of("many rays"));
   first.save();
-  // The stored hash is used and the file is not read, so a hash that was written by hand is believed.
+  // The job uses the stored hash and does not read the file, so it accepts a hash that was written by hand.
   std::string kept = read(folder_ / "hashes.json");
   kept.replace(kept.find(sha256_of("many rays")), 64, std::string(64, 'a'));
   write(folder_ / "hashes.json", kept);

@@ -103,7 +103,7 @@ TEST(Tangents, OfTheSecondSetAreItsOwn) {
   Mesh mesh = make_plane(1);
   for (vec4& uv : mesh.uvs) uv = {uv.x, uv.y, uv.y, uv.x};
   add_tangents(mesh, 1);
-  // u grows downwards, and v to the right; with v upwards this is the other hand.
+  // u grows downwards, and v to the right. With v upwards this is the opposite handedness.
   for (const vec4& tangent : mesh.tangents) expect_near(tangent, {0, -1, 0, -1}, 1e-6F);
 }
 
