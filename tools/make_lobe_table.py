@@ -116,7 +116,7 @@ def main():
     """Prints the table, or compares a file with it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", choices=("lobes", "sheens"))
-    parser.add_argument("--check", metavar="FILE", help="print where this file differs from the table and exit with 1")
+    parser.add_argument("--check", metavar="FILE", help="print where this file differs from the table; exit code 1")
     arguments = parser.parse_args()
     made = lines({"lobes": lobe_shares, "sheens": sheen_shares}[arguments.table])
     if arguments.check is None:

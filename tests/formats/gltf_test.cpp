@@ -893,7 +893,7 @@ TEST_F(GltfTest, PanoramasLieInTheFileToo) {
     gltf.json["images"] = {{{"uri", "data:image/whatever;base64," + encode_base64(picture)}}};
     const LoadedScene in_text = load(gltf);
     EXPECT_THAT(in_text.warnings, IsEmpty());
-    // A PNG has codes of sRGB: the code 188 of 255 is a light of 0.503.
+    // A PNG has 8-bit sRGB values. The value 188 is a linear value of 0.503.
     EXPECT_NEAR(sky_radiance(in_text.environment, dvec3(1, 0, 0)).x, 0.5, 0.004) << name;
     gltf.json["images"] = {{{"mimeType", "image/png"},
                             {"bufferView", gltf.add_view(std::vector<uint8_t>(picture.begin(), picture.end()))}}};

@@ -138,7 +138,7 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
   const std::string message = refusal(npy(header_of(1), data + "x"));
   EXPECT_THAT(message, HasProblem("rays.short 1 33"));
   EXPECT_THAT(refusal(npy(header_of(2), data)), HasProblem("rays.short 2 32"));
-  // The product with 32 would wrap to the right size.
+  // The product of this number and 32 would overflow and give the correct size.
   EXPECT_THAT(refusal(npy(header_of((uint64_t{1} << 59) + 1), data)), HasProblem("rays.short 32"));
   EXPECT_THAT(message_of([&] { RayReader(folder_ / "none.npy"); }), HasProblem("file.missing"));
   EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }), HasProblem("file.kind"));

@@ -457,7 +457,7 @@ def rare_materials():
     for i, (x, y, turn, tilt) in enumerate(((0.7, 0.5, 20.0, 65.0), (1.3, 0.75, -15.0, 100.0), (1.75, 0.35, 5.0, 40.0))):
         stem = g.node(f"stem {i}", translation=(x, y, 0.3), rotation=quaternion_about((0.0, 0.0, 1.0), tilt))
         g.node(f"leaf {i}", parent=stem, mesh=leaf, rotation=quaternion_about((1.0, 0.0, 0.0), 90.0 + turn))
-    # A stick between the sun and a leaf: its shadow shows through.
+    # A stick between the sun and a leaf. Its shadow is visible through the leaf.
     stick = g.cylinder("stick", 1.6, 0.03, g.metallic_roughness("stick", (0.2, 0.12, 0.06), 0.0, 0.8))
     g.node("stick", mesh=stick, translation=(1.05, 1.0, -0.15), rotation=axis_rotation((0.5, 1.0, 0.0)))
     for i, thickness in enumerate((150.0, 300.0, 450.0, 600.0)):

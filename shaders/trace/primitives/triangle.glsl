@@ -44,7 +44,7 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise float determinant = u + v + w;
   float least = lesser(lesser(times_sign_of(u, determinant), times_sign_of(v, determinant)),
                        times_sign_of(w, determinant));
-  // True if the triangle is not seen edge-on, and the inverse of its area is a float.
+  // True if the ray does not see the triangle edge-on, and the inverse of the area does not overflow.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }
