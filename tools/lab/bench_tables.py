@@ -175,7 +175,7 @@ def _read_driver(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("drivers", nargs="+", type=pathlib.Path, help="folders of the drivers; the first belongs to the system's driver")
+    parser.add_argument("drivers", nargs="+", type=pathlib.Path, help="folders of drivers; the system's comes first")
     parser.add_argument("--growth", type=pathlib.Path, required=True, help="file that promin-lab growth has written")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help=".json file to write")
     arguments = parser.parse_args()
