@@ -26,8 +26,8 @@ struct CornerTangent {
   /// For a corner in no group: the groups of the vertex's other corners, in order. The corner must have the tangent of
   /// one of them.
   std::vector<int> groups_at_vertex;
-  /// For a corner in no group: whether its triangle takes no part. The corner must then have the tangent and the hand
-  /// of the first group.
+  /// For a corner in no group: whether its triangle takes no part. The corner must then have the tangent and the
+  /// handedness of the first group.
   bool is_degenerate = false;
 };
 

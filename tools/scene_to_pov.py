@@ -13,7 +13,7 @@ from scene_reader import SceneReader, Unsupported, convert
 
 # POV-Ray also multiplies its ambient and emission terms by the pigment, so no channel of the pigment may be 0.
 _MIN_PIGMENT = 1e-6
-# POV-Ray's directional source has a place, which must be outside of every scene here.
+# POV-Ray's directional source has a position, which must lie outside every scene.
 _FAR = 1e4
 
 

@@ -46,7 +46,8 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
 }
 
 /// Lets packets test their leaves after each step. With this, pictures take 0.78 to 0.94 of the time with lavapipe
-/// 25.0.7, and 0.96 to 1.4 of the time with 22.3.6 (docs/performance_log.md). Versions between were not measured.
+/// 25.0.7, and 0.96 to 1.4 of the time with 22.3.6 (docs/performance_log.md). The versions in between were not
+/// measured.
 void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
 }

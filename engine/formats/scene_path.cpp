@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Returns whether a name begins with a scheme: "http:", "file:", also "C:". A colon after a slash, or without a name
-/// before it, is an ordinary character.
+/// before it, has no special meaning.
 bool has_scheme(const std::string& name) {
   const size_t colon = name.find(':');
   return colon != std::string::npos && colon > 0 && std::all_of(name.begin(), name.begin() + colon, [](char c) {

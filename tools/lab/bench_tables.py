@@ -81,7 +81,7 @@ _FIRST_COLUMNS = [
 
 
 def _target(value, least=None, most=None):
-    """Returns the target, and says whether the value meets it."""
+    """Returns the target, and whether the value reaches it."""
     if value is None or (least is None and most is None):
         return "–"
     if least is not None:

@@ -196,7 +196,7 @@ def torus(major, minor, rows, columns):
 def torus_knot(p, q, major, minor, tube, flutes, twists, depth, rows, columns):
     """Returns a (p, q) torus knot about the Y axis: a tube with a fluted, twisting section.
 
-    The knot goes p times about the axis and q times through the hole. The tube has `flutes` grooves of relative
+    The knot winds p times around the axis and q times through the hole. The tube has `flutes` grooves of relative
     `depth`, which make `twists` turns on the way.
     """
 
