@@ -102,7 +102,7 @@ constexpr Real kLeastTreeWeight = 1.0L / 512;
 /// In d = look + (x right - y up), each product, the difference and the sum are rounded, and d is normalised.
 constexpr Real kCameraRayError = 8 * kRoundoff;
 
-/// The error of a pixel that may show one of two very different things.
+/// The error of a pixel that may show either of two very different surfaces.
 constexpr Real kUnknown = 1000;
 
 /// Returns the direction mirrored at the shading normal. If it would point into the surface, it is mirrored again at

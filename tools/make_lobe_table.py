@@ -32,9 +32,9 @@ def half_vectors(v, cosine_of):
     # The lobe is symmetric about the plane of the eye, so half of all azimuths are enough.
     cosines = [math.cos(math.pi * (i + 0.5) / SAMPLES) for i in range(SAMPLES)]
     for i in range(SAMPLES):
-        # `x` is the fraction of D that lies beyond the half vector. The points are denser where the integrand has roots:
-        # at the normal, and even more at the horizon, which contributes a large part of a lobe that is seen from the
-        # side.
+        # `x` is the fraction of D that lies beyond the half vector. The points are denser where the integrand has
+        # roots: at the normal, and even more at the horizon, which contributes a large part of a lobe that is seen from
+        # the side.
         x = (i + 0.5) / SAMPLES
         beyond = (1.0 - x * x) ** 4
         density = 8.0 * x * (1.0 - x * x) ** 3

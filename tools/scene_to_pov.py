@@ -111,7 +111,7 @@ def write_pov(file, camera, max_depth):
     scene = PovWriter(file)
     scene.read()
     background, ambient = scene.sky()
-    # This is promin's least weight of a ray if there is glass.
+    # This is the smallest weight of a ray that promin traces in a scene with glass.
     least = 1 / 512 if scene.has_glass else 0
     limits = f"max_trace_level {max_depth + 1} adc_bailout {least}"
     settings = f"assumed_gamma 1 {limits} ambient_light rgb {vector(ambient)}"

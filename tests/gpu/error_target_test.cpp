@@ -37,7 +37,7 @@ View view_of(const Scene& scene, const uvec2& size) {
   return view;
 }
 
-/// Returns wires with a width of a quarter of a pixel and more before a dark wall, lit from the front.
+/// Returns wires in front of a dark wall, lit from the front. They are at least a quarter of a pixel wide.
 world::Scene make_wires() {
   world::Scene scene;
   scene.materials = {make_unlit(vec3(0.9F, 0.6F, 0.2F))};

@@ -83,8 +83,8 @@ TEST(OracleLobe, TheLobeIsReciprocal) {
   }
 }
 
-// The table is compared with another quadrature: Gauss's over directions to the light, instead of a lattice of half
-// vectors drawn by their density.
+// The test compares the table with another quadrature. It uses Gaussian quadrature over directions to the light instead
+// of a lattice of half vectors sampled by their density.
 TEST(OracleLobe, TheTablesEntriesAreTheIntegrals) {
   std::array<std::array<Real, kSide>, kSide> errors{};
   for_each_index(kSide, 0, [&](size_t row) {
