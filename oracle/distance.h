@@ -36,13 +36,13 @@ Real signed_distance(const world::Shape& shape, int32_t primitive, const Vector&
 /// Returns the distance from a point to the surface, >= 0. For an open shape it is the distance to the side.
 Real surface_distance(const world::Shape& shape, int32_t primitive, const Vector& point);
 
-/// The position of a point relative to an open shape: its distance from the side, extended to infinity, and its
-/// distance from the ends. Both are negative inside and are convex functions of the point.
+/// Where a point lies relative to an open shape: its distance from the side, extended to infinity, and its distance
+/// from the ends. Both are negative inside and are convex functions of the point.
 struct PlaceInFrustum {
   Real beyond_side = 0;
   Real beyond_ends = 0;
 };
-/// Returns the position of a point; empty if the shape is not open.
+/// Returns where a point lies relative to an open shape; empty if the shape is not open.
 std::optional<PlaceInFrustum> place_in_open(const world::Shape& shape, const Vector& point);
 
 /// Returns the distance of a point from the surface's nearest crease. Creases are the rims of a cylinder or cone, the

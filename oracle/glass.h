@@ -39,7 +39,7 @@ int color_of(const Vector& weight);
 /// The solids of glass that contain a ray, in the order in which it entered them.
 class Media {
  public:
-  /// Returns the index of refraction of the solid entered last; 1 outside of all.
+  /// Returns the index of refraction of the solid that the ray entered last; 1 outside all solids.
   Real index(int color) const;
   /// Returns the face of a material that a ray of this colour hits in these media, and sets the media on the other
   /// side.

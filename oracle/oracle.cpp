@@ -132,7 +132,7 @@ class Search {
     intersect_disk(near, oc - h * v, v, r + s * h);
   }
 
-  /// Intersects a disk. `oc` leads from the disk's centre to the ray's point at `near`.
+  /// Intersects a disk. `oc` is the vector from the disk's centre to the ray's point at `near`.
   void intersect_disk(Real near, const Vector& oc, const Vector& normal, Real radius) {
     const Real t = -glm::dot(oc, normal) / glm::dot(ray_.direction, normal);
     const Vector p = oc + t * ray_.direction;

@@ -102,7 +102,7 @@ constexpr Real kLeastTreeWeight = 1.0L / 512;
 /// In d = look + (x right - y up), each product, the difference and the sum are rounded, and d is normalised.
 constexpr Real kCameraRayError = 8 * kRoundoff;
 
-/// The error of a pixel that may show one of two very different things.
+/// The error of a pixel that may show either of two very different surfaces.
 constexpr Real kUnknown = 1000;
 
 /// Returns the direction mirrored at the shading normal. If it would point into the surface, it is mirrored again at
@@ -237,8 +237,8 @@ class Tracer {
   }
 
   /// Whitted's recursion: I = what the point sends + weight of the mirror * I(mirror ray). A surface that blends
-  /// contributes alpha * (what it sends, with the environment in place of a mirror ray) + (1 - alpha) * (the radiance
-  /// from behind).
+  /// contributes alpha * (its light, with the environment in place of a mirror ray) + (1 - alpha) * (the radiance from
+  /// behind).
   Radiance trace(const Ray& ray, const Seen& seen, const Way& way) const {
     Radiance sum = trace_hit(ray, seen.hit, way);
     if (seen.is_at_cutoff) sum.error += kUnknown;
@@ -592,7 +592,7 @@ class Tracer {
     bool is_followed = false;
   };
 
-  /// Adds the refracted ray, or one ray of each colour if the face separates them.
+  /// Adds the refracted ray, or one refracted ray for each colour if the face disperses light.
   void add_refracted(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error, const Way& way,
                      const BoundedResponse& response, const Media& beyond, std::vector<Child>& children) const {
     const auto face_of = [&](int color) {

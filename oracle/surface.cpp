@@ -239,7 +239,8 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
 /// Returns the material as its dielectric reflects in a medium other than air: with the quotient of the indices.
 MetallicRoughness beside(MetallicRoughness material, const Face& face, bool is_total) {
   if (is_total) {
-    // On total reflection, an index of 0 reflects all light at every angle (KHR_materials_ior).
+    // If the reflection is total, the index is set to 0, for which KHR_materials_ior defines that all light is
+    // reflected at every angle.
     material.ior = 0.0F;
     material.specular = 1.0F;
     material.specular_color = vec3(1.0F);

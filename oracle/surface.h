@@ -19,7 +19,7 @@ struct Radiance {
   Vector color{0};
   /// The permitted error because highlights may be slightly displaced and textures may be sampled at another position.
   Real error = 0;
-  /// The permitted error because the device's sky comes from maps.
+  /// The permitted error of the device's sky, which is read from maps.
   Real map_error = 0;
 
   void add(const Radiance& other) { add(Vector(1), other); }

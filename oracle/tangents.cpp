@@ -154,7 +154,7 @@ class Tangents {
   }
 
   /// Adds the corner to the group, then the corners at its vertex of the faces across its edges, and so on. A face
-  /// without an area gets the hand of the first group that reaches it.
+  /// without an area gets the handedness of the first group that reaches it.
   void assign(int f, int i, int group) {
     Face& face = faces_[static_cast<size_t>(f)];
     if (face.groups[i] != kNone) return;
@@ -229,7 +229,7 @@ class Tangents {
   uint32_t uv_set_;
   std::vector<Face> faces_;
   std::vector<int> vertices_;
-  /// The hand of each group.
+  /// The handedness of each group.
   std::vector<int> hands_;
 };
 

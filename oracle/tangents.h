@@ -8,8 +8,8 @@
 #include "oracle/oracle.h"
 
 /// Computes by brute force the tangents that baking tools use: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited",
-/// 2008, It follows the rules of its author's implementation for triangles without area. The coordinates are (u, 1 -
-/// v).
+/// 2008. For triangles without area, the code follows the rules of Mikkelsen's implementation. Texture coordinates are
+/// (u, 1 - v).
 namespace promin::oracle {
 
 /// The tangent of a corner.
@@ -26,8 +26,8 @@ struct CornerTangent {
   /// For a corner in no group: the groups of the vertex's other corners, in order. The corner must have the tangent of
   /// one of them.
   std::vector<int> groups_at_vertex;
-  /// For a corner in no group: whether its triangle takes no part. The corner must then have the tangent and the hand
-  /// of the first group.
+  /// For a corner in no group: whether its triangle takes no part. The corner must then have the tangent and the
+  /// handedness of the first group.
   bool is_degenerate = false;
 };
 

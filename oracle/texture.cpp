@@ -22,7 +22,7 @@ Texel unpack(uint32_t texel) {
   return Texel(texel & 255U, texel >> 8 & 255U, texel >> 16 & 255U, texel >> 24) / Real(255);
 }
 
-/// Returns the light of an 8-bit code.
+/// Returns the linear value of an 8-bit sRGB value.
 Real light_of(uint32_t code) {
   static const auto kLights = [] {
     std::array<Real, 256> lights{};

@@ -3,17 +3,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Computes a table of engine/device_scene/lobe_table.h and prints it, for engine/device_scene/{lobe,sheen}_table.def.
 
-An entry is of a roughness r (rows, from 0 to 1) and of the square root of the cosine v to the eye (columns).
+Each row has a roughness r, from 0 to 1. Each column has a square root of the cosine v to the eye.
 
 lobes: the integrals over the hemisphere of V D l (lower 16 bits of the word) and of V D (1 - V.H)^5 l (upper 16 bits),
 where D is GGX's density and V Smith's height-correlated visibility (glTF 2.0, B.3). At r = 0 they are 1 and (1 - v)^5.
 
-sheens: a half of the integral of V D l (lower 16 bits), where D and V are those of KHR_materials_sheen, V at most 1; v
-is at least 2^-10 and r at least 0.07. It is up to 1.65, because V is a fit that gives back more than arrives where
-smooth fibres are seen from the side.
+sheens: half of the integral of V D l (lower 16 bits). D and V are those of KHR_materials_sheen, but V is at most 1; v
+is at least 2^-10 and r at least 0.07. The integral is up to 1.65. It can exceed 1, because V is a fit that reflects
+more light than arrives on smooth fibres seen from the side.
 
-Half vectors are drawn by D on a lattice, so what is left is the mean of 4 V l (V.H) / (N.H). tests/oracle/lobe_test.cpp
-holds the tables against a quadrature of another kind.
+The program samples half vectors in proportion to D on a lattice, so the integral is the mean of 4 V l (V.H) / (N.H).
+tests/oracle/lobe_test.cpp compares the tables with another method of quadrature.
 """
 
 import argparse
@@ -33,7 +33,8 @@ def half_vectors(v, cosine_of):
     cosines = [math.cos(math.pi * (i + 0.5) / SAMPLES) for i in range(SAMPLES)]
     for i in range(SAMPLES):
         # `x` is the fraction of D that lies beyond the half vector. The points are denser where the integrand has
-        # roots: at the normal, and even more at the horizon, which gives much of a lobe that is seen from the side.
+        # roots: at the normal, and even more at the horizon, which contributes a large part of a lobe that is seen from
+        # the side.
         x = (i + 0.5) / SAMPLES
         beyond = (1.0 - x * x) ** 4
         density = 8.0 * x * (1.0 - x * x) ** 3
@@ -116,7 +117,7 @@ def main():
     """Prints the table, or compares a file with it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", choices=("lobes", "sheens"))
-    parser.add_argument("--check", metavar="FILE", help="print where this file differs; then exit with code 1")
+    parser.add_argument("--check", metavar="FILE", help="print where this file differs from the table; exit code 1")
     arguments = parser.parse_args()
     made = lines({"lobes": lobe_shares, "sheens": sheen_shares}[arguments.table])
     if arguments.check is None:

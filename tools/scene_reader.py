@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Walks a promin glTF scene for the programs that write it in another renderer's language.
 
-Those renderers share a classic kind of scene. Anything else is refused (vertex colours, metallic-roughness materials,
-falloff, spots, coloured specular factors, a source with two powers), so that a difference between the pictures is a
-difference between the renderers.
+Those renderers have only the classic features of a scene in common. Anything else is refused (vertex colours,
+metallic-roughness materials, falloff, spots, coloured specular factors, a source with two powers), so that a difference
+between the pictures is a difference between the renderers.
 """
 
 import argparse

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a promin glTF scene as a POV-Ray 3.7 scene that POV-Ray shades by the same formulas.
 
-What POV-Ray cannot say in the same way is refused. Render with:
+Features that POV-Ray cannot express in the same way are refused. Render with:
     povray +Iout.pov +Oout.exr +FE +W1024 +H1024 -A -D
 """
 
@@ -13,7 +13,7 @@ from scene_reader import SceneReader, Unsupported, convert
 
 # POV-Ray also multiplies its ambient and emission terms by the pigment, so no channel of the pigment may be 0.
 _MIN_PIGMENT = 1e-6
-# POV-Ray's directional source has a place, which must be outside of every scene here.
+# POV-Ray's directional source has a position, which must lie outside every scene.
 _FAR = 1e4
 
 
@@ -111,7 +111,7 @@ def write_pov(file, camera, max_depth):
     scene = PovWriter(file)
     scene.read()
     background, ambient = scene.sky()
-    # This is promin's least weight of a ray if there is glass.
+    # This is the smallest weight of a ray that promin traces in a scene with glass.
     least = 1 / 512 if scene.has_glass else 0
     limits = f"max_trace_level {max_depth + 1} adc_bailout {least}"
     settings = f"assumed_gamma 1 {limits} ambient_light rgb {vector(ambient)}"

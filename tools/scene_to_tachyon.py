@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a promin glTF scene as a Tachyon scene that Tachyon shades by the same formulas.
 
-What Tachyon cannot say in the same way is refused: cones, cylinders with end caps, vertex normals, coloured reflection,
-emission, ambient light that is not grey. A mirror ray beyond the last bounce brings Tachyon's background where promin's
-brings black. Render with:
+Features that Tachyon cannot express in the same way are refused: cones, cylinders with end caps, vertex normals,
+coloured reflection, emission, ambient light that is not grey. A mirror ray beyond the last bounce returns the
+background in Tachyon, and black in promin. Render with:
     tachyon out.dat -fullshade -shade_phong -format PPM48 -o out.ppm
 """
 

@@ -173,11 +173,11 @@ void check_limit(const Difference& difference, const std::string& in, const Comp
                                                                  percent_different(difference), *options.fail_percent)
                                                    : "";
   throw DifferenceError({"picture.pair.differs",
-                         fmt::format("{} {} by more than {:g}{}{}, the most at pixel {} {} by {:.6g}",
+                         fmt::format("{} {} by more than {:g}{}{}, with the largest difference at pixel {} {} ({:.6g})",
                                      count_of(difference.different_count, "pixel"),
                                      verb_of(difference.different_count, "differs", "differ"), *options.fail, in,
                                      allowed, difference.largest_at.x, difference.largest_at.y, difference.largest),
-                         fmt::format("{} against {}", options.second.string(), options.first.string()), ""});
+                         fmt::format("{} compared with {}", options.second.string(), options.first.string()), ""});
 }
 
 void compare(const CompareOptions& options) {

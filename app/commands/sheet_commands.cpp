@@ -186,7 +186,7 @@ void make_sheet(const SheetOptions& options) {
 }  // namespace
 
 Command add_thumbnail_command(CLI::App& program) {
-  CLI::App& command = add_command(program, "thumbnail", "Write a thumbnail of a scene, such as file managers show");
+  CLI::App& command = add_command(program, "thumbnail", "Write a small square picture of a scene, for file managers");
   const auto options = std::make_shared<RenderSpec>();
   options->view.size = uvec2(kThumbnailSide);
   options->view.frames_scene = true;

@@ -23,7 +23,7 @@ namespace {
 /// The largest numerator and denominator of a fraction.
 constexpr double kMostOfFraction = 1e9;
 
-/// Returns the cure for a wrong word. `near` is the word that the user may have meant, if known.
+/// Returns the advice for a wrong word. `near` is the word that the user may have meant, if known.
 std::string cure_for(const std::string& command, std::string_view near = {}) {
   return near.empty() ? fmt::format("see {} --help", command) : fmt::format("did you mean {}?", near);
 }

@@ -54,9 +54,9 @@ void add_pose_options(OptionTable& table, PoseOptions& pose) {
   };
   add_turn("--azimuth", "Move the camera around the scene to the right by this angle in degrees [0]",
            pose.orbit.azimuth_deg);
-  add_turn("--elevation", "Then move the camera upwards around the scene by this angle in degrees [0]",
+  add_turn("--elevation", "Move the camera upwards around the scene by this angle in degrees, after --azimuth [0]",
            pose.orbit.elevation_deg);
-  add_turn("--roll", "Then turn the picture clockwise by this angle in degrees [0]", pose.orbit.roll_deg);
+  add_turn("--roll", "Turn the picture clockwise by this angle in degrees, after --elevation [0]", pose.orbit.roll_deg);
   table.add("--zoom", "X", "Magnify the picture around its middle by this factor [1]",
             [&](const OptionValues& w) { pose.zoom = w.real(0, kMinZoom, kMaxZoom); });
   table.add("--eye", "X Y Z", "Position of the eye; replaces that of the camera",

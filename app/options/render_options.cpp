@@ -164,7 +164,8 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
     const char* end = number.data() + number.size();
     const auto parsed = std::from_chars(number.data(), end, value);
     if (parsed.ec != std::errc() || parsed.ptr != end) {
-      words.refuse(fmt::format("--lights-off takes numbers from 0, separated by commas, not \"{}\"", words.text()));
+      words.refuse(
+          fmt::format("--lights-off takes numbers of 0 or more, separated by commas, not \"{}\"", words.text()));
     }
     numbers.push_back(value);
   }
@@ -348,7 +349,7 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
       "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit). The name - stands for a PNG "
       "on the standard output. You may repeat this option [the scene's name with .exr and .png, in the current folder]",
       [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
-  table.add("--explain", "X Y", "Replaces -o: print all rays of this pixel as JSON. 0 0 is the top left pixel",
+  table.add("--explain", "X Y", "Print all rays of this pixel as JSON and write no picture. 0 0 is the top left pixel",
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
@@ -356,7 +357,7 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   add_error_options(
       table, options.error,
       fmt::format(
-          "Replaces --spp: add samples until the estimated error of each pixel is at most E, {} to 1. White is 1",
+          "Add samples until the estimated error of each pixel is at most E, {} to 1, instead of --spp. White is 1",
           least_error()));
   add_time_limit_option(table, options.error);
   add_variant_option(table, options.tracing.load);

@@ -29,7 +29,7 @@ constexpr OtherName kSameOptions[] = {
     {"--resolution", kSize}, {"--samples", "--spp"}, {"--transparent", "--alpha"}, {"--num-threads", "--threads"}};
 
 /// Names of other programs with other values or a slightly different meaning. If a name has several rows, the first row
-/// counts whose option the command has.
+/// with an option of the command applies.
 constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
                                       {"--animation", "--path"},
                                       {"--antialiasing", "--spp"},

@@ -37,14 +37,14 @@ struct Motion {
 /// Adds up motion between frames, event by event, so that the distance does not depend on the times of frames.
 class MotionSum {
  public:
-  /// Records that a key goes down or up at a time in seconds, which never decreases.
+  /// Records that a key is pressed or released at a time in seconds, which never decreases.
   void set(Hold hold, bool is_down, double time);
   void turn(const dvec2& pixels) { sum_.turn += pixels; }
   void orbit(const dvec2& pixels) { sum_.orbit += pixels; }
   void pan(const dvec2& pixels) { sum_.pan += pixels; }
   void turn_light(double pixels) { sum_.light += pixels; }
   void zoom(double steps) { sum_.zoom += steps; }
-  /// Records that all keys go up, because the window has lost the keyboard focus.
+  /// Releases all keys, because the window has lost the keyboard focus.
   void release_all(double time);
 
   /// Returns the motion since the last call.

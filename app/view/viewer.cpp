@@ -400,7 +400,7 @@ void Viewer::log_shown() {
 
 bool Viewer::has_tracing() const {
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
-  // The switch changes at the end of a frame.
+  // The window applies the pause switch to the picture at the end of a frame.
   if (switches_.is_paused != traced_->picture().is_paused()) return true;
   return window_.is_moving() || window_.has_turned() || wants_screenshot_ || traced_->has_work() ||
          traced_->display().exposure_ev != display().exposure_ev ||

@@ -125,9 +125,9 @@ class Viewer {
   void update_answers();
   RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
   PictureRequest request() const;
-  /// Returns whether a picture in another mode than the one shown is being made.
+  /// Returns whether promin is making a picture in a mode that differs from the mode of the shown picture.
   bool awaits_mode() const;
-  /// Returns a description of the work in progress beside the picture.
+  /// Returns a description of the current work in addition to the picture.
   std::string describe_awaited() const;
   /// Adapts everything to the window's size. Returns false while it has no pixels.
   bool fit_window();

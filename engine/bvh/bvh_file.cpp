@@ -122,7 +122,8 @@ Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
   if (bytes.size() < sizeof(Header)) refuse("bvh.file.short", file, "the BVH file ends within its header");
   Header header;
   std::memcpy(&header, bytes.data(), sizeof(Header));
-  if (header.byte_order != kByteOrder) refuse("bvh.file.version", file, "the BVH file has another byte order");
+  if (header.byte_order != kByteOrder)
+    refuse("bvh.file.version", file, "the BVH file has a different byte order than this machine");
   if (header.version != kVersion) {
     refuse("bvh.file.version", file,
            "the BVH file has version " + std::to_string(header.version) + " and this promin reads version " +
@@ -130,7 +131,7 @@ Header read_header(std::span<const std::byte> bytes, const fs::path& file) {
   }
   const bool has_known_kinds = (header.further_kinds & ~kTreeKinds) == 0;
   if (!has_known_kinds || header.layout_hash != hash_layout(header.further_kinds)) {
-    refuse("bvh.file.version", file, "the BVH file has nodes of another layout than this promin's");
+    refuse("bvh.file.version", file, "the BVH file has nodes of a different layout than this promin's");
   }
   return header;
 }
@@ -162,7 +163,8 @@ class TreeCheck {
     if (tree_.nodes.empty()) refuse("bvh.file.tree", file_, "the BVH file has no nodes");
     if (tree_.nodes.size() > layout::MAX_NODES) refuse("bvh.file.tree", file_, "the BVH file has too many nodes");
     entries_[0] = 0;
-    // A child comes after its parent, so the tree has no cycle, and each node is marked as reached before its turn.
+    // A child comes after its parent, so the tree has no cycle, and each node is marked as reached before the loop
+    // visits it.
     for (uint32_t i = 0; i < tree_.nodes.size(); ++i) visit(i);
     if (most_entries_ != tree_.stack_size) {
       refuse("bvh.file.tree", file_,

@@ -17,7 +17,7 @@ std::optional<uint64_t> address_space_limit();
 /// them.
 std::optional<Problem> find_lack_of_space(const std::string& what, uint64_t bytes);
 
-/// Returns the cure for a lack of memory. If address space is limited, it also suggests raising the limit.
+/// Returns the advice for a lack of memory. If address space is limited, it also suggests raising the limit.
 std::string cure_short_memory(std::string cure);
 
 }  // namespace promin

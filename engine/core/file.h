@@ -37,8 +37,8 @@ struct FileStamp {
 /// Returns the stamp of a file; nullopt if there is no such file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
-/// Returns the content of a regular file, or its first `most_bytes`. Throws InputError, with the place and the cure, if
-/// the file is missing, a folder, not readable, empty, or only a stand-in for another file (core/stand_in.h).
+/// Returns the content of a regular file, or its first `most_bytes`. Throws InputError, with the place and with advice,
+/// if the file is missing, a folder, not readable, empty, or only a stand-in for another file (core/stand_in.h).
 std::vector<std::byte> read_file(const std::filesystem::path& file,
                                  uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 

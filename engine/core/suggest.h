@@ -13,7 +13,7 @@ namespace promin {
 /// equal.
 std::string_view nearest_name(std::string_view typed, std::span<const std::string_view> known);
 
-/// Returns the cure for an unknown name: `did you mean "sah"? Known: sah, median`, or `known: sah, median` if no name
+/// Returns the advice for an unknown name: `did you mean "sah"? Known: sah, median`, or `known: sah, median` if no name
 /// is near.
 std::string suggest_name(std::string_view typed, std::span<const std::string_view> known);
 

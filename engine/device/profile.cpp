@@ -36,9 +36,10 @@ void suit_cpu(DeviceProfile& profile, const DeviceTraits& traits) {
 void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
   profile.compiles_on_second_device = traits.core_count > 1;
   profile.pixel_packet_size = 4;
-  // Compiling the showcase for packets takes 0.9 s longer with 22.3.6 and 2.6 s with 25.0.7, once on a machine; tracing
-  // it by single pixels takes 0.1 and 0.24 µs longer a sample, always (docs/performance_log.md). This number of samples
-  // costs at most a tenth of a second if the driver's cache has both kernels, and saves seconds if it has neither.
+  // If a machine compiles the showcase for packets for the first time, this takes 0.9 s longer with Mesa 22.3.6 and 2.6
+  // s longer with 25.0.7. Without packets, each sample takes 0.1 and 0.24 µs longer (docs/performance_log.md). This
+  // number of samples costs at most a tenth of a second if the driver's cache has both kernels, and saves seconds if it
+  // has neither.
   profile.samples_that_repay_packets = 1U << 19;
   profile.ray_packet_size = 4;
   profile.may_cut_loops = true;
@@ -46,7 +47,8 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
 }
 
 /// Lets packets test their leaves after each step. With this, pictures take 0.78 to 0.94 of the time with lavapipe
-/// 25.0.7, and 0.96 to 1.4 of the time with 22.3.6 (docs/performance_log.md). Versions between were not measured.
+/// 25.0.7, and 0.96 to 1.4 of the time with 22.3.6 (docs/performance_log.md). The versions in between were not
+/// measured.
 void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
 }

@@ -275,7 +275,7 @@ class FunctionPruner {
   }
 
   /// Returns the only block to which a conditional branch can lead, if it is known. A branch from the end of a loop to
-  /// its begin stays, because SPIR-V allows no loop without one.
+  /// its beginning stays, because SPIR-V requires one in each loop.
   std::optional<uint32_t> known_target(const Block& block) const {
     const Words terminator = block.terminator();
     if (op_of(terminator) != Op::OpBranchConditional) return std::nullopt;

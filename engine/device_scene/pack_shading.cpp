@@ -70,7 +70,7 @@ class MaterialPacker {
   }
 
   vec4 pack_cover(const Material& material) {
-    // A material that blends with an alpha of 0 is absent.
+    // A material that blends with an alpha of 0 is invisible.
     const float least = material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : kLeastAlpha;
     return {is_absent(material) ? 0.0F : material.alpha, least, add(base_slot(material)),
             add(material.emissive_texture)};

@@ -20,7 +20,7 @@ struct Ends {
 constexpr Ends kHorizon = {0.20, 0.36};
 constexpr Ends kFloor = {0.05, 0.24};
 constexpr double kCeiling = 0.16;
-/// The values of -y and y from which only floor and ceiling are visible.
+/// At -y >= kFloorDepth a direction shows only the floor, and at y >= kCeilingHeight only the ceiling.
 constexpr double kFloorDepth = 0.2;
 constexpr double kCeilingHeight = 0.6;
 /// The width of a lamp's edge, relative to its half size. The radiance decreases from full at 1 minus this width to 0

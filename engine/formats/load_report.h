@@ -31,7 +31,7 @@ struct Fault {
   std::string value = {};
   /// The place in the file, in the form of the argument of LoadReport::refuse().
   std::string place = {};
-  /// The cure for the author of the file.
+  /// The fix that the author of the file can make.
   std::string cure = {};
   /// The repair that the loader makes, as a sentence: "promin omits the face".
   std::string repair = {};

@@ -27,7 +27,7 @@ void encode_light(std::span<uint32_t> texels) {
   }
 }
 
-/// Number of bytes that contain the picture's size in most files, and that are still read fast.
+/// Number of bytes that are read to find a picture's size. Most files state the size within these bytes.
 constexpr uint64_t kHeadBytes = uint64_t{1} << 16;
 
 void take_bytes(PictureSource& source, LoadReport& report, const ReadPictureBytes& read, uint64_t most_bytes) {

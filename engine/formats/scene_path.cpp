@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Returns whether a name begins with a scheme: "http:", "file:", also "C:". A colon after a slash, or without a name
-/// before it, is an ordinary character.
+/// before it, has no special meaning.
 bool has_scheme(const std::string& name) {
   const size_t colon = name.find(':');
   return colon != std::string::npos && colon > 0 && std::all_of(name.begin(), name.begin() + colon, [](char c) {
@@ -115,7 +115,8 @@ std::optional<fs::path> find_beside_scene(const std::string& name, const std::st
     return refuse("file.kind", "a file is not a regular file", "give a file");
   if (!fs::exists(status)) {
     if (must_exist)
-      return refuse("file.missing", "a file does not exist", "put it beside the scene", suggest_path(folder, path));
+      return refuse("file.missing", "a referenced file does not exist", "put it beside the scene",
+                    suggest_path(folder, path));
     return std::nullopt;
   }
   return file;

@@ -32,7 +32,7 @@ inline bool is_radiance(const std::filesystem::path& file) {
 /// The key of the metadata entry with the name of a picture's scene.
 inline constexpr std::string_view kSceneKey = "promin:scene";
 
-/// The cure for an unknown extension.
+/// The advice for an unknown extension.
 inline constexpr const char* kUseKnownEnding = "use .exr, .png, .jpg, .webp, .tif or .hdr";
 
 }  // namespace promin

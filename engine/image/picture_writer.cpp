@@ -132,8 +132,8 @@ void check_rows(const Image& image, std::span<const Channel> channels) {
         "give width times height pixels");
   for (const Channel& channel : channels) {
     check("picture.size", channel.values.size() == pixel_count,
-          "the channel " + channel.name + " has " + std::to_string(channel.values.size()) + " values for " +
-              std::to_string(pixel_count) + " pixels",
+          "the number of values of channel " + channel.name + " is " + std::to_string(channel.values.size()) +
+              ", but the number of pixels is " + std::to_string(pixel_count),
           "give one value for each pixel");
   }
 }

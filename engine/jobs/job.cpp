@@ -126,24 +126,24 @@ std::string find_difference(const Manifest& there, const Manifest& wanted) {
   };
   for (const auto& [name, value] : wanted.options) {
     const std::optional<std::string> other = value_of(there, name);
-    if (!other) return fmt::format("its {} {}, but is {} now", name, kLeftOut, shown(value));
-    if (*other != value) return fmt::format("its {} is {}, but {} now", name, shown(*other), shown(value));
+    if (!other) return fmt::format("its {} {}, but now it is {}", name, kLeftOut, shown(value));
+    if (*other != value) return fmt::format("its {} is {}, but now it is {}", name, shown(*other), shown(value));
   }
   for (const auto& [name, value] : there.options) {
-    if (!value_of(wanted, name)) return fmt::format("its {} is {}, but {} now", name, shown(value), kLeftOut);
+    if (!value_of(wanted, name)) return fmt::format("its {} is {}, but now it {}", name, shown(value), kLeftOut);
   }
   for (size_t i = 0; i < std::max(there.files.size(), wanted.files.size()); ++i) {
     if (i >= there.files.size()) return fmt::format("it lacks the file {}", shown(wanted.files[i].name));
     if (i >= wanted.files.size()) return fmt::format("it has the file {} as well", shown(there.files[i].name));
     if (there.files[i].name != wanted.files[i].name) {
-      return fmt::format("its file is {}, but {} now", shown(there.files[i].name), shown(wanted.files[i].name));
+      return fmt::format("its file is {}, but now it is {}", shown(there.files[i].name), shown(wanted.files[i].name));
     }
     if (there.files[i].sha256 != wanted.files[i].sha256) {
       return fmt::format("the file {} has changed since", shown(wanted.files[i].name));
     }
   }
   if (there.pieces.size() != wanted.pieces.size()) {
-    return fmt::format("it has {} pieces, but {} now", there.pieces.size(), wanted.pieces.size());
+    return fmt::format("it has {} pieces, but the number is now {}", there.pieces.size(), wanted.pieces.size());
   }
   const auto [own, other] = std::ranges::mismatch(there.pieces, wanted.pieces);
   return fmt::format("its piece {} is called {} now", *own, *other);
@@ -205,7 +205,7 @@ std::optional<Header> read_header_of(const fs::path& file) {
   return read_header(magic + "\n" + line + "\n");
 }
 
-/// The content of a piece, or its fault without place and cure.
+/// The content of a piece, or a description of its fault without the place and without advice.
 using Reading = std::variant<Content, Problem>;
 
 Reading read_piece(const fs::path& file, const std::string& job, const std::string& name) {
@@ -484,7 +484,7 @@ std::optional<size_t> check_build(const Job& job, const Maker& maker,
   throw UsageError(
       {"job.build",
        fmt::format(
-           "the job's pieces were made by another build of promin, and this build computes other bits for piece {}",
+           "the job's pieces were made by another build of promin, and this build computes different bits for piece {}",
            job.manifest().pieces[*piece]),
        job.folder().string(), "continue with the first build, or use another folder"});
 }

@@ -52,7 +52,7 @@ enum class PieceState {
 
 /// The maker of pieces, as recorded in the ledger.
 struct Maker {
-  /// Device and driver, for people.
+  /// Device and driver, in readable form.
   std::string made_on;
   /// Hash of the maker's results for a fixed test (work/jobs/fingerprint.h); empty if the test was not run.
   std::string fingerprint;

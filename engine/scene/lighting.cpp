@@ -71,7 +71,7 @@ double luminance_of(const vec3& color) {
 double illuminance_of(const Scene& scene) {
   dvec3 center(0.0);
   double least_distance = 0.0;
-  // Computing the bounds of a large scene takes time, so it is done only if a light needs them.
+  // Computing the bounds of a large scene takes time, so the function does this only if a light needs the bounds.
   if (std::ranges::any_of(scene.lights, falls_off)) {
     const Bounds bounds = frame_of(scene);
     center = middle_of(bounds);

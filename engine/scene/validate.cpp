@@ -43,7 +43,7 @@ class Place {
   Place(const char* name) : name_(name) {}  // NOLINT(google-explicit-constructor): a name is a place.
   Place(const char* array, size_t index) : name_(array), index_(index) {}
 
-  /// Returns the place of a member of this one. The name must outlive the place.
+  /// Returns the place of a member of this part. `member` must outlive the returned place.
   Place operator+(const char* member) const {
     Place part = *this;
     part.members_.at(part.member_count_++) = member;
@@ -148,7 +148,7 @@ class Validation {
     }
     check_share(material.iridescence, place + ".iridescence");
     check("scene.number.range", material.iridescence_ior >= 1.0F && std::isfinite(material.iridescence_ior),
-          "the index of refraction is not finite or below 1", place + ".iridescence_ior", "use a number of 1 or more");
+          "the index of refraction is below 1 or not finite", place + ".iridescence_ior", "use a number of 1 or more");
     check_film(material.iridescence_thickness_minimum, place + ".iridescence_thickness_minimum");
     check_film(material.iridescence_thickness_maximum, place + ".iridescence_thickness_maximum");
     check_share(material.anisotropy, place + ".anisotropy");
@@ -162,7 +162,7 @@ class Validation {
     check("scene.number.range", material.dispersion >= 0.0F && std::isfinite(material.dispersion),
           "the dispersion is negative or not finite", place + ".dispersion", "use 0 or a positive number");
     check("scene.number.range", material.ior == 0.0F || (material.ior >= 1.0F && std::isfinite(material.ior)),
-          "the index of refraction is not finite or below 1", place + ".ior", "use 0, or a number of 1 or more");
+          "the index of refraction is below 1 or not finite", place + ".ior", "use 0, or a number of 1 or more");
   }
 
   void check_model(const Unlit& unlit, const Place& place) { check_color(unlit.color, place + ".color"); }
@@ -244,7 +244,7 @@ class Validation {
       const Place place("lights", i);
       check_color(light.diffuse, place + ".diffuse");
       check_color(light.specular, place + ".specular");
-      check("scene.position.range", is_in_range(dvec3(light.position)), "the position is not finite or beyond 1e15",
+      check("scene.position.range", is_in_range(dvec3(light.position)), "the position is beyond 1e15 or not finite",
             place + ".position", "use a smaller coordinate");
       check("scene.light.direction", std::abs(glm::length(light.direction) - 1.0F) <= kDirectionTolerance,
             "the direction is not a unit vector", place + ".direction", "normalise it");
@@ -326,7 +326,7 @@ class Validation {
   void check_cameras(std::span<const Camera> cameras) {
     for (size_t i = 0; i < cameras.size(); ++i) {
       const Place place("cameras", i);
-      check("scene.camera.eye", is_in_range(dvec3(cameras[i].eye)), "the eye is not finite or beyond 1e15",
+      check("scene.camera.eye", is_in_range(dvec3(cameras[i].eye)), "the eye is beyond 1e15 or not finite",
             place + ".eye", "use a smaller coordinate");
       const uvec2& resolution = cameras[i].resolution;
       const bool is_size = std::min(resolution.x, resolution.y) > 0 && std::max(resolution.x, resolution.y) <= kMaxSide;
@@ -502,7 +502,7 @@ class Validation {
     const size_t vertices = mesh.positions.size();
     check_each(
         "scene.position.range", mesh.positions, [](const vec3& p) { return is_in_range(dvec3(p)); },
-        "a vertex coordinate is not finite or beyond 1e15", place + ".positions", "use a larger unit of length");
+        "a vertex coordinate is beyond 1e15 or not finite", place + ".positions", "use a larger unit of length");
     check_each(
         "scene.normal.range", mesh.normals, [](const vec3& n) { return is_finite(n) && n != vec3(0.0F); },
         "a normal has length 0 or is not finite", place + ".normals", "remove the normals, or give each a direction");
@@ -512,7 +512,7 @@ class Validation {
     check_each(
         "scene.uv.range", mesh.uvs,
         [](const vec4& uv) { return is_in_range(dvec3(uv)) && std::abs(uv.w) <= kMaxCoordinate; },
-        "a texture coordinate is not finite or beyond 1e15", place + ".uvs", "use smaller coordinates");
+        "a texture coordinate is beyond 1e15 or not finite", place + ".uvs", "use smaller coordinates");
     check_each(
         "scene.tangent.range", mesh.tangents,
         [](const vec4& t) { return is_finite(vec3(t)) && vec3(t) != vec3(0.0F) && std::abs(t.w) == 1.0F; },

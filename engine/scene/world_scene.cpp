@@ -58,7 +58,7 @@ struct ShapeInWorld {
   template <class Described>
   Shape operator()(const Described& described) const {
     auto placed = promin::place(described, Placement(world_from_object));
-    // In a valid scene every transform keeps the form of its shapes.
+    // In a valid scene no transform distorts its shapes.
     return placed ? Shape(*placed) : Shape(NotDrawn{});
   }
 };

@@ -27,7 +27,7 @@ Orientation nearest_to_space(const Orientation& given) {
   double most = -4.0;
   int order[3] = {0, 1, 2};
   do {
-    // A right-handed basis allows two of its signs to be chosen.
+    // In a right-handed basis, two of the three signs are free.
     for (int signs = 0; signs < 4; ++signs) {
       dmat3 axes;
       dvec3 half_size;

@@ -121,7 +121,7 @@ class JpegReader {
   const std::string& warning() const { return warning_; }
 
  private:
-  /// Checks the result of a call of the library. After a warning the picture is decoded as far as possible.
+  /// Checks the result of a call of the library. After a warning the readable part of the picture is still decoded.
   void check(int result) {
     if (result == 0) return;
     if (tjGetErrorCode(handle_.get()) != TJERR_WARNING) throw PictureError(tjGetErrorStr2(handle_.get()));
@@ -176,7 +176,7 @@ class PluginReader {
   ProminPicturesMessage message_{};
 };
 
-/// Calls task with the reader for the format that the file's first bytes show.
+/// Calls task with the reader for the file's format, which the first bytes determine.
 template <typename Task>
 auto with_reader(std::span<const std::byte> file, const Task& task) {
   const PictureFormat* format = find_picture_format(file);

@@ -20,7 +20,7 @@ enum class Projection {
 /// checks these rules: all numbers are finite, and `look` and `up` are unit vectors at right angles, each within 0.001.
 /// The right of the picture is look x up.
 struct Camera {
-  /// A name for people; empty if there is none.
+  /// The display name; empty if there is none.
   std::string name;
   /// The projection; perspective by default.
   Projection projection = Projection::kPerspective;

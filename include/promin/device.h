@@ -32,7 +32,7 @@ PROMIN_EXPORT DeviceHandle open_device(const std::optional<std::string>& selecti
 /// Returns the entry of list_devices() for this device. The reference is valid as long as the device exists.
 PROMIN_EXPORT const DeviceInfo& info_of(const Device& device);
 
-/// Returns the reason for the choice of this device, as one sentence for people. The reference is valid as long as the
+/// Returns the reason for the choice of this device, as one sentence. The reference is valid as long as the
 /// device exists.
 PROMIN_EXPORT const std::string& choice_of(const Device& device);
 

@@ -56,7 +56,7 @@ class ProblemCode {
   std::string_view text_;
 };
 
-/// Describes one problem for people.
+/// Describes one problem in words.
 struct PROMIN_EXPORT Problem {
   /// The kind of the problem.
   ProblemCode code;
@@ -65,7 +65,7 @@ struct PROMIN_EXPORT Problem {
   /// Where the problem is: a file, then ": " and a place in the file, such as a JSON path or a line; or a member of a
   /// Scene. May be empty.
   std::string where;
-  /// The way for the user to solve the problem. It may be empty.
+  /// The action by which the user can solve the problem. It may be empty.
   std::string cure;
   /// The setting that `where` or `cure` refers to.
   Setting setting = Setting::kNone;

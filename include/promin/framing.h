@@ -91,7 +91,7 @@ struct Orbit {
 };
 
 /// Returns the camera moved around the point `target` of the scene. `up`, of any length except 0, is the axis of the
-/// azimuth. If all angles are 0, the camera keeps its bits.
+/// azimuth. If all angles are 0, the camera does not change.
 PROMIN_EXPORT Camera orbit_camera(const Camera& camera, const dvec3& target, const Orbit& orbit,
                                   const vec3& up = vec3(0.0F, 1.0F, 0.0F));
 
@@ -100,7 +100,7 @@ PROMIN_EXPORT Camera orbit_camera(const Camera& camera, const dvec3& target, con
 PROMIN_EXPORT dvec3 orbit_target(const Scene& scene, const Camera& camera);
 
 /// Returns a camera for pictures of this size that shows at least what the camera shows in its own aspect ratio. A
-/// narrower picture shows more above and below. A camera without an aspect ratio keeps its bits.
+/// narrower picture shows more above and below. A camera without an aspect ratio does not change.
 PROMIN_EXPORT Camera widen_camera(const Camera& camera, const uvec2& size);
 
 /// Returns whether a camera may see anything of a valid scene. The answer false is certain. The answer true may be

@@ -96,7 +96,7 @@ PROMIN_EXPORT void write_image(const std::filesystem::path& file, const Image& i
 /// pixels.
 inline constexpr uint64_t kMaxReadPixels = uint64_t{1} << 28;
 
-/// Reads a picture of any format that OpenImageIO supports: The result holds R, G and B, or a luminance three times, as
+/// Reads a picture of any format that OpenImageIO supports. The result holds R, G and B, or a luminance three times, as
 /// fp32 without conversion. The function reads the data window of an EXR. It multiplies the colours of WebP and EXR
 /// files by alpha, but not those of other formats. Any thread may call this function. Throws InputError if the file is
 /// not such a picture, and RunError if the plugin that reads pictures, libpromin_pictures.so, is missing.

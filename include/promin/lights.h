@@ -31,7 +31,7 @@ enum class Attenuation {
 /// A light with a diffuse and a specular power. The default is a classic point light of power 1 at the origin.
 /// validate() (promin/validate.h) checks the ranges below.
 struct Light {
-  /// A name for people; empty if there is none.
+  /// The display name; empty if there is none.
   std::string name;
   /// The kind, which determines which of the members below are used.
   LightKind kind = LightKind::kPoint;

@@ -162,7 +162,7 @@ enum class AlphaMode : uint32_t {
 
 /// The material of an object's surface.
 struct Material {
-  /// A name for people; empty if there is none.
+  /// The display name; empty if there is none.
   std::string name;
   /// The model and its parameters.
   std::variant<Phong, MetallicRoughness, Unlit> model;

@@ -87,10 +87,10 @@ struct RendererOptions {
   /// largest images until all images fit, and adds a warning to SetupStats::warnings. Pictures depend on this limit but
   /// not on the size of the device's memory: if the device has no room for the images, the constructor throws RunError.
   uint64_t texture_bytes = kDefaultTextureBytes;
-  /// True if render() returns AovSet::of_surfaces() in RenderResult::aovs. The image keeps its bits.
+  /// True if render() returns AovSet::of_surfaces() in RenderResult::aovs. The image does not change.
   bool with_aovs = false;
   /// Further AOVs that render() returns in RenderResult::aovs. With `alpha` the image has no background; otherwise it
-  /// keeps its bits.
+  /// does not change.
   AovSet aovs = {};
   /// Receives the progress of building the tree. If it returns false, the constructor throws Cancelled.
   ProgressCallback progress = {};

@@ -26,7 +26,7 @@ struct Object {
   /// The value of `geometry` for an object without geometry.
   static constexpr uint32_t kNoGeometry = std::numeric_limits<uint32_t>::max();
 
-  /// A name for people; empty if there is none.
+  /// The display name; empty if there is none.
   std::string name;
   /// Index into Scene::geometries; several objects may share a geometry. An object with kNoGeometry is not drawn and
   /// only keeps its index (for points, lines or hidden objects).

@@ -48,11 +48,11 @@ struct SetupStats {
   BvhStats bvh;
   /// Size of the scene in device memory, in bytes.
   uint64_t device_bytes = 0;
-  /// Names of the features that the pipeline is specialised for, for people.
+  /// Display names of the features that the pipeline is specialised for.
   std::vector<std::string> features;
   /// Number of triangles without area. No ray hits them.
   uint64_t degenerate_triangles = 0;
-  /// Parts of the scene that promin shows differently than the scene describes, each with a cure.
+  /// Parts of the scene that promin shows differently than the scene describes, each with a way to avoid this.
   std::vector<Problem> warnings;
 };
 

@@ -47,7 +47,7 @@ using Geometry = std::variant<Mesh
 #include "promin/kinds/primitives.def"
                               >;
 
-/// Names of the alternatives of Geometry for people, in the variant's order and in the plural: "meshes", "spheres", …
+/// Display names of the alternatives of Geometry, in the variant's order and in the plural: "meshes", "spheres", …
 inline constexpr std::string_view kGeometryNames[] = {
     "meshes",
 #define PROMIN_SHAPE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) NAME,

@@ -11,7 +11,7 @@
 
 namespace promin {
 
-/// The meaning of an image's texels, which determines how promin computes the image's smaller levels.
+/// The meaning of an image's texels, which determines how promin computes the image's mip levels.
 enum class ImageUse : uint32_t {
   /// sRGB colours with alpha.
   kColor = 0,
@@ -23,7 +23,7 @@ enum class ImageUse : uint32_t {
 
 /// An image that textures use. If its texels are missing, promin ignores texture slots with this image.
 struct TextureImage {
-  /// A name for people; empty if there is none.
+  /// The display name; empty if there is none.
   std::string name;
   /// Width and height. Each is 1...kMaxTextureSide if there are texels.
   uvec2 size{0};
@@ -55,9 +55,9 @@ struct Texture {
   bool is_magnified_linearly = true;
   /// True if texels that are smaller than pixels are interpolated.
   bool is_minified_linearly = true;
-  /// True if promin uses the image's smaller levels where texels are smaller than pixels.
+  /// True if promin uses the image's mip levels where texels are smaller than pixels.
   bool has_levels = true;
-  /// True if promin interpolates between two levels.
+  /// True if promin interpolates between two mip levels.
   bool are_levels_linear = true;
 };
 

@@ -17,14 +17,15 @@ inline constexpr double kMaxCoordinate = 1e15;
 /// The smallest size in the world. validate() refuses smaller ones, because fp32 would underflow.
 inline constexpr double kMinSize = 1e-22;
 
-/// Returns all problems of a scene, each with its place ("objects[3].material") and its cure; empty for a valid scene.
-/// Scenes from load_scene are valid. For arrays of vertices, the function reports only the first wrong element.
+/// Returns all problems of a scene, each with its place ("objects[3].material") and a way to solve it; empty for a
+/// valid scene. Scenes from load_scene are valid. For arrays of vertices, the function reports only the first wrong
+/// element.
 PROMIN_EXPORT std::vector<Problem> validate(const Scene& scene);
-/// Returns all problems of these lights, each with its place and its cure.
+/// Returns all problems of these lights, each with its place and a way to solve it.
 PROMIN_EXPORT std::vector<Problem> validate(std::span<const Light> lights);
-/// Returns all problems of these materials, each with its place and its cure.
+/// Returns all problems of these materials, each with its place and a way to solve it.
 PROMIN_EXPORT std::vector<Problem> validate(std::span<const Material> materials);
-/// Returns all problems of an environment, each with its place and its cure.
+/// Returns all problems of an environment, each with its place and a way to solve it.
 PROMIN_EXPORT std::vector<Problem> validate(const Environment& environment);
 /// Returns all problems of a view. A problem is a rule of promin/view.h that the view breaks; render() throws
 /// UsageError for such a view.

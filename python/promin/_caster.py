@@ -218,7 +218,7 @@ class Caster:
             return self._opened
 
     def _make_private(self) -> None:
-        """Creates the members that are not pickled: the open objects and their locks."""
+        """Creates the members that are not pickled: the native objects, and the lock that protects them."""
         self._lock = threading.RLock()
         self._opened = None
 

@@ -50,7 +50,7 @@ class Light:
     is_on: bool = True
     """True if the light is on. A light that is off keeps its index."""
     name: str = ""
-    """A name for people."""
+    """The display name."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Material:
     """The fields that all material models share (promin/materials.h). Use Phong, MetallicRoughness or Unlit."""
 
     name: str = ""
-    """A name for people."""
+    """The display name."""
     emissive: Vec3 = (0.0, 0.0, 0.0)
     """Light that the surface emits."""
     emissive_texture: TextureSlot | None = None
@@ -223,7 +223,7 @@ class Camera:
     resolution: tuple[int, int] = (0, 0)
     """The size in pixels that the scene's file requests; 0 if the file requests no size."""
     name: str = ""
-    """A name for people."""
+    """The display name."""
 
     @staticmethod
     def look_at(

@@ -448,7 +448,7 @@ class Renderer:
         return to_world(record, self._scene.native_center)
 
     def _make_private(self) -> None:
-        """Creates the members that are not pickled: open objects, and the locks for them and for changes."""
+        """Creates the members that are not pickled: the native objects, and the lock that protects them."""
         self._lock = threading.RLock()
         self._opened = None
 

@@ -28,7 +28,7 @@ class ObjectInfo(NamedTuple):
     """A description of an object."""
 
     name: str
-    """A name for people; may be empty."""
+    """The display name; may be empty."""
     primitive_count: int
     """Number of the object's triangles, or 1 for an analytic shape; 0 if nothing is drawn."""
     material: int
@@ -619,7 +619,7 @@ def _middle(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.f
         middle = low / 2 + high / 2
         size = float(np.max(high - low))
     if not np.isfinite(middle).all() or not np.isfinite(size):
-        # The native module refuses numbers that are not finite and names their place.
+        # The native module refuses numbers that are not finite and reports where they are.
         return np.zeros(3)
     if size == 0.0:
         return middle

@@ -123,8 +123,8 @@ def assert_same_picture(
     write_image(shows, heat(found.flip_map))
     differing = "1 pixel differs" if found.different_count == 1 else f"{found.different_count} pixels differ"
     raise DifferenceError(
-        f"{differing} by more than {fail:g}, the most at pixel {found.largest_at[0]} "
-        f"{found.largest_at[1]} by {found.largest:.6g}, {actual} against {file}; {shows} shows where"
+        f"{differing} by more than {fail:g}, with the largest difference at pixel {found.largest_at[0]} "
+        f"{found.largest_at[1]} ({found.largest:.6g}), {actual} compared with {file}; {shows} shows where"
     )
 
 

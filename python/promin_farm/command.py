@@ -133,7 +133,8 @@ def _make_parser() -> argparse.ArgumentParser:
     alone.add_argument(
         "--array-task",
         metavar="I/N",
-        help="make every N-th piece, beginning with piece I, then missing pieces [the task's number in a Slurm array]",
+        help="make every N-th piece, beginning with piece I, then any piece that is still missing [the task's number "
+        "in a Slurm array]",
     )
     status = add("status", "Show the progress of a job")
     status.add_argument("--json", action="store_true", help="print JSON")

@@ -35,7 +35,7 @@ class Presence:
     number."""
     fingerprint: str
     device: str
-    """Device and driver of the worker, for people."""
+    """Device and driver of the worker, in readable form."""
     threads: str
     """LP_NUM_THREADS of the worker; empty if the driver chooses the number of threads."""
 

@@ -163,7 +163,7 @@ def test_random_views(renderer: promin.Renderer, data: st.DataObject) -> None:
     ]
     values = {name: data.draw(VALUES) for name in data.draw(st.lists(st.sampled_from(names), min_size=1, max_size=3))}
     if isinstance(values.get("spp"), int) or isinstance(values.get("time_limit"), (int, float)):
-        return  # These arguments may be right, and would take long.
+        return  # These arguments may be valid, and the calls would take long.
     try:
         renderer.render(promin.View(size=(4, 3), **values))
     except ERRORS as error:

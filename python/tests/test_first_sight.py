@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""The first calls of a new user: a picture in one line, the words of the programs, materials by name, and cures for
+"""The first calls of a new user: a picture in one line, the words of the programs, materials by name, and advice after
 mistakes."""
 
 from __future__ import annotations

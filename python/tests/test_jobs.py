@@ -434,7 +434,10 @@ def test_a_change_is_refused(scene: Path, rays: Path, tmp_path: Path) -> None:
         "rays": str(rays),
         "pieces": 2,
     }
-    for other, what in (([*words, "--any"], "its --any is not given"), ([*words[:2]], "it has 2 pieces, but 1 now")):
+    for other, what in (
+        ([*words, "--any"], "its --any is not given"),
+        ([*words[:2]], "it has 2 pieces, but the number is now 1"),
+    ):
         with fails(promin.UsageError, "job.other", what):
             jobs.create("cast", other, tmp_path / "job")
     changed = make_rays(1000)

@@ -37,7 +37,7 @@ def test_a_picture_is_held_against_its_baseline(
     other = frame.rgb.copy()
     other[7, 5] += 0.25
     with pytest.raises(
-        promin.DifferenceError, match="1 pixel differs by more than 0.01, the most at pixel 5 7"
+        promin.DifferenceError, match="1 pixel differs by more than 0.01, with the largest difference at pixel 5 7"
     ) as caught:
         testing.assert_same_picture(promin.Frame(other, {}, {}, frame.display), baseline, fail=0.01)
     assert isinstance(caught.value, AssertionError)

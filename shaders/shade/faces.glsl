@@ -70,7 +70,7 @@ void meet_metallic_roughness(inout ShadingPoint point, GlassRecord record, bool 
 float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint color, bool leaves) {
   float seen = -dot3(point.normal, direction);
   Glass glass = point.glass;
-  // At this place the mirror's weight includes the values of textures.
+  // At this point of the code, the mirror's weight includes the values of textures.
   glass.mirror = point.material.d.xyz;
   point.glass = glass;
   uint number = glass_number(point.material);

@@ -354,7 +354,7 @@ LAYOUT_CONSTANT LIGHT_PARTS = 6u;
 LAYOUT_CONSTANT PART_SEEN =
     6u;  // no part of light: xyz = light of the current point without light sources, w = parts (light_parts.glsl)
 LAYOUT_CONSTANT PART_RECORDS = 7u;
-// With FEATURE_SAMPLE_IDS, the `order` of each of this number of samples follows, four per record.
+// With FEATURE_SAMPLE_IDS, the values of `order` of SAMPLE_IDS samples follow, four per record.
 LAYOUT_CONSTANT SAMPLE_IDS = 16u;
 // With FEATURE_SAMPLE_RANGES, on films without a list, the smallest and the largest value of the samples in each
 // channel follow.

@@ -201,7 +201,7 @@ TEST_F(BvhCliTest, AFullDiskLeavesTheOldFile) {
   EXPECT_THAT(files(), ElementsAre("many.obj", "old.pbvh"));
 }
 
-/// Whenever a program is killed, either the old file or the new one is there, whole.
+/// If a program is killed at any time, either the complete old file or the complete new file exists.
 TEST_F(BvhCliTest, AKillLeavesAWholeFile) {
   write_triangles("many.obj", 20'000);
   build({"many.obj", "-o", "new.pbvh", "--builder", "median"});

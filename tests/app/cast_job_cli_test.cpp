@@ -119,10 +119,11 @@ TEST_F(CastJobCliTest, WhatIsBadIsMadeAnewAndOthersAreRefused) {
 
   expect_failure(
       cast({"--job", "job", "--pieces", "4", "--any", "-o", "cut.npy"}), 2,
-      "the folder belongs to another job: its --any is not given or has its default value, but is \"given\" now");
-  expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2, "it has 4 pieces, but 3 now");
+      "the folder belongs to another job: its --any is not given or has its default value, but now it is \"given\"");
+  expect_failure(cast({"--job", "job", "--pieces", "3", "-o", "cut.npy"}), 2,
+                 "it has 4 pieces, but the number is now 3");
   write_rays("rays.npy", make_rays(999));
-  expect_failure(cast(words), 2, "its rays is \"1000\", but \"999\" now");
+  expect_failure(cast(words), 2, "its rays is \"1000\", but now it is \"999\"");
   std::vector<Ray> rays = make_rays(1000);
   rays[17].tmin = 0.5F;
   write_rays("rays.npy", rays);
@@ -155,7 +156,7 @@ TEST_F(CastJobCliTest, WrongUseIsRefused) {
   expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "output.ending \".npy\"");
 }
 
-// The piece being written is not there; the pieces before it are.
+// The piece that was being written does not exist. The earlier pieces exist.
 TEST_F(CastJobCliTest, AFullDiskLeavesWholePieces) {
   write_rays("rays.npy", make_rays(20000));
   expect_done(cast({"-o", "whole.npy"}));

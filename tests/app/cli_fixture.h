@@ -31,8 +31,8 @@ v 0 1 0
 f 1 2 3
 )";
 
-/// A unit square at z = 0 with a material of Phong's model, whose kernels compile fastest, a point source and two
-/// cameras.
+/// A unit square at z = 0 with a point source and two cameras. Its material is Phong's model, whose kernels compile
+/// fastest.
 inline constexpr const char* kSquareGltf =
     R"({
   "asset": {"version": "2.0"},
@@ -114,7 +114,7 @@ class CliTest : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  /// Returns the names of the files in the folder, without the scenes.
+  /// Returns the names of the files in the folder except the scenes.
   std::set<std::string> files() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder())) names.insert(entry.path().filename());
@@ -127,7 +127,8 @@ class CliTest : public testing::Test {
   void fill_disk(size_t most_bytes) {
     options_.max_file_bytes = most_bytes;
     options_.environment["LD_PRELOAD"] = PROMIN_FULL_DISK_LIBRARY;
-    // A sanitizer must be loaded first. This matters only if libraries replace functions that it intercepts.
+    // A sanitizer checks that it is loaded first. The check is off, because the library replaces no
+    // function that sanitizers intercept.
     options_.environment["ASAN_OPTIONS"] = "verify_asan_link_order=0";
   }
 

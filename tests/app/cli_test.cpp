@@ -56,7 +56,7 @@ void expect_displayed(const Image& picture, const Image& png, const DisplayTrans
 }
 
 TEST_F(CliTest, NamesOfFilesDriveNoTerminal) {
-  // The last character is U+009B, which begins commands as ESC and [ do.
+  // The last character is U+009B, which begins commands of a terminal, as ESC [ does.
   expect_failure(run({"info", "no\nsuch\033[2J\u00e9\u009b.gltf"}), 3, "no?such?[2J\u00e9?.gltf");
   const ProcessResult result = run({"render", "square.gltf", "--size", "8", "8", "-o", "x\033[2J\ny.exr", "-v"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -236,7 +236,7 @@ TEST_F(CliTest, APanoramaLightsAndIsSeen) {
                               "--environment-intensity", "2", "--background", "environment"},
                              "a.exr");
   EXPECT_EQ(image.at(0, 0), vec3(1.0F));
-  // The grey of OBJ is 0.8; the light is 1 from everywhere.
+  // The default grey of OBJ is 0.8. The light is 1 from all directions.
   EXPECT_NEAR(image.at(32, 18).x, 0.8F, 1e-3F);
 }
 
@@ -273,14 +273,14 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
     expect_failure(run({"render", "square.gltf", "--size", "300", "300", "-o", output, "--quiet"}), 1, output);
     EXPECT_EQ(read(output), "old");
   }
-  // There is no room even for the bytes before the rows, or for more of a message; libpng has nothing to add.
+  // The disk has no room for the bytes before the rows, and only for 50 bytes of the message. libpng prints nothing.
   fill_disk(50);
   const ProcessResult early = run({"render", "square.gltf", "-o", "old.png", "--quiet"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.err, testing::StartsWith("promin: "));
   EXPECT_EQ(read("old.png"), "old");
   fill_disk(2000);
-  // This picture waits on disk until it is whole. The disk has no room for it, which is known before tracing.
+  // promin stores this picture on disk until it is complete. It detects before tracing that the disk has no room.
   const OptionValues large = {"render",         "square.gltf", "--size", "30000",   "20000",
                               "--target-error", "0.5",         "-o",     "old.exr", "--quiet"};
   expect_failure(run(large), 1, "there is no room for 7201 MB beside the output file until it can be written");
@@ -288,7 +288,7 @@ TEST_F(CliTest, AFullDiskLeavesTheOldPictures) {
   EXPECT_THAT(files(), testing::UnorderedElementsAre("old.exr", "old.png"));
 }
 
-// If a file system cannot reserve room, the picture that waits finds the disk full while it is written.
+// If a file system cannot reserve space, promin detects the full disk only while it stores the picture.
 TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
   write("old.exr", "old");
   fill_disk(700'000);
@@ -303,7 +303,7 @@ TEST_F(CliTest, ADiskThatFillsLeavesTheOldPictures) {
     EXPECT_EQ(read("old.exr"), "old");
     EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
   }
-  // There is room for the waiting picture, but not for the file.
+  // The disk has room for the stored picture, but not for the output file.
   const OptionValues large = {
       "render", "square.gltf", "--size",  "200",           "200", "--aov", "object,position,normal",
       "-o",     "old.exr",     "--quiet", "--compression", "none"};
@@ -399,7 +399,7 @@ TEST_F(CliTest, InfoSaysWhatASceneHolds) {
   EXPECT_THAT(info.out, ContainsRegex("memory +[0-9.]+ MB of geometry on the host, [0-9.]+ MB on the device"));
 }
 
-/// Returns the square's file with one text replaced by another.
+/// Returns the text of the square's file, in which one text replaces another.
 std::string square_with(const std::string& part, const std::string& other) {
   std::string text = kSquareGltf;
   text.replace(text.find(part), part.size(), other);
@@ -438,7 +438,7 @@ TEST_F(CliTest, TheRootWidensWhatASceneMayName) {
       "images": [{"uri": "../pictures/none.png"}])");
   write("models/square.gltf", text);
   EXPECT_THAT(run({"info", "models/square.gltf"}).out, HasSubstr("leads out of the scene's folder"));
-  EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a file does not exist"));
+  EXPECT_THAT(run({"info", "models/square.gltf", "--root", "."}).out, HasSubstr("a referenced file does not exist"));
   expect_failure(run({"info", "models/square.gltf", "--root", "none"}), 2, "scene.root.folder none:");
   expect_failure(run({"info", "models/square.gltf", "--strict"}), 3, "--root DIR");
 }
@@ -455,7 +455,7 @@ TEST_F(CliTest, InfoTellsTexturesBySize) {
   const ProcessResult info = run({"info", "pixel.gltf"});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, ContainsRegex("textures +2 of 2 images \\(1 of 1x1, 1 absent\\), 0.000 MB on the device\n"));
-  EXPECT_THAT(info.out, HasSubstr("image images[1]: a file does not exist (\"none.png\"); "));
+  EXPECT_THAT(info.out, HasSubstr("image images[1]: a referenced file does not exist (\"none.png\"); "));
 }
 
 /// Returns the square with a texture whose PNG has a wrong byte among its texels.
@@ -482,7 +482,7 @@ TEST_F(CliTest, InfoWarnsOfCamerasWithoutASensibleSize) {
       HasSubstr("the camera's aspect ratio of 1e-06 is too extreme to compute the width of the picture; give --size"));
 }
 
-/// Reads what `promin info --json` says of a scene.
+/// Returns the output of `promin info --json` for a scene.
 class InfoJsonTest : public CliTest {
  protected:
   json info(const std::string& scene, const OptionValues& more = {}) {
@@ -693,7 +693,7 @@ TEST_F(CliTest, PicturesAreShownAsAsked) {
     const Image exr = render(arguments, "a.exr");
     expect_displayed(exr, read_image(folder() / "a.png"), display);
     const std::string header = read("a.exr");
-    // In the header, a value's length stands before it in four bytes.
+    // In the header, four bytes before a value give its length.
     const auto value_of = [&](const std::string& name, size_t length) {
       return header.substr(header.find(name) + name.size() + sizeof "string" + 5, length);
     };
@@ -844,7 +844,7 @@ TEST_F(CliTest, TheBackgroundIsTheUsers) {
       << "an EXR has what is shown without exposure";
   EXPECT_EQ(corner({"--light", "headlight", "--background", "environment"}), vec3(0.1F)) << "the ambient light";
   EXPECT_EQ(corner({"--light", "headlight", "--background=environment"}), vec3(0.1F));
-  // The option takes one word, whatever follows it.
+  // The option takes exactly one word, even if more words follow.
   OptionValues arguments = {"render", "--light", "headlight", "--background", "environment"};
   arguments.insert(arguments.end(), size.begin(), size.end());
   arguments.insert(arguments.end(), {"-o", "b.exr"});
@@ -852,8 +852,8 @@ TEST_F(CliTest, TheBackgroundIsTheUsers) {
   EXPECT_EQ(read_image(folder() / "b.exr").at(0, 0), vec3(0.1F));
 }
 
-// The background has the picture's codes, however light becomes codes. At an edge it counts with its share of the
-// pixel.
+// The background has exactly the given colour under every display transform. At an edge it is weighted by the fraction
+// of the pixel that it covers.
 TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
   const auto codes_at = [](const Image& image, uint32_t x, uint32_t y) {
     return uvec3(glm::round(255.0F * image.at(x, y)));
@@ -864,7 +864,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
                                                   {"#336699", uvec3(0x33, 0x66, 0x99)}};
   for (const auto& [word, codes] : colors) {
     for (const std::string_view mapping : tone_mapping_names()) {
-      // Only two colours are tried with every mapping, because the other two test nothing more.
+      // Only two colours are tested with every tone mapping, because the other two would test nothing new.
       const bool is_each_mapped = word == std::string_view("white") || word == std::string_view("#369");
       if (!is_each_mapped && mapping != tone_mapping_names().front()) continue;
       render({"triangle.obj", "--size", "32", "18", "--spp", "2", "--exposure", "1.5", "--background", word, "-o",
@@ -875,7 +875,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c], codes[c], is_end ? 0 : 1) << word << ", " << mapping;
     }
   }
-  // The scene looks the same before any background, and the background fills the rest of a pixel, in linear light.
+  // The scene looks the same in front of any background. The background fills the rest of each pixel, in linear light.
   const auto show = [&](const char* word) {
     render({"triangle.obj", "--size", "32", "18", "--spp", "16", "--tone-mapping", "aces", "--background", word, "-o",
             "a.png"},
@@ -897,7 +897,7 @@ TEST_F(CliTest, ABackgroundIsShownAsItIsGiven) {
   EXPECT_GT(edges, 5U);
 }
 
-// The picture has the file's camera, a headlight and a black background, as pictures had before there was a studio.
+// The picture has the file's camera, a headlight and a black background, as in versions before the studio existed.
 TEST_F(CliTest, ClassicLightGivesClassicPictures) {
   write("classic.gltf", classic_square());
   const gpu::DeviceHandle device = gpu::open_device();
@@ -1040,7 +1040,7 @@ TEST_F(CliTest, APictureDoesNotDependOnTheDriversThreads) {
   const Image by_three = render(arguments, "three.exr");
   ASSERT_EQ(by_one.size, by_three.size);
   for (size_t i = 0; i < by_one.pixels.size(); ++i) ASSERT_EQ(by_one.pixels[i], by_three.pixels[i]) << "pixel " << i;
-  // The option --threads gives the same; its kernels come from the cache that the other runs have filled.
+  // The option --threads has the same effect. Its kernels come from the cache that the other runs have filled.
   OptionValues with_threads = arguments;
   with_threads.insert(with_threads.end(), {"--threads", "2"});
   render(with_threads, "two.exr");
@@ -1119,7 +1119,7 @@ TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
   }
 }
 
-// The data that wait on disk until the picture is whole have no file name.
+// The file that stores the data until the picture is complete has no name.
 TEST_F(CliTest, AnInterruptLeavesNothingOfAPictureThatWaitsOnDisk) {
   write("old.exr", "old");
   Process program(PROMIN_EXECUTABLE,

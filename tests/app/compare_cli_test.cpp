@@ -30,7 +30,7 @@ class CompareCliTest : public CliTest {
   }
 
   ProcessResult compare(const OptionValues& more) const {
-    // At so low a resolution FLIP's filters are small and fast.
+    // At such a low resolution FLIP's filters are small and fast.
     OptionValues arguments = {"compare", "--pixels-per-degree", "5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
@@ -62,9 +62,8 @@ TEST_F(CompareCliTest, MoreThanTheLimitIsFive) {
   EXPECT_EQ(std::pair(quiet.exit_code, quiet.out), std::pair(5, std::string()));
   const ProcessResult over = compare({"a.exr", "b.exr", "--fail", "0.25"});
   EXPECT_EQ(over.exit_code, 5);
-  EXPECT_THAT(
-      over.err,
-      HasSubstr("promin: b.exr against a.exr: 1 pixel differs by more than 0.25, the most at pixel 9 7 by 0.375\n"));
+  EXPECT_THAT(over.err, HasSubstr("promin: b.exr compared with a.exr: 1 pixel differs by more than 0.25, with the "
+                                  "largest difference at pixel 9 7 (0.375)\n"));
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.53"}).exit_code, 0) << "1 of 192";
   const ProcessResult share = compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.52"});
   EXPECT_EQ(share.exit_code, 5);
@@ -115,8 +114,8 @@ TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {
   expect_failure(compare({"a.exr", "b.exr", "--fail", "-1"}), 2, "--fail takes a number from 0");
 }
 
-/// The fixture has two EXRs of the same colours, one in one part and one in several. They have 200 rows, which is more
-/// than are held at a time.
+/// The fixture has two EXRs of the same colours, one in one part and one in several. They have 200 rows, more than the
+/// program holds in memory at a time.
 class CompareChannelsCliTest : public CompareCliTest {
  protected:
   static constexpr uvec2 kSize{600, 200};
@@ -149,8 +148,9 @@ TEST_F(CompareChannelsCliTest, EveryChannelIsCompared) {
   write_channels("other.exr");
   const ProcessResult other = compare({"one.exr", "other.exr", "--fail", "0.25"});
   EXPECT_EQ(other.exit_code, 5);
-  EXPECT_THAT(other.err, AllOf(HasSubstr("other.exr against"),
-                               HasSubstr("differs by more than 0.25 in object, the most at pixel 5 0 by 2\n")));
+  EXPECT_THAT(other.err,
+              AllOf(HasSubstr("other.exr compared with"),
+                    HasSubstr("differs by more than 0.25 in object, with the largest difference at pixel 5 0 (2)\n")));
   EXPECT_THAT(other.out, HasSubstr("mean        0\n"));
   EXPECT_THAT(other.out, HasSubstr("Z: largest 0.25, at pixel 597 199; "));
   EXPECT_THAT(other.out, HasSubstr("object: largest 2, at pixel 5 0; "));
@@ -158,7 +158,8 @@ TEST_F(CompareChannelsCliTest, EveryChannelIsCompared) {
   EXPECT_EQ(compare({"one.exr", "other.exr", "--fail", "2"}).exit_code, 0);
   const ProcessResult nearer = compare({"one.exr", "other.exr", "--json", "--fail", "0.125"});
   EXPECT_EQ(nearer.exit_code, 5);
-  EXPECT_THAT(nearer.err, HasSubstr("differs by more than 0.125 in Z, the most at pixel 597 199 by 0.25"));
+  EXPECT_THAT(nearer.err,
+              HasSubstr("differs by more than 0.125 in Z, with the largest difference at pixel 597 199 (0.25)"));
   const json figures = json::parse(nearer.out).at("channels");
   EXPECT_EQ(figures.size(), 11U);
   EXPECT_EQ(figures.at("Z"), json({{"largest", 0.25}, {"largest_at", {597, 199}}, {"different", 1}}));
@@ -168,7 +169,7 @@ TEST_F(CompareChannelsCliTest, EveryChannelIsCompared) {
   write_channels("other.exr");
   const ProcessResult infinite = compare({"one.exr", "other.exr", "--json", "--fail", "1e9"});
   EXPECT_EQ(infinite.exit_code, 5);
-  EXPECT_THAT(infinite.err, HasSubstr("in Z, the most at pixel 0 0 by inf"));
+  EXPECT_THAT(infinite.err, HasSubstr("in Z, with the largest difference at pixel 0 0 (inf)"));
   EXPECT_EQ(json::parse(infinite.out)["channels"]["Z"]["largest"], nullptr);
 }
 

@@ -124,7 +124,7 @@ TEST_F(ExrCliTest, DepthIsOfTheRayOrOfThePlane) {
   EXPECT_GT(farthest, 4.1F);
 }
 
-// A band holds 12 MiB. A picture with many channels is written in several bands, and the file does not show it.
+// A band holds 12 MiB. A picture with many channels is written in several bands. The file does not depend on this.
 TEST_F(ExrCliTest, BandsLeaveNoTrace) {
   const OptionValues options = {
       "--size", "900", "400", "--spp", "2", "--aov", "position,normal,shading_normal,albedo,error,direct"};
@@ -139,7 +139,7 @@ TEST_F(ExrCliTest, BandsLeaveNoTrace) {
 }
 
 // OpenEXR holds blocks of rows for each thread that compresses: 40 MB for each of three threads with this picture. It
-// takes memory when rows come, so the picture has some rows.
+// allocates this memory when it receives rows, so the picture must have some rows.
 TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
   const auto held_mb = [&](const OptionValues& aovs) {
     OptionValues arguments = {"render", "square.gltf", "-o", "a.exr", "--size", "16384", "72", "-v"};
@@ -165,14 +165,14 @@ TEST_F(ExrCliTest, WidePicturesOfManyChannelsTakeLittleMemory) {
   EXPECT_EQ(compression(), "zips") << "16 rows have 71 MB";
   EXPECT_GT(of_colors, 50.0);
   EXPECT_LT(of_all - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
-  // A picture with a target error is whole before its first row is written, and waits on disk.
+  // A picture with a target error is stored on disk until it is complete. Only then is its first row written.
   OptionValues refined = aovs;
   refined.insert(refined.end(), {"--target-error", "0.25"});
   EXPECT_LT(held_mb(refined) - of_colors, 300.0) << "of colours alone " << of_colors << " MB";
 }
 
-// A job of one piece holds the whole picture. The other picture waits on disk, as pictures of more than 12 MiB do:
-// these have 55 numbers a pixel.
+// A job of one piece holds the whole picture. The other picture is stored on disk, like all pictures of more than 12
+// MiB. Both pictures have 55 numbers per pixel.
 TEST_F(ExrCliTest, PicturesOfAnErrorHaveTheBytesOfThoseHeldWhole) {
   const OptionValues aovs = {
       "--aov",
@@ -211,7 +211,7 @@ TEST_F(ExrCliTest, TheHeaderTellsHowErrorsAreMeasured) {
   EXPECT_NE(shown.channels, linear.channels);
 }
 
-// The file has the parts whose sum is beauty.
+// The file has all AOVs of light. Their sum is the picture.
 TEST_F(ExrCliTest, PartsOfLightSumToThePicture) {
   const ReadExr exr = render_exr({"--spp", "16", "--background", "linear:0.5,0.25,1", "--aov",
                                   "emission,direct,indirect,reflection,transmission,background"});
@@ -282,7 +282,7 @@ TEST_F(ExrCliTest, FilesOfOthersAreComparedInAllTheirParts) {
   const ProcessResult parts = run({"compare", "rows.exr", "parts.exr", "--fail", "0"});
   EXPECT_EQ(parts.exit_code, 0) << parts.out << parts.err;
 
-  // The names of other parts go before their channels' names.
+  // The names of other parts are prefixes of their channels' names.
   const std::vector<ForeignPart> eyes = {{"left", {"R", "G", "B"}, numbers(3)}, {"right", {"R", "G", "B"}, numbers(3)}};
   std::vector<ForeignPart> other_eyes = eyes;
   other_eyes[1].values[4] += 0.25F;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// These tests check scenes far from the origin as a user meets them, in world coordinates.
+// These tests check how the programs show scenes far from the origin to a user: in world coordinates.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ using testing::Not;
 /// UTM coordinates, where the steps of fp32 are 0.03 and 0.5.
 const dvec3 kPlace(494000.0, 5280000.0, 400.0);
 
-/// Returns stairs of four steps around a place, as wide as deep.
+/// Returns stairs of four steps around a place. They are as wide as they are deep.
 std::string stairs_at(const dvec3& place) {
   std::string text;
   int count = 0;

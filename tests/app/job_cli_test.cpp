@@ -55,7 +55,8 @@ TEST_F(JobCliTest, AnyCutGivesTheFilesOfTheSingleRun) {
   }
 }
 
-// The pieces tell which surfaces are unlit, so that they are shown unchanged, whatever files the job begins with.
+// The pieces record which surfaces are unlit, so that these are shown unchanged, regardless of the files with which the
+// job begins.
 TEST_F(JobCliTest, PiecesTellOfUnlitSurfaces) {
   write("square.gltf", make_mixed_gltf());
   expect_done(render({"--spp", "4", "-o", "whole.exr", "-o", "whole.png"}));
@@ -119,7 +120,7 @@ TEST_F(JobCliTest, AJobThatIsDoneMayBeAskedForAgain) {
   expect_done(again);
   EXPECT_THAT(again.out, testing::StartsWith("all 5 pieces were made before: "));
   EXPECT_THAT(files(), testing::IsSupersetOf({"square.exr", "square.png"}));
-  // A refused program does not say that it wrote something.
+  // If the command is refused, it does not report that it wrote a file.
   const ProcessResult refused = run({"render", "square.gltf", "--job", "job", "--aov", "normal"});
   expect_failure(refused, 2, "job: the folder belongs to another job: ");
   EXPECT_THAT(refused.err, testing::Not(HasSubstr("writing")));
@@ -252,10 +253,10 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   EXPECT_THAT(
       other_samples.err,
       HasSubstr(
-          "the folder belongs to another job: its --spp is not given or has its default value, but is \"2\" now"));
+          "the folder belongs to another job: its --spp is not given or has its default value, but now it is \"2\""));
   expect_done(render({"--job", "fine", "-o", "cut.exr", "--spp", "2"}));
   expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "8"}), 2,
-                 "its --spp is \"2\", but is not given or has its default value now");
+                 "its --spp is \"2\", but now it is not given or has its default value");
   const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
   const auto in = [&](const char* space) {
     OptionValues words = refined;
@@ -266,7 +267,7 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   const ProcessResult other_space = in("display");
   EXPECT_EQ(other_space.exit_code, 2);
   EXPECT_THAT(other_space.err,
-              HasSubstr("its --error-in is not given or has its default value, but is \"display\" now"));
+              HasSubstr("its --error-in is not given or has its default value, but now it is \"display\""));
   write("square.gltf", std::string(kSquareGltf) + "\n");
   const ProcessResult other_scene = render({"--job", "job", "-o", "cut.exr"});
   EXPECT_EQ(other_scene.exit_code, 2);
@@ -310,7 +311,7 @@ TEST_F(JobCliTest, ASignalEndsItWithThePieceAtHandAndSaysHow) {
   }
 }
 
-// The job is stopped before its next piece, but there is none.
+// The signal arrives during the last piece. The command reports that it stopped, although no piece remains.
 TEST_F(JobCliTest, ASignalInTheLastPieceIsToldToo) {
   const auto is_begun = [&] {
     const std::filesystem::path ledgers = folder() / "job" / "ledger";

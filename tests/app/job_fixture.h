@@ -56,7 +56,7 @@ class JobFixture : public CliTest {
     return files;
   }
 
-  /// Sends a signal to a command as soon as is_begun() returns true, within a minute, and waits for its end.
+  /// Waits up to a minute until is_begun() returns true, sends a signal to a command, and waits for its end.
   template <typename IsBegun>
   ProcessResult signal_when(const IsBegun& is_begun, int signal, const OptionValues& command) const {
     Process program(PROMIN_EXECUTABLE, command, options_);
@@ -77,7 +77,7 @@ class JobFixture : public CliTest {
     return files;
   }
 
-  /// Runs a command that makes `file` by a job, ends it again and again, and lets it go on: `PROMIN_TEST_KILLS` times,
+  /// Runs a command that makes `file` with a job, kills it repeatedly, and starts it again: `PROMIN_TEST_KILLS` times,
   /// 6 by default. Each time, the file must have the content `whole` or be absent.
   void expect_goes_on(const OptionValues& command, const std::string& file, const std::string& whole,
                       size_t piece_count) const {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// These tests check the programs with few resources of the system. Each run must give a picture or a sentence; none may
-// hang or end by a signal.
+// These tests run the programs with few system resources. Each run must give a picture or a sentence; none may hang or
+// end by a signal.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -64,7 +64,8 @@ class LimitsCliTest : public CliTest {
     }
   }
 
-  /// Returns the exit code. The test fails if there is neither a picture nor a sentence with one of the parts.
+  /// Renders a picture and returns the exit code. The test fails if the command writes neither a picture nor a message
+  /// with one of the parts.
   int render_or_say(const std::string& part, const std::string& other_part, const std::string& features = "scene") {
     fs::remove(folder() / "a.png");
     const ProcessResult result =

@@ -39,7 +39,7 @@ class ManualCliTest : public CliTest {
     }
     return options;
   }
-  /// Returns what bash offers for a command line whose last word is not complete.
+  /// Returns the completions that bash offers for a command line whose last word is incomplete.
   std::string complete(const std::string& program, const std::string& function, const std::string& line) const {
     write("completion", make(program, "bash"));
     const std::string script = "source ./completion; COMP_WORDS=(" + line +
@@ -71,7 +71,7 @@ TEST_F(ManualCliTest, EveryOptionIsInEachOfThem) {
   }
 }
 
-// A line that begins with a point or a quote is a request for roff: it would be lost or be an error.
+// roff reads a line that begins with a full stop or a quote as a request, so the line would be lost or cause an error.
 TEST_F(ManualCliTest, ThePagesHaveOnlyRequestsThatThereAre) {
   const std::set<std::string> requests = {".TH", ".SH", ".SS", ".TP", ".B", ".I", ".BR", ".br", ".\\\""};
   for (const auto& [program, commands] : kPrograms) {

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// This plugin is of a future version and has only its number; a program that called more would crash.
+// This plugin has the interface number of a future version and no functions. A program that called a function would
+// crash.
 #include "image/plugin/pictures.h"
 
 uint32_t promin_pictures_interface() {

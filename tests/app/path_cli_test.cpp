@@ -112,7 +112,7 @@ TEST_F(PathCliTest, FramesHaveTheScenesNameByDefault) {
 }
 
 TEST_F(PathCliTest, EachFrameOfATimeLimitTellsTheTargetThatGivesItAgain) {
-  // Edges with the greatest number of samples take seconds; a view of nothing reaches the least error at once.
+  // Edges with the greatest number of samples take seconds. An empty view reaches the smallest error immediately.
   write("path.json", R"({"format": "promin camera path", "version": 1, "frames": [
     {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01},
     {"time_s": 0.1, "eye": [0, 0, 4], "look": [0, 0, 1], "up": [0, 1, 0], "fov_deg": 45, "near": 0.01}]})");
@@ -204,7 +204,7 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
 
 TEST_F(PathCliTest, AFailureKeepsTheFramesDoneAndNamesItsOwn) {
   options_.environment["MESA_SHADER_CACHE_DISABLE"] = "true";
-  // The first frame shows nothing and so takes few bytes.
+  // The first frame is empty, so its file is small.
   std::string path = kCameraPath;
   path.replace(path.find("[0, 0, -1]"), 10, "[0, 0, 1]");
   write("path.json", path);

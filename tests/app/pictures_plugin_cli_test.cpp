@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// These tests check the plugin for pictures of other formats as a user meets it: what works without the plugin, and
-// what programs say if it is missing or the wrong one.
+// These tests check the plugin for pictures of other formats from a user's point of view. They check which functions
+// work without the plugin, and which messages the programs print if it is missing or wrong.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class PicturesPluginCliTest : public CliTest {
     expect_failure(run({"compare", "a.tga", "a.tga"}), 1, part);
   }
 
-  /// Expects that a program finds the plugin: its sentence is then about the picture.
+  /// Expects that a program finds the plugin. Its message is then about the picture.
   void expect_found(const fs::path& program) const {
     write("a.tga", "a picture");
     const ProcessResult result = Process(program, {"compare", "a.tga", "a.tga"}, options_).wait();
@@ -125,7 +125,7 @@ TEST_F(PicturesPluginCliTest, AProgramFindsItBesideItselfWhateverItIsCalledBy) {
   expect_found(program);
 }
 
-/// The list of libraries only saves time: a wrong list, or none, changes nothing.
+/// The list of libraries only saves time. A wrong or missing list does not change the result.
 TEST_F(PicturesPluginCliTest, AWrongListOfLibrariesDoesNoHarm) {
   fs::copy_file(kPlugin, plugin());
   write("plugins/libpromin_pictures.libraries", "libnone.so.1\n\nlibz.so.1\n\x01");

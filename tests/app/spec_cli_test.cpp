@@ -73,7 +73,7 @@ TEST_F(SpecPictureCliTest, PicturesAndHitsAreThoseOfTheOptions) {
   write("specs/spec.json", spec);
   expect_done(run({"render", "--spec", "specs/spec.json", "--quiet"}));
   EXPECT_TRUE(read("a.exr") == picture);
-  // A job takes the same specification, and stores it without the outputs.
+  // A job accepts the same specification and stores it without the outputs.
   expect_done(run({"render", "--spec", "specs/spec.json", "-o", "b.exr", "--job", "job", "--pieces", "2", "--quiet"}));
   EXPECT_TRUE(read("b.exr") == picture);
   EXPECT_THAT(read("job/spec.json"), testing::AllOf(HasSubstr("\"pieces\": 2"), testing::Not(HasSubstr("output"))));
@@ -81,7 +81,7 @@ TEST_F(SpecPictureCliTest, PicturesAndHitsAreThoseOfTheOptions) {
   EXPECT_TRUE(read("c.exr") == picture);
 }
 
-/// Changes the record of who made a piece.
+/// Changes the record of the process that made a piece.
 void claim(const jobs::Job& job, size_t piece, const std::string& build, std::byte change) {
   jobs::Content content = job.read(piece);
   jobs::Maker maker = *job.maker_of(piece);
@@ -113,7 +113,7 @@ TEST_F(SpecPictureCliTest, AnotherBuildGoesOnIfItGivesTheSameBits) {
   EXPECT_THAT(
       other.err,
       HasSubstr(
-          "the job's pieces were made by another build of promin, and this build computes other bits for piece "));
+          "the job's pieces were made by another build of promin, and this build computes different bits for piece "));
   EXPECT_FALSE(std::filesystem::exists(job.file_of(1)));
 }
 

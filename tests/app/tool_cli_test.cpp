@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// These tests check that promin-lab ends as promin does: with one sentence, and an exit code that says whose fault it
-// is.
+// These tests check that promin-lab reports errors as promin does: with one sentence, and an exit code for the kind of
+// error.
 
 #include "cli_fixture.h"
 

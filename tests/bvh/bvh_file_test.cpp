@@ -53,8 +53,8 @@ void set_child_count(Node& node, uint32_t count) {
   node.frame.w = (node.frame.w & 0x00FFFFFF) | (count << 24);
 }
 
-/// Visits all that the nodes lead to, as a device does in the worst case. Fails the test if it would leave a buffer or
-/// its stack.
+/// Visits everything that is reachable from the nodes, as a device does in the worst case. Fails the test if an access
+/// lies outside a buffer or the stack.
 void expect_traversable(const TreeView& tree) {
   struct Open {
     uint32_t node;
@@ -300,14 +300,14 @@ TEST_F(BvhFileTest, ADeepTreeIsTaken) {
   EXPECT_EQ(refusal(tree), "");
 }
 
-/// Whatever a file with a right checksum contains, it is refused, or a traversal stays within its buffers.
+/// A file with a correct checksum is either refused, or a traversal stays within the buffers, for any contents.
 TEST_F(BvhFileTest, RandomFaultsAreRefusedOrHarmless) {
   const Bytes good = read_file(file_);
   std::mt19937 random(1);
   size_t taken = 0;
   for (int run = 0; run < 8000; ++run) {
     Bytes bytes = good;
-    // Most changes hit the words that lead on: counts, children, references.
+    // Most changes affect the words that refer to other data: counts, children, references.
     const size_t place = run % 4 == 0 ? random() % bytes.size()
                          : run % 4 == 1
                              ? 40 + random() % 16
@@ -361,14 +361,14 @@ TEST_F(BvhFileTest, WhatTheTreeDoesNotDependOnDoesNot) {
   other.environment.ambient = vec3(1.0F);
   other.objects[1].name = "renamed";
   other.objects[1].material = 2;
-  // A plane is in no tree, and a degenerate triangle takes only a number.
+  // A tree contains no planes. A degenerate triangle only occupies a number.
   other.objects.insert(other.objects.begin(), {"", world::Plane{vec3(0, -1, 0), vec3(0, 1, 0)}, 0});
   std::get<Mesh>(other.objects[6].shape)
       .triangles.insert(std::get<Mesh>(other.objects[6].shape).triangles.begin(), uvec3(0, 0, 1));
   expect_same(pack_scene_with(file_, other), pack_scene(other, "median"));
 }
 
-/// Anybody can read the scene's hash from a good file of it, and forge a file with it.
+/// Anyone can read the scene's hash from a valid file and use it to forge a file.
 TEST_F(BvhFileTest, MorePrimitivesThanTheSceneAreRefused) {
   Tree tree(packed_.tree());
   make_chain(tree, 90);

@@ -17,7 +17,7 @@ namespace {
 
 using Boxes = std::vector<Bounds>;
 
-/// A function that makes boxes with which a builder might have trouble.
+/// A function that makes boxes that may be difficult for a builder.
 struct BoxSet {
   const char* name;
   Boxes (*make)();
@@ -51,7 +51,7 @@ Boxes make_random(uint32_t count, float scale) {
   return boxes;
 }
 
-/// Returns small boxes in clusters of a thousand, far from one another, and a few boxes as large as the whole.
+/// Returns clusters of a thousand small boxes each, far from one another, and a few boxes as large as the whole scene.
 Boxes make_clusters() {
   std::mt19937 random(2);
   Boxes boxes;
@@ -195,7 +195,7 @@ TEST_P(BvhTest, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// The boxes may be cut, until no plane can cut the rest.
+// A builder may cut the boxes until no plane can cut the remaining parts.
 TEST_P(BvhTest, PartsOfBoxesCoverThem) {
   const Boxes input = boxes();
   const Bvh bvh = build_bvh(builder(), {input, [](uint32_t, const Bounds& window) { return window; }});

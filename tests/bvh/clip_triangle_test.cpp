@@ -63,7 +63,8 @@ struct Corners {
       if (p[axis] >= window_.lo[axis] && p[axis] <= window_.hi[axis]) extend(p);
     }
   }
-  /// Adds a point if it is inside. `on_plane` is an axis along which the point is inside, whatever rounding says.
+  /// Adds a point if it is inside. `on_plane` is an axis along which the point counts as inside, regardless of
+  /// rounding.
   void add(const Vector& p, int on_plane) {
     for (int axis = 0; axis < 3; ++axis) {
       if (axis != on_plane && !(p[axis] >= window_.lo[axis] && p[axis] <= window_.hi[axis])) return;

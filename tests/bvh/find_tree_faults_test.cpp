@@ -27,7 +27,7 @@ world::Scene scene_of(std::vector<world::Object> objects) {
   return scene;
 }
 
-/// Returns a packed scene whose tree is replaced, as by a builder that splits primitives.
+/// Returns a packed scene with another tree, such as a builder that splits primitives makes.
 PackedScene with_tree(const world::Scene& scene, const Bvh& bvh) {
   PackedScene packed = pack_scene(scene, "median");
   std::vector<layout::Primitive> bounded(packed.bounded_count);
@@ -208,7 +208,7 @@ TEST_F(SplitTree, BoxesAboveALeafCount) {
   Node& root = packed.nodes[0];
   uint32_t i = 0;
   while (child_of(root, i).kind != ChildKind::kNode) ASSERT_LT(++i, layout::NODE_WIDTH);
-  // This lowers the box's upper x; at least one leaf below it loses its end.
+  // This lowers the upper x of the box, so that at least one leaf below extends beyond it.
   root.lo.w -= 0x10U << (8 * i);
   EXPECT_THAT(find_tree_faults(packed).first, HasSubstr("leaves, and their boxes do not cover it"));
 }

@@ -54,7 +54,7 @@ std::vector<Bounds> random_boxes(size_t count, double spread, double size, uint3
   return boxes;
 }
 
-/// Walks the device's tree and checks what a traversal relies on.
+/// Walks the device's tree and checks the properties on which a traversal relies.
 class Walk {
  public:
   Walk(const PackedTree& tree, const Bvh& bvh, size_t primitive_count)

@@ -88,7 +88,7 @@ std::vector<Polygon> subtract(const std::vector<Polygon>& polygons, const Bounds
   return outside;
 }
 
-/// Adds two triangles of ordinary shape across everything else; they are cut along all axes.
+/// Adds two well-shaped triangles that extend over all other triangles. The builder cuts them along all axes.
 Input make_input(uint32_t pipes) {
   Input input{triangles_of(test::make_pipes(pipes))};
   input.triangles.push_back({vec3(-1, -1, -0.5F), vec3(2, -0.5F, 1), vec3(0, 2, 1.5F)});

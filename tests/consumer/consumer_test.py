@@ -86,7 +86,7 @@ def code_blocks(text, language):
 
 
 def builds_the_documented_program(installed):
-    """Builds the program of docs/library.md by the CMakeLists.txt there, and runs it as a reader would."""
+    """Builds the program of docs/library.md with the CMakeLists.txt of that page, and runs it as a reader would."""
     document = (REPOSITORY / "docs/library.md").read_text()
     (program,) = code_blocks(document, "cpp")
     (project,) = code_blocks(document, "cmake")

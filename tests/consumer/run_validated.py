@@ -25,7 +25,7 @@ def main():
         print("the validation layer is not installed")
         sys.exit(77)
     environment = {**os.environ, "VK_INSTANCE_LAYERS": "VK_LAYER_KHRONOS_validation"}
-    # promin's own way to load the layer would take the layer's messages.
+    # If promin loaded the layer itself, promin would receive the layer's messages.
     environment.pop("PROMIN_VALIDATION", None)
     # The layer reports warnings and errors. The variables are those of this release and of older ones.
     environment["VK_LAYER_REPORT_FLAGS"] = "error,warn,perf"

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # These tests use the library as another project does: installed, of both kinds, with CMake and with pkg-config, and as
-# a folder of that project. All of it lies outside the build's folders, so that the library finds the plugin by its own
-# means.
+# a folder of that project. All files lie outside the folders of the build, so that the library must find the plugin
+# without them.
 set(PROMIN_CONSUMER_DIR ${PROMIN_TESTS_BINARY_DIR}/consumer)
 add_test(NAME Consumer.install
   COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${PROMIN_CONSUMER_DIR}/prefix)

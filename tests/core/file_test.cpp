@@ -72,13 +72,13 @@ TEST_F(FileTest, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
     AtomicFile::commit_together(files);
   };
   write_text_file(folder_ / "a.txt", "old");
-  // The last file cannot be renamed, because a folder has its name by then.
+  // The last file cannot be renamed, because meanwhile a folder has its name.
   EXPECT_THROW(commit([&] { fs::create_directory(folder_ / "c.txt"); }), RunError);
   EXPECT_EQ(text_of(folder_ / "a.txt"), "old");
   EXPECT_FALSE(fs::exists(folder_ / "b.txt"));
   fs::remove(folder_ / "c.txt");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "something was left behind";
-  // No file is renamed if one cannot be read back.
+  // If a file cannot be read after it was written, no file is renamed.
   EXPECT_THROW(commit([&] {
                  for (const auto& entry : fs::directory_iterator(folder_)) {
                    if (entry.path().string().find("c.tmp") != std::string::npos) fs::remove(entry.path());
@@ -107,7 +107,7 @@ TEST_F(FileTest, OldFilesOfACommitThatFailsAreBack) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "something was left behind";
 }
 
-// A new file is never beside an old one, whenever the process is killed.
+// A new file never exists beside an old one, even if the process is killed at any time.
 TEST_F(FileTest, AKillLeavesNoFilesThatDoNotBelongTogether) {
   const std::string states[] = {"old, ", "new, ", "new, new"};
   for (int renames = 0; renames < 3; ++renames) {
@@ -204,7 +204,7 @@ TEST_F(FileTest, AFileKeepsTheModeOfTheOneItReplaces) {
     write_text_file(file, "old");
     fs::permissions(file, static_cast<fs::perms>(mode));
     AtomicFile output(file);
-    // Nobody who may not read the file at the end may read it while it is written.
+    // A user who must not read the complete file must not be able to read it while it is written.
     EXPECT_EQ(mode_of(output.temporary()), mode | 0200U);
     std::ofstream(output.temporary()) << "new";
     output.commit();
@@ -232,7 +232,7 @@ TEST_F(FileTest, NamesMayBeAsLongAsTheFileSystemAllows) {
     AtomicFile::commit_together(files);
     EXPECT_EQ(text_of(file), "new");
   }
-  // The extension of this name is longer than the rest.
+  // The extension of this name is longer than the rest of the name.
   write_text_file(folder_ / ("a." + std::string(kMost - 2, 'e')), "new");
 }
 

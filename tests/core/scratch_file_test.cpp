@@ -63,7 +63,7 @@ TEST_F(ScratchFileTest, ReplacesNothing) {
   EXPECT_EQ(file_count(), 1);
 }
 
-// The space is reserved at once, before anything is written.
+// The space is reserved immediately, before anything is written.
 TEST_F(ScratchFileTest, RoomThatIsNotThereIsToldAtOnce) {
   EXPECT_THAT(failure(folder_ / "none" / "a.exr", 10), testing::HasSubstr("does not exist"));
   const std::string message = [&] {
@@ -86,7 +86,7 @@ TEST_F(ScratchFileTest, ADiskThatFillsIsToldByWhoeverWrites) {
   }();
   EXPECT_THAT(message,
               testing::HasSubstr("a.exr: there is no room for 1 MB beside the output file until it can be written ("));
-  // The data that were written before are still there.
+  // The data that were written before still exist.
   std::vector<std::byte> read(1 << 20);
   file.read(0, read);
   EXPECT_TRUE(std::equal(read.begin(), read.end(), bytes.begin()));

@@ -156,8 +156,8 @@ RaySet make_rays_from(double distance) {
   return set;
 }
 
-// An endless floor makes mirror and shadow rays start far away, and a box's margin grows with the distance. Without a
-// remedy every box was met, and llvmpipe cut the loops.
+// On an endless floor, mirror and shadow rays start far away, and the margin of a box grows with the distance. Without
+// a correction these rays would hit every box, and llvmpipe would cut the loops.
 TEST_F(RaysFromAfarTest, TakeNoMoreStepsThanOthers) {
   const measure::StepCounter counter(device(), measure::make_wavy_sphere(20000), "sah");
   const StepCounts near = counter.count(make_rays_from(10.0));

@@ -66,7 +66,7 @@ void walk(inout Walk w) {
     w.at = w.at * 3u + called_twice(i);
     w.steps += 1u;
   }
-  // Without THIRD nothing leads back to the begin.
+  // Without THIRD no branch leads back to the beginning.
   do {
     const uint before = w.at;
     w.at += w.steps + 1u;

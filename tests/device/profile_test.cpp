@@ -49,7 +49,7 @@ void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.measured_rays, 1U << 20);
 }
 
-/// Expects the profile of any CPU device with 8 cores, without what is special to lavapipe.
+/// Expects the profile of any CPU device with 8 cores, without the settings that are special to lavapipe.
 void expect_cpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_texel_bytes, kTexelBytes);
   EXPECT_TRUE(profile.fetches_film_texels);

@@ -91,8 +91,8 @@ struct Kernel {
   size_t least_module_count = 20;
 };
 const Kernel kKernels[] = {{"Cast", k_cast_spirv},
-                           // This kernel depends only on the kinds of primitives and on open shapes; each kind is there
-                           // or not.
+                           // This kernel depends only on the kinds of primitives and on open shapes. Each kind is
+                           // present or absent.
                            {"Crossings", k_crossings_spirv, 16},
                            {"CameraStage", k_camera_stage_spirv},
                            {"FollowPaths", k_follow_paths_spirv},
@@ -128,7 +128,7 @@ TEST_P(KernelTest, WhatIsLeftIsValidWithEachFeature) {
   for (const std::vector<uint32_t>& module : modules) EXPECT_EQ(find_faults(module), "");
 }
 
-// A scene pays only for the shapes that it has.
+// A kernel contains only the code for the shapes of its scene.
 TEST_P(KernelTest, EachKindOfPrimitiveAddsCode) {
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) uint64_t{1} << (BIT),
   const std::vector<uint64_t> kinds = {
@@ -143,7 +143,7 @@ TEST_P(KernelTest, EachKindOfPrimitiveAddsCode) {
   }
 }
 
-// If a caller asks for one thing more, it waits for the kernels that depend on it, and not for the others.
+// If a caller requests one more feature, only the kernels that depend on this feature are compiled.
 TEST(SpecializeTest, UsesOfOneSceneShareTheKernelsThatDoNotDiffer) {
   // These are the features of a scene like scenes/showcase.gltf.
   constexpr uint64_t kScene = 0xE3FFF;

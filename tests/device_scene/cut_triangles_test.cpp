@@ -9,8 +9,8 @@
 namespace promin {
 namespace {
 
-/// Triangle 0 has its corners in a line; 1 and 2 share its short sides; the middle of its long side lies on the edge of
-/// 3. Triangle 4 is elsewhere.
+/// The corners of triangle 0 lie in a line. Triangles 1 and 2 share its short sides. The corner in the middle of its
+/// long side lies on the edge of triangle 3. Triangle 4 touches no other triangle.
 Mesh make_mesh() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {4, 0, 0}, {1, 2, 0}, {1, -2, 0}, {9, 9, 9}};

@@ -48,7 +48,7 @@ TEST(DropCopiesTest, ManyLeaveTheTreeAndFewStay) {
   }
 }
 
-/// Surfaces behind such copies are seen through them.
+/// Surfaces behind such copies are visible through them.
 TEST(DropCopiesTest, WhatIsNotOpaqueStays) {
   Material blend;
   blend.alpha_mode = AlphaMode::kBlend;

@@ -53,7 +53,8 @@ double weight_of(PixelFilter filter, double x) {
   return 0.0;
 }
 
-// The fraction of samples before a place is that of the filter's weight, which is summed over small steps.
+// The fraction of samples before a position equals the fraction of the filter's weight before it. The test sums the
+// weight over small steps.
 TEST(PixelFilterTest, SamplesAreAsDenseAsTheWeight) {
   for (size_t number = 0; number < pixel_filter_names().size(); ++number) {
     const auto filter = static_cast<PixelFilter>(number);

@@ -38,7 +38,7 @@ class SharedTreeTest : public TempFolder {
   PackedScene pack(const world::Scene& scene, const BuildOptions& options = {}) const {
     return pack_scene_sharing(file_, scene, "median", options);
   }
-  /// Expects that the packed scene is the one of this test, by its tree and the primitives in the tree's order.
+  /// Expects that the packed scene has the tree of this test, and the primitives in the tree's order.
   void expect_is_own(const PackedScene& packed) const {
     const auto is_same = [](const auto& a, const auto& b) {
       return a.size() == b.size() && std::memcmp(a.data(), b.data(), std::as_bytes(std::span(a)).size()) == 0;

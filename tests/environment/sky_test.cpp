@@ -182,8 +182,8 @@ TEST(SkyTest, IrradianceOfAGradientIsTheIntegral) {
   }
 }
 
-// However small a sun is, all of its light arrives. In the coefficients of the first band, for example, it arrives with
-// the cosine to the sun.
+// All light of a sun arrives, even if the sun is small. For example, the coefficients of the first band contain it,
+// multiplied by the cosine to the sun.
 TEST(SkyTest, ASinglePixelLosesNoLight) {
   constexpr uint32_t kWidth = 3000;
   constexpr uint32_t kHeight = 1500;
@@ -308,7 +308,7 @@ TEST(SkyTest, RotationTurnsFromZToX) {
   turned.rotation = 0.5F * std::numbers::pi_v<float>;
   turned.intensity = 3.0F;
   const dvec3 direction = glm::normalize(dvec3(0.3, 0.2, 0.9));
-  // After the turn, what was ahead of the viewer is to the right.
+  // The rotation moves the patch in front of the viewer to the right.
   const dvec3 moved(direction.z, direction.y, -direction.x);
   EXPECT_LT(max_error(sky_radiance(turned, moved), 3.0 * sky_radiance(plain, direction)), 1e-6);
   const PackedSky sky = pack_sky(turned);

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 class ClassicTest : public SceneFolder {
  protected:
-  /// Returns whether a file is classic that has one triangle, which has the first of these materials.
+  /// Returns whether a file with these materials is classic. It has one triangle with the first material.
   bool is_classic(const std::vector<json>& materials) const {
     GltfBuilder gltf = triangle_gltf();
     if (!materials.empty()) gltf.json["materials"] = materials;

@@ -25,7 +25,7 @@ using testing::Not;
 
 /// UTM coordinates, where the steps of fp32 are 0.03 and 0.5.
 const dvec3 kUtm(494000.0, 5280000.0, 400.0);
-/// A place on the equator, in metres from the Earth's centre.
+/// A point on the equator, in metres from the Earth's centre.
 const dvec3 kEquator(6378137.0, 0.0, 0.0);
 
 std::string obj_at(const dvec3& place, double step) {
@@ -75,7 +75,7 @@ TEST_F(FarSceneTest, TextIsReadInDouble) {
   expect_near(corner(stl, 1), kEquator + dvec3(0.125, 0, 0), 1e-6);
 }
 
-/// The coordinate differences of a far mesh are those of the same mesh at the origin, to the bit if they are exact.
+/// The coordinate differences of a far mesh equal those of the same mesh at the origin, bit for bit if they are exact.
 TEST_F(FarSceneTest, WhatLiesFarIsAsAtTheOrigin) {
   const Scene far = load("far.obj", obj_at(kUtm, 0.25));
   const Scene near = load("near.obj", obj_at(dvec3(0.0), 0.25));
@@ -136,7 +136,7 @@ TEST_F(FarSceneTest, NffIsMovedWithItsViewAndLights) {
   EXPECT_EQ(scene.center + dvec3(scene.lights.at(0).position), kEquator + dvec3(0.5, 2, 0));
 }
 
-/// A scene near the origin needs no center, and neither does one that is a single point.
+/// A scene near the origin needs no center. A scene that is a single point does not need one either.
 TEST_F(FarSceneTest, WhatNeedsNoCenterHasNone) {
   EXPECT_EQ(load("near.obj", obj_at(dvec3(100, -50, 3), 1.1)).center, dvec3(0.0));
   const std::string mesh = obj_at(dvec3(0.1, 0, 0), 1.1);

@@ -36,7 +36,7 @@ std::string binary_stl() {
   return stl.bytes();
 }
 
-/// Returns a chunk with a version in it; the chunk is as long as it says.
+/// Returns a chunk that contains a version. The chunk has the length that its header declares.
 std::string small_3ds() {
   return "MM\x10\0\0\0\x02\0\x0A\0\0\0\x03\0\0\0"s;
 }
@@ -56,7 +56,7 @@ std::ostream& operator<<(std::ostream& stream, const Kind& kind) {
 
 class FileKindTest : public SceneFolder, public testing::WithParamInterface<Kind> {};
 
-/// The file has the extension of another kind of scene, or one of no kind.
+/// The file has the extension of another kind of scene, or an unknown extension.
 TEST_P(FileKindTest, IsSaidWhereItIsNotWhatTheNameSays) {
   for (const std::string other : {".obj", ".ply", ".stl", ".nff", ".gltf"}) {
     const std::string name = "scene" + other;

@@ -357,7 +357,7 @@ TEST_F(BadGltfFileTest, TheBinaryChunkMayNotBeShorterThanItsViews) {
   EXPECT_THAT(refusal("a.glb", bytes), HasProblem("gltf.buffer.short 44 48"));
 }
 
-/// A buffer's bytes are needed as soon as something reads from the buffer.
+/// The bytes of a buffer must exist if a part of the document reads from it.
 TEST_F(BadGltfFileTest, BuffersThatAMeshNeedsMayNotLackBytes) {
   const auto refuse_without = [&](const std::function<void(GltfBuilder&)>& use) {
     GltfBuilder gltf = triangle_gltf();

@@ -258,7 +258,7 @@ TEST_F(GltfCompressionTest, MeshoptThatLiesIsRefused) {
 TEST_F(GltfCompressionTest, MeshoptThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
   GltfBuilder gltf = packed_grid(4, "INDICES");
   packed_text(gltf);
-  // A few hundred bytes stand for 24 GB.
+  // A few hundred compressed bytes declare 24 GB of data.
   const uint64_t count = uint64_t{2'000'000'000};
   json& view = gltf.json["bufferViews"][0];
   view["extensions"]["EXT_meshopt_compression"]["count"] = count;
@@ -379,7 +379,7 @@ TEST_F(GltfCompressionTest, DracoThatLiesIsRefused) {
   }
 }
 
-/// Returns a header of version 2.2 that promises 2^31 triangles.
+/// Returns a header of version 2.2 that declares 2^31 triangles.
 std::string absurd_header(int method) {
   std::string bytes = "DRACO\x02\x02\x01";
   bytes += static_cast<char>(method);
@@ -400,7 +400,7 @@ TEST_F(GltfCompressionTest, DracoThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken
     large.json["accessors"][1]["count"] = 2147483647;
     EXPECT_NE(refusal_of(large), "");
     std::string bytes = absurd_header(method);
-    // The stream promises 2^29 triangles and vertices, which is within both accessors' numbers.
+    // The stream declares 2^29 triangles and vertices, which is within the counts of both accessors.
     for (size_t at = bytes.find("\xFF\xFF\xFF\xFF\x07"); at != std::string::npos;
          at = bytes.find("\xFF\xFF\xFF\xFF\x07")) {
       bytes.replace(at, 5, "\x80\x80\x80\x80\x02");
@@ -419,7 +419,7 @@ TEST_F(GltfCompressionTest, OtherVersionsOfDracoAreRefused) {
   EXPECT_THAT(refusal_of(gltf), HasProblem("gltf.draco.damaged 2.1 2.2"));
 }
 
-/// Any value of the documents becomes any other kind of value.
+/// The test replaces each value of the documents by values of all other kinds.
 TEST_F(GltfCompressionTest, DocumentsWithOtherValuesLoadOrAreRefused) {
   GltfBuilder packed = packed_grid(2, "TRIANGLES");
   packed_text(packed);

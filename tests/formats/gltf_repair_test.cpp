@@ -21,7 +21,7 @@ using testing::SizeIs;
 const float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 const std::vector<vec3> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-/// A change that makes a document faulty but leaves its geometry clear, and the warning that it gives.
+/// A change that makes a document faulty without making its geometry ambiguous, and the warning that it causes.
 struct GltfRepair {
   const char* name;
   std::function<void(GltfBuilder&)> spoil;
@@ -246,7 +246,7 @@ const GltfRepair kGltfRepairs[] = {
      [](auto& g) {
        primitive(g)["attributes"]["TEXCOORD_0"] = g.template add<float>({0, 0, 1, kNotANumber, 0, 1}, "VEC2");
      },
-     "meshes[0].primitives[0].attributes.TEXCOORD_0, element 1: a texture coordinate is not finite or beyond 1e15 "
+     "meshes[0].primitives[0].attributes.TEXCOORD_0, element 1: a texture coordinate is beyond 1e15 or not finite "
      "(nan); 0 is used"},
     {"AttributeCounts",
      [](auto& g) {
@@ -609,8 +609,9 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   gltf.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 36}});
   gltf.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
-  EXPECT_THAT(scene.warnings, ElementsAre("buffers[1]: a buffer of images cannot be read: a file does not exist "
-                                          "(\"none.bin\"); promin omits its images"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("buffers[1]: a buffer of images cannot be read: a referenced file does not exist "
+                          "(\"none.bin\"); promin omits its images"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
 }
 

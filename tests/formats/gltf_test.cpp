@@ -274,7 +274,7 @@ TEST_F(GltfTest, BoxesStretchAndTurn) {
   EXPECT_EQ(plain.half_size, vec3(1, 2, 3));
   EXPECT_EQ(plain.turn, vec3(0));
   EXPECT_EQ(box_of({{"scale", {-3, 2, 1}}}).half_size, vec3(3, 4, 3));
-  // A quarter turn is exactly another order of the axes.
+  // A quarter turn only permutes the axes, which is exact.
   const world::Box quarter = box_of({{"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
   EXPECT_EQ(quarter.half_size, vec3(2, 1, 3));
   EXPECT_EQ(quarter.turn, vec3(0));
@@ -730,13 +730,14 @@ TEST_F(GltfTest, AnImageThatCannotBeReadIsAWarning) {
   EXPECT_THAT(
       scene.warnings,
       ElementsAre(
-          "image \"bumps\": a file does not exist (\"missing.png\"); promin draws materials without it; put it "
+          "image \"bumps\": a referenced file does not exist (\"missing.png\"); promin draws materials without it; put "
+          "it "
           "beside the scene",
           "image images[1]: a picture cannot be used: its format is unknown; promin draws materials without it; "
           "use another picture"));
   for (const auto& image : scene.images) EXPECT_TRUE(image->texels.empty());
   EXPECT_THAT(message_of([&] { load_scene(folder_ / "scene.gltf", {.is_strict = true}); }),
-              testing::AllOf(HasSubstr("a file does not exist"), HasSubstr("format is unknown")));
+              testing::AllOf(HasSubstr("a referenced file does not exist"), HasSubstr("format is unknown")));
 }
 
 TEST_F(GltfTest, ImagesOfAKindOfFaultShareAWarning) {
@@ -892,7 +893,7 @@ TEST_F(GltfTest, PanoramasLieInTheFileToo) {
     gltf.json["images"] = {{{"uri", "data:image/whatever;base64," + encode_base64(picture)}}};
     const LoadedScene in_text = load(gltf);
     EXPECT_THAT(in_text.warnings, IsEmpty());
-    // A PNG has codes of sRGB: the code 188 of 255 is a light of 0.503.
+    // A PNG has 8-bit sRGB values. The value 188 is a linear value of 0.503.
     EXPECT_NEAR(sky_radiance(in_text.environment, dvec3(1, 0, 0)).x, 0.5, 0.004) << name;
     gltf.json["images"] = {{{"mimeType", "image/png"},
                             {"bufferView", gltf.add_view(std::vector<uint8_t>(picture.begin(), picture.end()))}}};
@@ -1063,7 +1064,7 @@ TEST_F(GltfTest, MorphTargetsWithoutWeightsNeedNoBytes) {
   gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 1}}};
   EXPECT_EQ(mesh_of(load(gltf)).positions.size(), 3U);
   gltf.json["meshes"][0]["weights"] = {1};
-  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("a morph target has another number of vertices")));
+  EXPECT_THAT(load(gltf).warnings, Contains(HasSubstr("a morph target has a different number of vertices")));
 }
 
 TEST_F(GltfTest, IntegersMayBeWrittenAsFloats) {

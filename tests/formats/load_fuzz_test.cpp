@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns a small document with a little of everything.
+/// Returns a small document that uses most features.
 GltfBuilder small_gltf() {
   GltfBuilder gltf = triangle_gltf();
   auto& primitive = gltf.json["meshes"][0]["primitives"][0];
@@ -228,7 +228,7 @@ TEST_F(LoadFuzzTest, NffLoadsOrIsRefused) {
   run("a.nff", kSmallNff, "a.nff");
 }
 
-/// The file ends at any place, or lacks any of its words, or has a word twice.
+/// The file ends at any position, lacks one of its words, or contains a word twice.
 TEST_F(LoadFuzzTest, NffWithOtherWordsLoadsOrIsRefused) {
   std::vector<std::string> words;
   std::istringstream text(kSmallNff);
@@ -259,7 +259,7 @@ TEST_F(LoadFuzzTest, NffWithOtherWordsLoadsOrIsRefused) {
   EXPECT_LT(refused, total);
 }
 
-/// This test changes more than bytes: any value of the document becomes any other kind of value.
+/// This test does not only change bytes. It replaces each value of the document by values of all other kinds.
 TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
   GltfBuilder gltf = small_gltf();
   gltf.text();

@@ -240,7 +240,7 @@ TEST_F(NffTest, AFileWithoutShapesShowsNothing) {
 
 // The next tests check faults that cost only a warning.
 
-/// A fault in a file, and the warning that it gives.
+/// A fault in a file, and the warning that it causes.
 struct NffRepair {
   const char* name;
   const char* text;
@@ -354,7 +354,7 @@ const BadFile kBadNff[] = {
 
 INSTANTIATE_TEST_SUITE_P(Files, BadNffTest, testing::ValuesIn(kBadNff), name_of_bad_file);
 
-/// Parsing stops at the first problem, so only that one is told, whatever follows.
+/// The parser stops at the first problem, so it reports only this problem.
 TEST_F(NffTest, OneProblemIsTold) {
   EXPECT_THAT(refusal("s 0 0 0 x\nq\nq\n"), testing::Not(HasSubstr("\"q\"")));
 }

@@ -128,8 +128,8 @@ TEST_F(ObjTest, StatementsGoOnBehindABackslash) {
   EXPECT_EQ(scene.objects.at(0).name, "name");
 }
 
-// The text is Latin-1, as older programs write it. Messages that quote it are still UTF-8, wherever a quoted word is
-// cut.
+// The text is Latin-1, as older programs write it. Messages that quote it are still valid UTF-8, even if a quoted word
+// is shortened.
 TEST_F(ObjTest, NamesAreShownInUtf8) {
   write("latin.mtl", "newmtl m\xFCller\n");
   const LoadedScene scene =
@@ -192,7 +192,7 @@ TEST_F(ObjTest, WithoutFacesThereIsNothingToShow) {
   EXPECT_THAT(refusal(kSquare + "f 1 2\nf 3 4\n"), HasProblem("obj.faces.none"));
 }
 
-// The next tests check faults that lose only colours, shading or something that no face shows.
+// The next tests check faults that affect only colours, shading or data that no face uses.
 
 TEST_F(ObjTest, FacesOfFewerThanThreeCornersAreLeftOut) {
   const LoadedScene scene = load(kSquare + "f 1 2\nf 1 2 3\nf\no b\nf 4//1\nf 1 2 3 4\n");
@@ -659,12 +659,13 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
   write("broken.png", "no picture");
   write("empty.png", "");
   const LoadedScene scene = load_with("map_Kd none.png\nmap_Ke broken.png\nmap_Ks ../b.png\nnorm empty.png\n");
-  EXPECT_THAT(scene.warnings,
-              testing::UnorderedElementsAre(
-                  testing::StartsWith("a file does not exist (\"none.png\"); promin draws materials without it"),
-                  testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
-                  testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); materials"),
-                  testing::StartsWith("image \"empty.png\": the file is empty")));
+  EXPECT_THAT(
+      scene.warnings,
+      testing::UnorderedElementsAre(
+          testing::StartsWith("a referenced file does not exist (\"none.png\"); promin draws materials without it"),
+          testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
+          testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); materials"),
+          testing::StartsWith("image \"empty.png\": the file is empty")));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.phong().diffuse, vec3(0.8F));
   EXPECT_EQ(material.phong().specular, vec3(0));
@@ -777,7 +778,7 @@ TEST_F(ObjHeightsTest, WhatHasNoSlopesCostsNothing) {
   EXPECT_THAT(load_with("bump flat.png\n").images, IsEmpty());
   std::vector<std::string> warnings;
   EXPECT_TRUE(normals_of("bump none.png\n", &warnings).texels.empty());
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("a file does not exist (\"none.png\")")));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("a referenced file does not exist (\"none.png\")")));
 }
 
 TEST_F(ObjHeightsTest, PicturesOfSixteenBitsWork) {

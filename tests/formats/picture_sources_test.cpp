@@ -53,7 +53,7 @@ std::string_view text_of(const Bytes& bytes) {
 
 class PictureSourcesTest : public SceneFolder {
  protected:
-  /// Reads a picture of these bytes. Returns how many bytes were asked for in each request.
+  /// Reads a picture of these bytes. Returns the number of bytes of each request.
   std::vector<uint64_t> read(const Bytes& file, PictureSource& source) {
     std::vector<uint64_t> asked;
     read_picture(source, report_, [&](LoadReport&, uint64_t most_bytes) {

@@ -237,7 +237,7 @@ TEST_F(PlyTest, ColorsAreThoseOfScreens) {
   const auto colors = [](const std::string& type) {
     return "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
   };
-  // The curve of sRGB makes the middle code a fifth of the light.
+  // In sRGB, the middle 8-bit value is a fifth of the full light.
   const LoadedScene bytes = load(triangle(colors("uchar"), {"0 128 255", "255 255 255", "10 10 10"}));
   EXPECT_EQ(mesh_of(bytes).colors.at(0).r, 0.0F);
   EXPECT_NEAR(mesh_of(bytes).colors.at(0).g, 0.2158605F, 1e-6F);
@@ -328,7 +328,7 @@ TEST_F(PlyTest, SharpFacesAndStripsKeepTheirColors) {
   EXPECT_THAT(validate(load_scene(folder_ / "scene.ply")), IsEmpty());
 }
 
-/// Very many faces meet at one vertex, and each may have another colour.
+/// A very large number of faces share one vertex, and each may have a different colour.
 TEST_F(PlyTest, TimeStaysInBoundsWhereManyColorsMeet) {
   PlyBuilder ply(std::endian::little);
   const int count = 200'000;
@@ -448,13 +448,14 @@ TEST_F(PlyTextureTest, WhatCannotBeShownIsSaid) {
     EXPECT_EQ(scene.materials.at(0).name == "default", !only_mesh(scene).uvs.size()) << name;
     return scene.warnings;
   };
-  EXPECT_THAT(warnings("none.png", uvs, "0 0"), ElementsAre(HasSubstr("a file does not exist (\"none.png\")")));
+  EXPECT_THAT(warnings("none.png", uvs, "0 0"),
+              ElementsAre(HasSubstr("a referenced file does not exist (\"none.png\")")));
   EXPECT_THAT(warnings("../none.png", uvs, "0 0"), ElementsAre(HasSubstr("leads out of the scene's folder")));
   EXPECT_THAT(warnings("C:\\scans\\a.png", uvs, "0 0"), IsEmpty()) << "a path of another machine";
   EXPECT_THAT(warnings("scene.ply", uvs, "0 0"), ElementsAre(HasSubstr("format is unknown")));
   EXPECT_THAT(warnings("a.png", "", ""), ElementsAre(HasSubstr("there are no texture coordinates")));
   EXPECT_THAT(warnings("a.png", uvs, "nan 0"),
-              ElementsAre("line 15: a texture coordinate is not finite or beyond 1e15, and 2 more; 0 is used"));
+              ElementsAre("line 15: a texture coordinate is beyond 1e15 or not finite, and 2 more; 0 is used"));
 }
 
 TEST_F(PlyTextureTest, ATextureThatIsNotThereIsNone) {

@@ -63,7 +63,7 @@ Subject load_subject(const std::string& name) {
 
 class GoldenTest : public test::DeviceTest {
  protected:
-  /// The device uses packets, as users have them.
+  /// The device uses packets, as it does for users.
   static void SetUpTestSuite() { open({}); }
 
   static Image render(const Subject& subject) {

@@ -57,7 +57,7 @@ std::string hash_goldens() {
   return hash.finish();
 }
 
-/// Returns the hash of the hits of rays through a scene. The rays start around the scene and aim at places in it.
+/// Returns the hash of the hits of rays through a scene. The rays start around the scene and point to positions in it.
 std::string hash_casts(const gpu::Device& device, const std::string& name) {
   const Scene scene = load_scene(kSceneFolder / name);
   const Bounds bounds = bounds_of(scene);

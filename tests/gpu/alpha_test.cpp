@@ -38,7 +38,7 @@ void add_board(Scene& scene, float z, const Material& material) {
   scene.add("board", make_board(z), static_cast<uint32_t>(scene.materials.size() - 1));
 }
 
-/// Adds an image with these alphas of its texels, which are numbered from v = 0 on, and its texture.
+/// Adds an image whose texels have these alphas, beginning at v = 0, and its texture.
 void add_alpha_texture(Scene& scene, const uvec2& size, const std::vector<uint32_t>& alphas) {
   std::vector<uint32_t> texels;
   for (const uint32_t alpha : alphas) texels.push_back(alpha << 24 | 0xFFFFFFU);
@@ -63,7 +63,7 @@ class AlphaTest : public DeviceTest {
   }
 };
 
-// If levels were means of alpha alone, they would be below the cutoff nearly everywhere.
+// If mip levels were only means of alpha, they would be below the cutoff nearly everywhere.
 TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
   Scene scene;
   std::vector<uint32_t> alphas;
@@ -77,8 +77,8 @@ TEST_F(AlphaTest, AMaskKeepsItsShareWhereItIsSmall) {
   scene.environment.background = vec3(1.0F);
   const Image image = trace(scene, make_board_view(uvec2(32))).image;
   const auto there = std::ranges::count_if(image.pixels, [](const vec3& pixel) { return pixel.r == 0.0F; });
-  // A mean of 16 texels has few possible values. The fraction nearest to a quarter that they give is 0.19; without
-  // scaling it is 0.03.
+  // A mean of 16 texels has few possible values. The possible fraction nearest to a quarter is 0.19. Without
+  // scaling the fraction is 0.03.
   EXPECT_NEAR(static_cast<double>(there) / 1024, 0.19, 0.03);
 }
 
@@ -215,13 +215,13 @@ TEST_F(AlphaTest, EveryWayOfTracingGivesTheSameBits) {
   }
 }
 
-// There are more light sources than a turn of the stream takes.
+// There are more light sources than the stream handles in one turn.
 TEST_F(AlphaTest, ManySourcesLightWhatBlends) {
   world::Scene scene = make_scene_of_alpha();
   const View view = make_view({48, 36});
   const Light light = scene.lights[0];
   const Image expected = make_renderer(device(), scene, TunedRendererOptions()).render(view).image;
-  // The dark sources come first, so that those that give light come in the next turn.
+  // The dark sources come first, so that the next turn handles the sources that emit light.
   Light dark = light;
   dark.diffuse = dark.specular = vec3(0.0F);
   scene.lights.insert(scene.lights.begin(), layout::STREAM_SOURCES, dark);

@@ -61,7 +61,7 @@ std::vector<Subject> subjects() {
     subject.scene.materials[0].emissive = vec3(0.2F, 0.1F, 0.05F);
     subject.scene.environment.ambient = vec3(0.1F);
     subject.scene.environment.background = vec3(0.3F, 0.4F, 0.5F);
-    // There are more sources than a turn of the stream takes, so that a bounce takes several turns.
+    // There are more sources than the stream handles in one turn, so that a bounce takes several turns.
     while (subject.scene.lights.size() < 18) {
       const auto number = static_cast<float>(subject.scene.lights.size());
       subject.scene.lights.push_back(test::make_sun(vec3(-1.0F, -2.0F, 0.1F * number), 0.05F));
@@ -107,10 +107,10 @@ TEST_F(AovsTest, PartsOfLightSumToTheImage) {
   }
 }
 
-// Each part equals the picture without all other light.
+// Each part of light equals a picture in which this is the only light.
 TEST_F(AovsTest, EachPartIsThePictureWithoutTheOthers) {
   for (Subject& subject : subjects()) {
-    // Rays in glass that are not followed see the surroundings.
+    // The surroundings replace rays in glass that are not traced.
     if (std::string_view(subject.name) == "glass") continue;
     View view = subject.view;
     view.max_depth = 0;
@@ -213,7 +213,7 @@ TEST_F(AovsTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
   }
 }
 
-// The AOVs are compared with places and normals that follow from the scene alone.
+// The AOVs are compared with positions and normals that are computed from the scene alone.
 TEST_F(AovsTest, SurfacesAreWhereTheyAre) {
   Scene scene;
   scene.materials.emplace_back();
@@ -262,13 +262,13 @@ TEST_F(AovsTest, TextureCoordinatesAreThoseOfTheMesh) {
       const vec2 share((static_cast<float>(x) + 0.5F) / 16.0F, 1.0F - (static_cast<float>(y) + 0.5F) / 16.0F);
       const vec2 expected = vec2(0.25F, 0.125F) + share * vec2(0.5F, 0.375F);
       const vec2 off = aovs.uv[size_t{y} * 16 + x] - expected;
-      // The coordinates are right except for whole numbers.
+      // The coordinates may differ from the expected ones by whole numbers.
       EXPECT_LT(std::abs(off.x - std::round(off.x)) + std::abs(off.y - std::round(off.y)), 1e-5F) << x << " " << y;
     }
   }
 }
 
-// The AOVs are compared with the hits of rays that are cast through the same places.
+// The AOVs are compared with the hits of rays through the same points of the picture.
 TEST_F(AovsTest, CoverageIsTheShareOfRaysThatHit) {
   const world::Scene world_scene = make_scene_of_everything(60);
   View view = make_view(uvec2(40, 30));
@@ -279,8 +279,8 @@ TEST_F(AovsTest, CoverageIsTheShareOfRaysThatHit) {
   Renderer renderer = make_renderer(device(), world_scene, options);
   const Aovs aovs = renderer.render(view).aovs;
   std::vector<std::map<uint32_t, uint32_t>> counts(aovs.object.size());
-  // Pictures with one sample a pixel show each sample: if the crop's centre moves to a sample's place, that place is a
-  // pixel of a larger picture.
+  // Each sample is also rendered by a larger picture with one sample per pixel. A pixel of this picture lies at the
+  // position of the sample.
   View fine = view;
   fine.size = view.size * 21U;
   fine.samples_per_pixel = 1;
@@ -289,7 +289,7 @@ TEST_F(AovsTest, CoverageIsTheShareOfRaysThatHit) {
   for (uint32_t y = 0; y < view.size.y; ++y) {
     for (uint32_t x = 0; x < view.size.x; ++x) {
       for (uint32_t sample = 0; sample < 21; ++sample) {
-        // The lattice's places are the centres of the fine picture's pixels.
+        // The points of the lattice are the centres of the larger picture's pixels.
         const uvec2 place(sample_point(view, generator, sample) * 21.0F);
         const size_t at = (size_t{y} * 21 + place.y) * fine.size.x + size_t{x} * 21 + place.x;
         if (of_fine.object[at] != Aovs::kNoId) ++counts[size_t{y} * view.size.x + x][of_fine.object[at]];

@@ -100,7 +100,8 @@ TEST_F(BackdropTest, NoFormOfThePictureChangesABit) {
   EXPECT_EQ(same.aovs.unlit, result.aovs.unlit);
   EXPECT_TRUE(has_same_bits(same.image, result.image));
   EXPECT_TRUE(has_same_bits(make_renderer(device(), scene_, {}).render(view).image, result.image));
-  // The backdrop's own light is not that of a surface; without a backdrop no pixel is shown unchanged.
+  // The light of the backdrop is not the light of a surface. Without a backdrop, exposure and tone mapping change all
+  // pixels.
   Scene plain = scene_;
   plain.environment.backdrop.reset();
   plain.environment.background = kColor;

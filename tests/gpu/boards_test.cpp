@@ -94,7 +94,7 @@ Board make_wraps() {
   return board;
 }
 
-// The second set shows green at the points where the first set shows red, and transforms lead to green as well.
+// The second set shows green at the points where the first set shows red. Transforms move these points to green, too.
 Board make_coordinates() {
   Board board;
   const uint32_t texture = board.add_image({4, 4}, {kRed, kRed, kRed, kRed,    //
@@ -228,7 +228,7 @@ Board make_shadows() {
   return board;
 }
 
-// A texture of normals has the look of geometry that is tilted by the same angle.
+// A surface with a texture of normals looks like geometry that is tilted by the same angle.
 Board make_normals() {
   Board board;
   const vec3 sun(1, -2, -3);
@@ -311,7 +311,8 @@ void PrintTo(const BoardCase& board, std::ostream* out) {
 
 class BoardsTest : public DeviceTest, public testing::WithParamInterface<BoardCase> {
  protected:
-  /// Returns the number of wrong pixels: those that differ by more than a byte of a picture shows in its dark parts.
+  /// Returns the number of wrong pixels. A pixel is wrong if it differs by more than one 8-bit step in dark parts of a
+  /// picture.
   size_t count_red(const Board& board, const TunedRendererOptions& options = {}) {
     EXPECT_TRUE(validate(board.scene).empty());
     const Image image = make_renderer(device(), board.scene, options).render(board.view()).image;

@@ -85,7 +85,8 @@ std::vector<Ray> make_rows(uint32_t rows) {
 // one by one.
 TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
   const world::Scene scene = test::make_scene_of_everything();
-  // The number of rays is not a multiple of a packet's size; some rays have no direction, some are empty.
+  // The number of rays is not a multiple of the size of a packet. Some rays have no direction, and some have an empty
+  // interval of t.
   std::vector<Ray> rays = make_rows(63);
   rays.pop_back();
   rays[77].direction = vec3(0.0F);
@@ -126,7 +127,7 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
       std::vector<layout::HitRecord> records(rays.size());
       RayKernel(device(), device_scene, options).run(rays, records);
       if (expected.empty()) expected = records;
-      // For an any-hit query, the answer only says whether there is a hit; which hit it is may depend on the packet.
+      // An any-hit query only reports whether there is a hit. The packet may determine which hit the query finds.
       size_t differences = 0;
       for (size_t i = 0; i < rays.size(); ++i) {
         const bool is_same = query == HitQuery::kAny
@@ -139,7 +140,7 @@ TEST_F(CasterTest, PacketsOfAnySizeGiveTheSameBits) {
   }
 }
 
-// What suits one driver also runs on another, so the test compares all forms on each driver.
+// Forms that are chosen for one driver also run on others, so the test compares all forms on each driver.
 TEST_F(CasterTest, EveryFormOfTraversalGivesTheSameBits) {
   const world::Scene scene = test::make_scene_of_everything();
   const std::shared_ptr<const DeviceScene> device_scene = upload_scene(device(), pack_scene(scene, "sah"));
@@ -237,7 +238,7 @@ class AnyHitTest : public CasterTest {
   }
 };
 
-// The fast test cannot decide for these rays: they meet edges and corners, or end on the triangle.
+// The fast test is uncertain for these rays, because they hit edges and corners, or end on the triangle.
 TEST_F(AnyHitTest, IsFoundAtEdgesAndEnds) {
   std::vector<Ray> rays;
   for (const float z : {8.0F, 7.3F, 1024.0F, 1.0e6F}) {
@@ -289,7 +290,7 @@ TEST_F(AnyHitTest, IsFoundOnSlivers) {
   EXPECT_LT(part, 0.9);
 }
 
-// The second test looks at the undecided triangle, not at the one that follows in the leaf.
+// The second test checks the uncertain triangle and not the next triangle of the leaf.
 TEST_F(AnyHitTest, IsFoundBesideSolids) {
   Mesh mesh;
   mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
@@ -311,7 +312,7 @@ TEST_F(AnyHitTest, IsFoundBesideSolids) {
   EXPECT_NEAR(part_of_hits(scene, rays), 0.75, 0.01);
 }
 
-// In the fast test, products overflow that do not in the whole test.
+// Products that the fast test computes overflow here. The products of the complete test do not.
 TEST_F(AnyHitTest, IsFoundInVastScenes) {
   const float size = 6.0e12F;
   Mesh mesh;
@@ -322,7 +323,7 @@ TEST_F(AnyHitTest, IsFoundInVastScenes) {
   EXPECT_DOUBLE_EQ(part_of_hits(scene_of({mesh}), rays), 0.5);
 }
 
-// With so short a direction as its unit, t would be 10^40.
+// The direction is the unit of t. It is so short that t would be 10^40.
 TEST_F(CasterTest, HitsWithoutATAreNone) {
   Mesh mesh;
   mesh.positions = {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0)};
@@ -341,11 +342,11 @@ TEST_F(CasterTest, HitsWithoutATAreNone) {
   }
 }
 
-// llvmpipe ends a lane's loops after 65535 turns: the result at that point is not an answer.
+// llvmpipe ends the loops of a lane after 65535 iterations. The result at that point is incomplete.
 TEST_F(CasterTest, TooManyTurnsAreRefusedOrTraced) {
   constexpr int kSlivers = 40000;
   Mesh mesh;
-  // The slivers lie along a diagonal. The ray meets their boxes, but not the slivers; behind them is a triangle.
+  // The slivers lie along a diagonal. The ray hits their boxes, but not the slivers. A triangle is behind them.
   for (int i = 0; i < kSlivers; ++i) {
     const auto z = static_cast<float>(i + 1);
     const auto first = static_cast<uint32_t>(mesh.positions.size());
@@ -380,7 +381,8 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
   EXPECT_TRUE(has_same_bits(apart, together));
 }
 
-// fp32 arithmetic alone would lose these directions: they are denormal, or near the largest number.
+// fp32 arithmetic alone would underflow or overflow for these directions. They are denormal, or near the largest
+// number.
 TEST_F(CasterTest, DirectionsHaveAnyLength) {
   const world::Scene scene = scene_of({world::Sphere{vec3(0.0F), 1e-3F}});
   const vec3 origin(0, 0, 2e-3F);

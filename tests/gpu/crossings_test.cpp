@@ -101,8 +101,8 @@ world::Scene make_scene_with_open_shapes() {
   return scene;
 }
 
-// These rays are random, and none passes an edge at a distance of a few u S. Therefore the lists are the same, one by
-// one.
+// These rays are random, and none passes within a few u S of an edge. Therefore the lists are equal, crossing by
+// crossing.
 TEST_F(CrossingsTest, ListsAreTheOracles) {
   const world::Scene scene = make_scene_with_open_shapes();
   const std::vector<Ray> rays = test::make_rays(test::is_thorough() ? 10000 : 3000);
@@ -116,7 +116,7 @@ TEST_F(CrossingsTest, ListsAreTheOracles) {
     std::vector<oracle::Hit> expected = oracle::find_all_hits(scene, ray);
     ASSERT_EQ(lists.of_ray(i).size(), expected.size()) << "ray " << i;
     const Hit first = expected.empty() ? Hit{} : lists.of_ray(i)[0];
-    // The first crossing of the list equals the cast hit, to the bit.
+    // The first crossing of the list equals the hit of cast(), bit for bit.
     ASSERT_EQ(std::memcmp(&first, &nearest[i], sizeof(Hit)), 0) << "ray " << i;
     const auto in_order = [](const auto& a, const auto& b) {
       return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
@@ -212,7 +212,7 @@ Mesh make_box_mesh(uint32_t n) {
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     const float side = face % 2 == 0 ? 1.0F : -1.0F;
     for (const vec3& p : grid.positions) {
-      // The numbers are the same on either side of an edge.
+      // Two faces compute equal coordinates at their common edge.
       const float a = 2.0F * p.x / static_cast<float>(n) - 1.0F;
       const float b = 2.0F * p.y / static_cast<float>(n) - 1.0F;
       const vec3 local = side > 0.0F ? vec3(a, b, 1) : vec3(b, a, -1);
@@ -271,8 +271,8 @@ Mesh make_bipyramid(uint32_t sides, double height) {
   return mesh;
 }
 
-/// Returns the coarse box with one more corner, in the middle of an edge: only one face's triangles have it, and a
-/// triangle without area joins it to the edge.
+/// Returns the coarse box with an additional corner in the middle of an edge. Only the triangles of one face use this
+/// corner. A triangle without area connects it to the edge.
 Mesh make_stitched_box() {
   Mesh mesh = make_box_mesh(1);
   // The first triangle is cut in two: its side from the first corner to the second is halved.
@@ -310,7 +310,7 @@ std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_i
       const dvec3 way = glm::normalize(corners[1] - corners[0]);
       rays.push_back({vec3(target - 6.0 * way), 0.0F, vec3(way), kNoEnd});
     } else if (!is_inside && kind == 1) {
-      // This ray goes along an axis of space, through numbers that the mesh has.
+      // This ray is parallel to a coordinate axis. Its other coordinates are those of vertices.
       const int axis = static_cast<int>(rays.size() % 9 / 3);
       vec3 from = at;
       from[axis] -= 6.0F;
@@ -325,7 +325,7 @@ std::vector<Ray> make_aimed_rays(const Mesh& mesh, const vec3& center, bool is_i
   return rays;
 }
 
-/// Returns the number of rays in all; a test with the label `long` takes many.
+/// Returns the total number of rays. It is large for a test with the label `long`.
 size_t aimed_ray_count() {
   const char* word = std::getenv("PROMIN_TEST_AIMED_RAYS");
   return word == nullptr ? 150'000 : static_cast<size_t>(std::strtoull(word, nullptr, 10));
@@ -361,8 +361,8 @@ TEST_F(CrossingsTest, ParityTellsInsideFromOutside) {
   }
 }
 
-// Many slivers meet in a corner. Seen edge-on, some of them turn over in rounding. Areas without rounding tell the
-// sides of the corner apart.
+// Many slivers share a corner. Rounding reverses the orientation of some of them if the ray sees them edge-on. Areas
+// without rounding distinguish the sides of the corner.
 TEST_F(CrossingsTest, ParityHoldsAmongSliversSeenEdgeOn) {
   for (const double height : {0.3, 1e-3, 1e-6, 1e-8}) {
     const Mesh mesh = make_bipyramid(3000, height);
@@ -416,11 +416,11 @@ TEST_F(CrossingsTest, ParityHoldsWhereAreasDrownInRounding) {
   EXPECT_GT(std::accumulate(counts.begin(), counts.end(), 0), static_cast<int32_t>(kSurfaces));
 }
 
-// The origin is so far away that all corners of a triangle are seen in one place, though the triangle has an area.
+// The origin is so far away that all corners of a triangle coincide after rounding, although the triangle has an area.
 TEST_F(CrossingsTest, WhatIsSeenAsAPointIsNotCrossedTwice) {
   Mesh mesh = make_icosphere(2);
   for (vec3& position : mesh.positions) position *= 0.02F;
-  // The other shape makes the scene so large that rays are not moved nearer.
+  // The other shape makes the scene so large that the shader does not move the origins of rays nearer.
   const world::Scene scene = scene_of({mesh, world::Sphere{vec3(0, 0, -1e5F), 1.0F}});
   Random random(31);
   std::vector<Ray> rays;
@@ -452,7 +452,8 @@ TEST_F(CrossingsTest, RaysEnterAsOftenAsTheyLeave) {
   }
 }
 
-/// Points of creases, as exact as fp64 allows, and unit vectors along which a ray there touches the shape.
+/// Points on creases, as exact as fp64 allows, and unit vectors. A ray through a point in the direction of its vector
+/// touches the shape.
 struct Aim {
   dvec3 target{0.0};
   dvec3 graze{0.0};
@@ -546,8 +547,8 @@ TEST_F(CrossingsTest, ASolidIsEnteredAndLeftOnceOrNotAtAll) {
 #include "promin/kinds/primitives.def"
 }
 
-// Shapes are exact here: touching one is not a crossing, though cast() meets it. A plane has one crossing, and none
-// along it.
+// Shapes are exact here. A ray that touches one has a hit of cast() but no crossing. A ray crosses a plane once, and
+// never if it is parallel to the plane.
 TEST_F(CrossingsTest, WhatIsTouchedIsNotCrossed) {
   const auto expect = [&](const world::Shape& shape, const Ray& ray, int32_t expected, bool is_cast) {
     const world::Scene scene = scene_of({shape});
@@ -621,7 +622,7 @@ TEST_F(CrossingsTest, DirectionsHaveAnyLengthAndOriginsAnyDistance) {
     ASSERT_EQ(lists.of_ray(i).size(), static_cast<size_t>(counts[i])) << i;
     ASSERT_TRUE(std::ranges::is_sorted(lists.of_ray(i), {}, &Hit::t)) << i;
   }
-  // The ray is cut at each hit: parts begin at it or end at it. Units may be denormal.
+  // The test divides the ray at each hit. Parts begin or end at the hit. Units may be denormal.
   std::vector<Ray> parts;
   std::vector<int32_t> expected;
   for (const float length : {1.1e37F, 3.3e37F, 0.7e38F, 0.9e38F, 1.3e38F, 1.6e38F}) {
@@ -675,7 +676,7 @@ std::pair<world::Scene, Ray> make_stack(uint32_t count) {
   return {scene_of({mesh}), {vec3(0.1F, 0.1F, 0), 0.0F, vec3(0, 0, 1), kNoEnd}};
 }
 
-// There are more crossings than the budget: the hits of one ray stay together.
+// There are more crossings than the budget allows. The hits of one ray stay together.
 TEST_F(CrossingsTest, RaysMayHaveManyHits) {
   constexpr uint32_t kCount = 4000;
   const auto [scene, ray] = make_stack(kCount);
@@ -694,7 +695,7 @@ TEST_F(CrossingsTest, RaysMayHaveManyHits) {
   EXPECT_EQ(parts, 3U);
 }
 
-// llvmpipe ends a lane's loops after 65535 turns: the result at that point is not an answer.
+// llvmpipe ends the loops of a lane after 65535 iterations. The result at that point is incomplete.
 TEST_F(CrossingsTest, TooManyHitsAreRefusedOrTraced) {
   constexpr uint32_t kCount = 100'000;
   const auto [scene, ray] = make_stack(kCount);
@@ -706,7 +707,7 @@ TEST_F(CrossingsTest, TooManyHitsAreRefusedOrTraced) {
     EXPECT_TRUE(device().profile().may_cut_loops);
     EXPECT_THAT(list_problems(error), HasProblem("device.loops.cut"));
   }
-  // The list can be made part by part on every device.
+  // Every device can make the list in parts.
   size_t total = 0;
   for (float begin = 0.5F; begin < 100'000.0F; begin += 1000.0F) {
     const std::vector<Ray> part = {{ray.origin, begin, ray.direction, begin + 1000.0F}};
@@ -719,7 +720,7 @@ class SameCrossingsTest : public TempFolder {
  protected:
   static const gpu::Device& device() { return test::SharedDevice::open({.pixel_packet_size = 1}); }
 
-  /// Returns rays that are aimed at a closed mesh, and rays that are aimed at everything else.
+  /// Returns rays towards a closed mesh, and rays towards all other objects.
   static std::vector<Ray> make_rays() {
     std::vector<Ray> rays = test::make_rays(3001);
     const std::vector<Ray> aimed = make_aimed_rays(make_icosphere(2), vec3(0.0F), false, 2000, 5);
@@ -755,7 +756,7 @@ TEST_F(SameCrossingsTest, WhateverTheTreeAndItsFile) {
     write_bvh_file(file, pack_scene(scene, builder).tree());
     expect_same("file of " + std::string(builder), {.bvh = file});
   }
-  // One of the trees refers to primitives more than once; otherwise this test would drop nothing.
+  // One of the trees refers to some primitives more than once. Otherwise the test would find no duplicates to remove.
   const PackedScene split = pack_scene(scene, "spatial");
   EXPECT_GT(split.references.size(), split.bounded_count);
   EXPECT_GT(expected->hits.size(), 2 * rays.size());
@@ -784,8 +785,8 @@ TEST_F(SameCrossingsTest, WhateverTheBudgetTheOrderAndTheCompany) {
   EXPECT_EQ(differences, 0U);
 }
 
-// Rays in rows are traced in packets. If a tree has a primitive twice, a packet meets it in another order than single
-// rays, and some rays may be listed as single ones.
+// Rays in rows are traced in packets. If a tree refers to a primitive twice, a packet visits it in a different order
+// than single rays do, and some rays may be listed as single rays.
 TEST_F(SameCrossingsTest, WhateverHangsTogetherInPackets) {
   const world::Scene scene = measure::make_needles(20000);
   const Bounds bounds = world::bounds_of(scene);

@@ -8,7 +8,7 @@
 
 namespace promin::test {
 
-/// The default device. All suites of a process share it, and with it the kernels that earlier suites compiled.
+/// The default device. All suites of a process share it and the kernels that earlier suites compiled.
 class SharedDevice : public testing::Environment {
  public:
   /// Returns the device, and opens it if no earlier suite has done so.

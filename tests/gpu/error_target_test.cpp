@@ -37,7 +37,7 @@ View view_of(const Scene& scene, const uvec2& size) {
   return view;
 }
 
-/// Returns wires with a width of a quarter of a pixel and more before a dark wall, lit from the front.
+/// Returns wires in front of a dark wall, lit from the front. They are at least a quarter of a pixel wide.
 world::Scene make_wires() {
   world::Scene scene;
   scene.materials = {make_unlit(vec3(0.9F, 0.6F, 0.2F))};
@@ -51,7 +51,7 @@ world::Scene make_wires() {
   return scene;
 }
 
-/// Returns a flat board of squares of all colors, seen to the horizon.
+/// Returns a flat board of squares of all colours, which is visible up to the horizon.
 Scene make_floor() {
   Scene scene;
   std::vector<uint32_t> texels;
@@ -131,7 +131,7 @@ TEST_F(ErrorTargetTest, ClaimsHoldOf95In100Pixels) {
   expect_honest(floor, with_target(view, 1.0F / 64.0F), "a floor's texture", {.tone_mapping = ToneMapping::kAgx});
 }
 
-// Only pixels with an estimated error are counted; a pixel that seems flat is exact as far as the renderer knows.
+// Only pixels with an estimated error are counted. The renderer considers a pixel with equal samples exact.
 TEST_F(ErrorTargetTest, EstimatesOfFixedSamplesHoldOf90In100Pixels) {
   TunedRendererOptions options;
   options.aovs.error = true;
@@ -229,7 +229,7 @@ TEST_F(ErrorTargetTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
   }
 }
 
-// Camera rays go on behind surfaces that blend.
+// Camera rays continue behind surfaces that blend.
 TEST_F(ErrorTargetTest, AgreesWithManySamplesWhereRaysGoOn) {
   View view = make_view(uvec2(40, 30));
   view.samples_per_pixel = 256;
@@ -259,7 +259,7 @@ TEST_F(ErrorTargetTest, LargePicturesAreRefinedInParts) {
   }
 }
 
-// The remaining work is forecast anew after each stage, and may grow.
+// promin estimates the remaining work again after each stage. The estimate may grow.
 TEST_F(ErrorTargetTest, ProgressNeverRunsBackwards) {
   Renderer renderer = make_renderer(device(), make_wires());
   View view = with_target(make_board_view(uvec2(300)), 1.0F / 64.0F, 4, 64);
@@ -278,7 +278,7 @@ TEST_F(ErrorTargetTest, ProgressNeverRunsBackwards) {
   }
 }
 
-// If no time is left, each pixel has one sample; if there is plenty, the picture has the view's error.
+// If no time remains, each pixel has one sample. If there is enough time, the picture reaches the view's target error.
 TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheSamplesOrTheErrorThatItNames) {
   const world::Scene scene = make_scene_of_everything(20);
   Renderer renderer = make_renderer(device(), scene);
@@ -308,7 +308,7 @@ TEST_F(ErrorTargetTest, WithinATimeItIsThePictureOfTheSamplesOrTheErrorThatItNam
   }
 }
 
-// These AOVs are of rays through the pixels' centres, whatever the error.
+// These AOVs describe rays through the centres of pixels, for any target error.
 TEST_F(ErrorTargetTest, AovsAreThoseOfOneSample) {
   const world::Scene scene = make_scene_of_everything(20);
   RendererOptions options;

@@ -80,7 +80,7 @@ class ExplainTest : public test::DeviceTest {
     return next;
   }
 
-  /// The colour is the sum of its parts, in fp32 and to the bit.
+  /// The colour is exactly the fp32 sum of its parts.
   static void expect_sums(const Explanation& explanation, const world::Scene& scene) {
     vec3 sum(0.0F);
     for (const ExplainedSample& sample : explanation.samples) {
@@ -149,7 +149,7 @@ TEST_F(ExplainTest, EverythingAddsUpToThePicture) {
   check(test::make_scene_of_everything(), view);
 }
 
-// A cast sees only the nearest surface, also if that blends, so hits are not compared with casts.
+// cast() returns the nearest surface even if it blends, so the test does not compare hits with cast().
 TEST_F(ExplainTest, WhatBlendsAddsUpToThePicture) {
   const world::Scene scene = test::make_scene_of_alpha();
   const View view = test::make_view(uvec2(48, 36));

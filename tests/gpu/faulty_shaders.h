@@ -11,7 +11,7 @@
 
 namespace promin::test {
 
-/// A picture's kernels with a fault of tests/faults/seed_fault.py.
+/// The kernels of pictures with a fault from tests/faults/seed_fault.py.
 class FaultyShaders {
  public:
   explicit FaultyShaders(const std::string& fault)

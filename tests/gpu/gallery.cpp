@@ -163,7 +163,7 @@ world::Scene make_gallery_of_metallic_roughness() {
     model.clearcoat_normal_texture.texture = normals;
     model.clearcoat_normal_scale = 0.5F;
   });
-  // This board is a mirror that a texture of normals bends.
+  // This board is a mirror with a texture of normals.
   add(1.0F, 0.15F, 0.1F, [&](Material&, MetallicRoughness& model) {
     model.normal_texture = {.texture = normals, .to_u = {0.3F, 0, 0}, .to_v = {0, 0.3F, 0}};
     model.normal_scale = 0.05F;

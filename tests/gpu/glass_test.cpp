@@ -25,7 +25,7 @@ Material make_clear(const MetallicRoughness& model) {
   return material;
 }
 
-/// Returns glass that transmits all light except for what it reflects.
+/// Returns glass that transmits all light that it does not reflect.
 MetallicRoughness clear_model() {
   MetallicRoughness model;
   model.metallic = 0.0F;
@@ -44,7 +44,7 @@ Material make_classic(float transmission, float ior, float reflection = 0.0F) {
   return material;
 }
 
-/// Returns a view of one orthographic pixel, whose eye is above the origin at y = 4, with this direction.
+/// Returns an orthographic view of one pixel in this direction. The eye is above the origin at y = 4.
 View look_down(const vec3& look = vec3(0, -1, 0)) {
   View view;
   view.size = uvec2(1);
@@ -92,7 +92,7 @@ TEST_F(GlassTest, WithoutBouncesNoRayIsTraced) {
   EXPECT_EQ(result.rays.total(), 1U);
 }
 
-// A ray that is not followed sees the environment, so a ball without colour stays as light as the environment.
+// The environment replaces a ray that is not traced, so a colourless ball has the same brightness as the environment.
 TEST_F(GlassTest, BeyondTheDepthTheEnvironmentIsSeen) {
   MetallicRoughness model = clear_model();
   model.thickness = 1.0F;
@@ -115,7 +115,7 @@ TEST_F(GlassTest, AMediumAbsorbsByTheWayThroughIt) {
   model.attenuation_distance = 2.0F;
   world::Scene scene = make_scene(kSlab, make_clear(model));
   scene.environment.ambient = vec3(1.0F);
-  // Each face has half of the base colour; the way in the glass is 1.
+  // Each face has half of the base colour. The length of the ray inside the glass is 1.
   const vec3 seen = see(scene, look_down());
   EXPECT_NEAR(seen.r, 0.81F * std::sqrt(0.5F), 32 * kU);
   EXPECT_NEAR(seen.g, 0.25F * 0.5F, 32 * kU);
@@ -236,7 +236,7 @@ TEST_F(GlassTest, EveryWayOfTracingGivesTheSameBits) {
   }
 }
 
-// There are more light sources than a turn of the stream takes: rays are traced again while others wait.
+// There are more light sources than the stream handles in one turn, so some rays are traced again while others wait.
 TEST_F(GlassTest, ManySourcesLightWhatIsBehindGlass) {
   world::Scene scene = make_scene_of_glass();
   View view = make_view({48, 36});

@@ -83,7 +83,7 @@ const Layout kLayouts[] = {
 struct Shader {
   const char* name;
   std::span<const uint32_t> spirv;
-  /// If there were fewer operations, the test would read the module wrongly.
+  /// A smaller number of operations would mean that the test reads the module incorrectly.
   uint32_t least_float_operation_count;
 };
 
@@ -152,8 +152,8 @@ TEST_P(ShaderTest, EveryFloatOperationIsPrecise) {
   EXPECT_THAT(left.float_operation_count, AllOf(Gt(50U), Lt(module.float_operation_count)));
 }
 
-// This shows that the test above can fail. Pictures cannot show it: a lavapipe that does not contract by itself would
-// give the same ones without `precise`.
+// This shows that the test above can fail. Pictures cannot show this, because lavapipe without contraction renders the
+// same pictures without `precise`.
 TEST(SpirvTest, RemovedPreciseIsSeen) {
   const std::vector<uint32_t> words = read_spirv(std::filesystem::path(PROMIN_FAULTS_DIR) / "nothing_precise/cast.spv");
   EXPECT_THAT(test::SpirvModule(words).contractible, Contains(HasSubstr("shear_triangle")));

@@ -35,7 +35,7 @@ constexpr uint32_t kMeterLevels = 7;
 constexpr int kMeterStep = 16;
 constexpr int kMeterMiddle = 128;
 
-/// The steps of alpha. They are largest at the finest levels; without scaling, little of a mask would be left on the
+/// The steps of alpha. They are largest at the finest levels. Without scaling, little of a mask would remain on the
 /// coarser levels.
 constexpr std::array<int, kMeterLevels> kAlphaSteps{48, 32, 16, 12, 8, 6, 4};
 
@@ -150,7 +150,7 @@ world::Scene make_scene_of_levels(bool is_mask) {
   return scene;
 }
 
-/// Returns the view from the place `number`; place 0 is in front of everything.
+/// Returns the view from the position `number`. Position 0 is in front of all objects.
 View make_view_of_levels(const uvec2& size, uint32_t number) {
   View view;
   view.size = size;
@@ -165,7 +165,7 @@ View make_view_of_levels(const uvec2& size, uint32_t number) {
   return view;
 }
 
-/// Returns the number of places from which pictures are taken; there are more with the label `long`.
+/// Returns the number of positions from which pictures are rendered. It is larger with the label `long`.
 uint32_t view_count() {
   const char* word = std::getenv("PROMIN_TEST_LEVEL_VIEWS");
   return word == nullptr ? 1 : static_cast<uint32_t>(std::stoul(word));
@@ -211,8 +211,8 @@ class LevelsTest : public DeviceTest {
   }
 };
 
-/// Bounds of the differences that remain if place and level are as exact as the oracle says: those are rounding. No
-/// pixel may be wrong, not even in mirrors.
+/// Bounds of the differences that remain if positions and levels are within the oracle's errors. Such differences come
+/// from rounding. No pixel may be wrong, not even in mirrors.
 constexpr oracle::PictureBounds kOfLevels{
     .color_error = 1e-5L, .color_mean = 1e-6L, .color_share = 0, .color_share_with_mirrors = 0, .unsure_share = 1};
 /// Bounds of masks. A mask that hides something changes the pixel entirely. If alpha is nearer to its cutoff than its
@@ -328,7 +328,7 @@ TEST_F(LevelsTest, EachOfManySamplesTakesOneLevel) {
     scene.geometries.clear();
     levels.clear();
     for (uint32_t row = 0; row < kRows; ++row) {
-      // These levels are away from those at which a sample's level changes, which are at odd values of 2 * samples.
+      // These levels are far from the levels at which a sample's level changes. Those are at odd values of 2 * samples.
       levels.push_back((row * (kMeterLevels * samples - 1) / (kRows - 1)) / static_cast<double>(samples));
       // The level is 1/2 log2(w^2 W H A_uv / A), where w is the width of a sample, and H = 1.
       const double side = 2.0 / kSide / std::sqrt(samples);

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// These tests check the promises of the public headers on wrong arguments, on interrupted work and on changes of a
-// scene.
+// These tests check what the public headers promise for wrong arguments, interrupted work and changes of a scene.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -118,7 +117,7 @@ TEST_F(LibraryTest, WrongChangesAreRefusedAndChangeNothing) {
   EXPECT_TRUE(has_same_bits(renderer.render(view_).image, before));
 }
 
-// The tree has only one of these copies; as glass, each copy would show.
+// The tree contains only one of these copies. If they were glass, each copy would be visible.
 TEST_F(LibraryTest, MaterialsOfManyCopiesStayOpaque) {
   Scene scene = scene_;
   auto& floor = std::get<Mesh>(scene.geometries[0]);
@@ -136,8 +135,8 @@ TEST_F(LibraryTest, MaterialsOfManyCopiesStayOpaque) {
 }
 
 // This test needs a process of its own (in tests/CMakeLists.txt each suite on a device has one). Mesa 25.0.7 counts
-// memory that it has refused as allocated: the memory that it gives out later lies beyond the end of its file, where
-// writing is a bus error.
+// memory that it has refused as allocated. Memory that it allocates later then lies beyond the end of its file, where a
+// write causes a bus error.
 class LibraryOutOfMemoryTest : public LibraryTest {};
 
 // A change for which there is no memory is refused before the scene changes. Lavapipe from Mesa 24.3 on has its memory
@@ -227,7 +226,7 @@ TEST_F(LibraryTest, ABrokenOffConstructorLeavesTheDeviceUsable) {
 
 TEST_F(LibraryTest, ABrokenOffPictureStopsAtTheNextDispatchAndTheRendererStays) {
   const View view = make_library_view(scene_, 256);
-  // A dispatch takes so few rays that there are several dispatches.
+  // A dispatch traces so few rays that several dispatches are needed.
   TunedRendererOptions options;
   options.blocks_per_dispatch = 1;
   Renderer renderer = make_renderer(device(), scene_, options);

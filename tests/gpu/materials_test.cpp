@@ -29,7 +29,7 @@ Material make_metal(const MetallicRoughness& model) {
   return material;
 }
 
-/// Returns a scene without lights and with the same light from everywhere, also for rays that leave the scene.
+/// Returns a scene without lights and with the same light from all directions, also for rays that leave the scene.
 world::Scene make_furnace(float radiance = 1.0F) {
   world::Scene scene;
   scene.environment.ambient = scene.environment.background = vec3(radiance);
@@ -110,7 +110,7 @@ View look_at_spheres() {
   return view;
 }
 
-// In a white furnace the numbers of the table cancel, so the result is 1 whatever the table contains.
+// In a white furnace the numbers of the table cancel, so the result is 1 for any table.
 TEST_F(MaterialsTest, WhiteSpheresVanishInAWhiteFurnace) {
   Renderer renderer = make_renderer(device(), make_spheres(vec3(1.0F)));
   View view = look_at_spheres();
@@ -131,7 +131,7 @@ TEST_F(MaterialsTest, ColoredSpheresSendNoMoreThanTheyGet) {
   EXPECT_GT(darker, image.pixels.size() / 4);
 }
 
-// The light that a sheen does not reflect is left for the layers below it.
+// The layers below a sheen receive the light that the sheen does not reflect.
 TEST_F(MaterialsTest, WhiteSpheresUnderWhiteSheensVanishInAWhiteFurnace) {
   for (const float roughness : {0.0F, 0.1F, 0.3F, 1.0F}) {
     world::Scene scene = make_spheres(vec3(1.0F));
@@ -200,8 +200,8 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   }
 }
 
-// Whatever a film adds to the reflection, the body gets the remainder: with the colour that is reflected most, all
-// light is sent back.
+// The body receives the light that the film does not reflect. In the colour that the film reflects most, the surface
+// sends back all light.
 TEST_F(MaterialsTest, AWhiteFloorUnderAFilmSendsAllOfOneColorInAWhiteFurnace) {
   for (const float thickness : {0.0F, 130.0F, 420.0F, 5000.0F}) {
     for (const float cosine : {1.0F, 0.4F, 0.01F}) {
@@ -281,7 +281,7 @@ TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   EXPECT_NEAR(above / round, across / along * e1(static_cast<double>(roughness)) / e1(mean), 1e-4);
 }
 
-// A source straight behind a matt wall has no half vector and no cosine: nothing of it may be undefined.
+// A source straight behind a matt wall has no half vector and a cosine of 0. No result may be undefined.
 TEST_F(MaterialsTest, ASourceStraightBehindAGrainIsScatteredThrough) {
   world::Scene scene = make_grain(0.5F, 0.0F, 0.3F);
   auto& model = std::get<MetallicRoughness>(scene.materials[0].model);
@@ -294,7 +294,7 @@ TEST_F(MaterialsTest, ASourceStraightBehindAGrainIsScatteredThrough) {
   EXPECT_EQ(seen, vec3(seen.x));
 }
 
-// A white metal reflects all light from everywhere, whatever its grain.
+// A white metal reflects all light from all directions, for any grain.
 TEST_F(MaterialsTest, AWhiteGrainVanishesInAWhiteFurnace) {
   std::optional<Renderer> renderer;
   for (const float roughness : {0.0F, 0.2F, 1.0F}) {
@@ -326,7 +326,8 @@ TEST_F(MaterialsTest, CoatedWhiteSpheresSendNoMoreThanTheyGet) {
   }
 }
 
-// 4096 sources give the same light: for a lobe of this roughness so many are like light from everywhere.
+// 4096 sources give the same light, because for a lobe of this roughness they are equivalent to light from all
+// directions.
 TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
   constexpr int kCount = 4096;
   world::Scene scene;
@@ -353,7 +354,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
       }
     }
   }
-  // A sheen takes light from the layers below on the way in and on the way out, so some light is lost, and none is
+  // A sheen reduces the light of the layers below when it enters and when it leaves, so some light is lost and none is
   // added.
   for (const float roughness : {0.3F, 0.6F, 1.0F}) {
     MetallicRoughness model;

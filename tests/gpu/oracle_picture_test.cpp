@@ -32,8 +32,8 @@ uint64_t count_primitives(const world::Scene& scene) {
   return count;
 }
 
-/// Returns the size of pictures that do not depend on the size of pixels: a quarter of the pixels of thorough tests,
-/// because brute force takes long. The smaller pictures show the same shapes, materials and lights.
+/// Returns the size of pictures whose bounds do not depend on the size of pixels. It has a quarter of the pixels of
+/// thorough tests, because brute force takes long. The smaller pictures show the same shapes, materials and lights.
 uvec2 make_size() {
   return test::is_thorough() ? uvec2(96, 72) : uvec2(48, 36);
 }
@@ -121,7 +121,7 @@ TEST_P(OraclePictureTest, AgreesWithTheOracle) {
   oracle::PictureBounds bounds;
   if (std::ranges::any_of(scene.materials, [](const Material& m) { return is_clear(m); })) {
     view.max_depth = kMaxDepthOfGlass;
-    // Near the angle of total reflection, the oracle is not sure.
+    // Near the angle of total reflection, the oracle is not certain.
     bounds.unsure_share = 0.1;
   }
   EXPECT_TRUE(compare(scene, view, bounds).passes());
@@ -163,7 +163,7 @@ TEST_F(OraclePictureTest, AlphaAgreesWithTheOracle) {
 TEST_F(OraclePictureTest, GlassAgreesWithTheOracle) {
   View view = test::make_view(make_size());
   view.max_depth = kMaxDepthOfGlass;
-  // Near the angle of total reflection, the oracle is not sure.
+  // Near the angle of total reflection, the oracle is not certain.
   EXPECT_TRUE(
       compare(test::make_scene_of_glass(), view, {.color_mean = 1e-6L, .plain_mean = 1e-5L, .unsure_share = 0.1})
           .passes());
@@ -299,7 +299,7 @@ TEST_F(OraclePictureTest, RareLayersAgreeWithTheOracle) {
   const View view = test::make_gallery_view(kSizeOfTextures);
   const oracle::Picture truth = oracle::render(scene, view);
   oracle::PictureBounds bounds = kOfTextures;
-  // Highlights are narrow across a grain, so the oracle is not sure at their edges.
+  // Highlights are narrow across a grain, so the oracle is not certain at their edges.
   bounds.unsure_share = 0.015;
   // The explained error includes the errors of the sky's maps.
   bounds.plain_mean = 1e-3L;
@@ -356,8 +356,8 @@ TEST_F(OraclePictureTest, MapsOfSkiesAgreeWithTheOracle) {
   }
 }
 
-// The largest possible errors of the maps explain most of the differences of these pictures; the mean of the rest is
-// small.
+// The largest possible errors of the maps explain most differences of these pictures. The mean of the remaining
+// differences is small.
 TEST_F(OraclePictureTest, AGradientAgreesWithTheOracle) {
   const world::Scene scene = test::make_scene_under_sky(test::make_gradient());
   EXPECT_TRUE(

@@ -15,7 +15,7 @@ TEST(StreamShapeTest, ItsMemoryIsBoundedWhateverTheLights) {
     EXPECT_EQ(shape.most_paths % StreamShape::kLanes, 0U);
     EXPECT_GE(shape.most_paths, 1U << 16);
     EXPECT_LE(shape.most_paths, 1U << 18);
-    // Each source has a turn, and none has two.
+    // Each source is handled in exactly one turn.
     EXPECT_GE(shape.sources * shape.turns_of_bounce, lights);
     EXPECT_LT(shape.sources * (shape.turns_of_bounce - 1), std::max(lights, 1U));
   }

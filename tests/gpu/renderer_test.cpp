@@ -249,7 +249,7 @@ TEST_F(RendererTest, ScenesOfNothingShowTheBackground) {
 TEST_F(RendererTest, TheSkyIsBehindAllWhereItIsShown) {
   world::Scene scene;
   scene.materials.resize(1);
-  // The light is the same from everywhere, so that every representation of a sky can hold it.
+  // The light is the same from all directions, so that every representation of a sky can store it exactly.
   const vec3 color(0.5F, 0.25F, 0.125F);
   scene.environment.ambient = color;
   scene.environment.sky = GradientSky{.top = color, .horizon = color, .bottom = color};
@@ -273,7 +273,7 @@ TEST_F(RendererTest, TheSkyIsBehindAllWhereItIsShown) {
   }
 }
 
-/// Returns mirrors that lose no light and send 1/1024 each, and sources that light neither mirror.
+/// Returns mirrors that absorb no light and emit 1/1024 each, and sources that illuminate no mirror.
 world::Scene make_facing_mirrors(uint32_t light_count) {
   world::Scene scene;
   scene.materials.resize(1);
@@ -306,7 +306,7 @@ TEST_F(RendererTest, MirrorsAddUpToTheirDepth) {
   }
 }
 
-// llvmpipe ends a lane's loops after 65535 turns; therefore a lane traces one ray at a time.
+// llvmpipe ends the loops of a lane after 65535 iterations. Therefore a lane traces one ray at a time.
 TEST_F(RendererTest, ManyBouncesAreTracedToTheEnd) {
   View view;
   view.size = uvec2(128, 144);
@@ -326,8 +326,8 @@ TEST_F(RendererTest, TheGreatestDepthIsTracedWithManySources) {
   EXPECT_EQ(make_renderer(device(), make_facing_mirrors(60)).render(view).image.pixels[0], vec3(1001.0F / 1024.0F));
 }
 
-// A turn of the stream takes the shadow rays to at most STREAM_SOURCES sources. Here there are fewer, as many, one
-// more, and several turns of sources.
+// A turn of the stream takes the shadow rays to at most STREAM_SOURCES sources. The test uses fewer sources, exactly
+// this number, one more, and several turns of sources.
 TEST_F(RendererTest, AMirrorShowsWhatAnyNumberOfSourcesLights) {
   for (const uint32_t count : {1U, layout::STREAM_SOURCES, layout::STREAM_SOURCES + 1, 3 * layout::STREAM_SOURCES}) {
     SCOPED_TRACE(testing::Message() << count << " sources");

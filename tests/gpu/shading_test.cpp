@@ -152,7 +152,8 @@ TEST_F(ShadingTest, UvAreTheHits) {
 
 // The heat map is compared with the counts of cast rays; more steps must be lighter.
 TEST_F(ShadingTest, StepsAreAHeatMapOfTheCounts) {
-  // With so many spheres, the number of steps exceeds half of the scale, where a wrong order of colours would show.
+  // With this number of spheres, the number of steps exceeds half of the scale, where a wrong order of colours would be
+  // visible.
   scene_ = test::make_scene_of_everything(5000);
   renderer_.emplace(make_renderer(device(), scene_));
   const Image picture = show(DebugView::kSteps);

@@ -75,8 +75,8 @@ struct Patch {
 constexpr Patch kPatches[] = {{{1, 0, 0}, {1, 0, 0}},  {{-1, 0, 0}, {0, 1, 1}}, {{0, 1, 0}, {0, 1, 0}},
                               {{0, -1, 0}, {1, 0, 1}}, {{0, 0, 1}, {0, 0, 1}},  {{0, 0, -1}, {1, 1, 0}}};
 
-/// Returns a picture as a person would draw it: its rows are top and bottom, and between them are behind, left, ahead
-/// and right.
+/// Returns a panorama. Its first and last rows are top and bottom. The columns between them are behind, left, ahead and
+/// right.
 Panorama make_patches() {
   return make_panorama({64, 32}, [](uint32_t x, uint32_t y) {
     if (y < 8) return kPatches[2].color;
@@ -167,7 +167,7 @@ TEST_F(SkyPictureTest, CamerasSeeTheSkyWhereItIsShown) {
     scene.environment.shows_sky = false;
     EXPECT_EQ(render(scene, view).pixels[0], scene.environment.background);
     if (patch.axis.x <= 0.0F) continue;
-    // This case has all features once, because they take long to compile.
+    // Only this case uses all features, because they take long to compile.
     EXPECT_EQ(render_with(scene, view, forced).pixels[0], scene.environment.background);
   }
 }
@@ -199,7 +199,7 @@ TEST_F(SkyPictureTest, RotationAndIntensityAreSeen) {
   scene.environment.sky = make_patches();
   scene.environment.rotation = 0.5F * std::numbers::pi_v<float>;
   scene.environment.intensity = 4.0F;
-  // What was at +Z is now at +X.
+  // The rotation moves the light from +Z to +X.
   EXPECT_LT(glm::distance(render(scene, look_from(vec3(1, 0, 0))).pixels[0], 4.0F * kPatches[4].color), 4e-3F);
   EXPECT_LT(glm::distance(render(scene, look_from(vec3(0, 0, -1))).pixels[0], 4.0F * kPatches[0].color), 4e-3F);
 }
@@ -220,13 +220,13 @@ TEST_F(SkyPictureTest, AmbientLightIsTheIrradiance) {
   }
 }
 
-// Also between the levels, a rough metal shows the mean over its lobe.
+// A rough metal shows the mean over its lobe also for a roughness between two levels.
 TEST_F(SkyPictureTest, RoughMetalsShowTheLevelBetween) {
   for (const float roughness : {0.45F, 0.6F, 0.8F, 1.0F}) {
     world::Scene scene = make_balls({make_metal(roughness)});
     scene.environment.sky = Studio{};
     const Image at_once = render(scene, look_from(vec3(0, 0, 1)));
-    // The test computes the same from the levels at both sides.
+    // The test interpolates between the two neighbouring levels.
     const float lower = roughness < 0.6F ? 0.35F : 0.6F;
     const float upper = roughness < 0.6F ? 0.6F : 1.0F;
     const auto seen_at = [&](float r) {

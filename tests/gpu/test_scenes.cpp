@@ -116,7 +116,7 @@ world::Scene make_scene_of_alpha() {
     const vec3 center(x, 1.3F, 3.0F + 0.2F * static_cast<float>(i));
     add(make_pane(center, 0.3F * static_cast<float>(i)),
         blending(scene.materials[i], 0.15F + 0.1F * static_cast<float>(i)));
-    // The pane is in the same place as the last one.
+    // This pane coincides with the previous one.
     if (i == 2) add(make_pane(center, 0.6F), blending(scene.materials[4], 0.5F));
   }
   add(world::Sphere{vec3(0.6F, 1.4F, 2.6F), 0.5F}, blending(scene.materials[4], 0.3F));

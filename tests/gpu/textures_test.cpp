@@ -188,7 +188,7 @@ TEST_F(TexturesTest, OcclusionDimsTheEnvironmentAlone) {
   const float dimmed_alone = center();
   material.occlusion_texture = {};
   const float open_alone = center();
-  // A fifth of the environment's light is left, and all of the source's.
+  // A fifth of the environment's light and all light of the source remain.
   EXPECT_NEAR(dimmed_alone, 0.2F * open_alone, 1e-6F);
   EXPECT_NEAR(dimmed - dimmed_alone, open - open_alone, 1e-6F);
   scene.materials[0].model = [&] {

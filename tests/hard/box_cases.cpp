@@ -33,8 +33,8 @@ struct Block {
   double size;
 };
 
-/// Blocks on a lattice beside `offset`, so that sides lie in common planes: hollow cubes of quads, single quads in flat
-/// boxes, and spheres that touch the sides.
+/// Blocks on a lattice that begins at `offset`, so that sides lie in common planes. The blocks are hollow cubes of
+/// quads, single quads in flat boxes, and spheres that touch the sides.
 struct BlockScene {
   world::Scene scene;
   std::vector<Block> blocks;
@@ -45,7 +45,7 @@ BlockScene make_blocks(double offset, Random& random) {
   std::vector<world::Shape> shapes;
   for (int i = 0; i < 48; ++i) {
     const dvec3 cell(i % 4, (i / 4) % 4, i / 16);
-    // These odd fractions are changed by rounding.
+    // fp32 cannot represent these fractions exactly.
     const Block block{dvec3(offset, -offset, offset) + 1.7 * cell + 0.3 * random.uniform(),
                       1.0 + 0.3 * random.uniform()};
     if (i % 3 == 2) {
@@ -67,8 +67,8 @@ BlockScene make_blocks(double offset, Random& random) {
   return result;
 }
 
-/// Returns a ray at corners, edges and middles of the sides, exactly or a few roundings beside them; every fourth ray
-/// goes along an edge.
+/// Returns a ray towards a corner, an edge or the middle of a side, exactly or a few units in the last place beside it.
+/// Every fourth ray is parallel to an edge.
 Ray ray_at_block(const Block& block, double distance, Random& random, size_t index) {
   dvec3 target = block.low;
   for (int axis = 0; axis < 3; ++axis) target[axis] += block.size * std::floor(3.0 * random.uniform()) * 0.5;
@@ -125,7 +125,7 @@ void run_axis_parallel(Lab& lab) {
       const Block& block = blocks.blocks[i % blocks.blocks.size()];
       Ray ray{vec3(0.0F), 0.0F, vec3(0.0F), std::numeric_limits<float>::infinity()};
       for (int axis = 0; axis < 3; ++axis) {
-        // The plane is that of a side, lies in the middle between two, or elsewhere.
+        // The plane contains a side, lies halfway between two sides, or lies elsewhere.
         const double place = i % 2 == 0 ? std::floor(3.0 * random.uniform()) * 0.5 : random.uniform(-0.5, 1.5);
         ray.origin[axis] = static_cast<float>(block.low[axis] + block.size * place);
         constexpr std::array kSteps{0.0F, 1e-39F, 1e-30F, 1.0F};

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns a text for a number that is not finite, because JSON has no number for it.
+/// Returns a text instead of a number that is not finite, because JSON cannot express such numbers.
 Json number_of(double figure) {
   if (std::isnan(figure)) return "nan";
   if (std::isinf(figure)) return figure > 0.0 ? "inf" : "-inf";

@@ -21,7 +21,7 @@ using oracle::Vector;
 
 constexpr Real kU = kUnitRoundoff;
 
-/// Returns glass that transmits all light, without Fresnel's factor: a mirror ray goes on only after total reflection.
+/// Returns glass that transmits all light, without Fresnel's factor. Only total reflection causes a mirror ray.
 Material clear_glass(float ior) {
   Phong phong;
   phong.ambient = phong.diffuse = vec3(0.0F);
@@ -47,8 +47,8 @@ class GlassScene {
   world::Scene scene_;
 };
 
-/// Returns the rays of a sample that begins at `origin` along `direction`. The direction is rounded; the first ray has
-/// the rounded one.
+/// Returns the rays of a sample that begins at `origin` in the direction `direction`. The first ray has the rounded
+/// direction.
 class GlassTracer {
  public:
   GlassTracer(const Lab& lab, const GlassScene& scene) : renderer_(make_renderer(lab.device(), scene.scene())) {}
@@ -175,7 +175,7 @@ void run_critical_angles(Lab& lab) {
       const auto rays = tracer.follow(dvec3(-0.5, 0.2, 0.1), dvec3(sine, std::sqrt(1.0 - sine * sine), 0.0), 1);
       const Vector d = direction_of(rays[0]);
       const Real beyond2 = 1 - Real(kIor) * Real(kIor) * (1 - d.y * d.y);
-      // The angle is so near to the critical one that rounding decides.
+      // The angle is so near to the critical angle that rounding determines the result.
       if (rays.size() != 2 || std::abs(beyond2) < 16 * kU) {
         wrong += rays.size() != 2 ? 1 : 0;
         continue;
@@ -322,8 +322,9 @@ void run_nested(Lab& lab) {
   run_solids(lab, "a lens of spheres at 1e5 from the origin", lens, far, random);
 }
 
-/// Two blocks share a face, and come in either order. A ray goes from one into the other as if air were between them.
-/// Its direction in the second block is then that of Snell's law for the two; behind both it is as before.
+/// Two blocks share a face. The test uses both orders of the blocks. A ray goes from one into the other as if air were
+/// between them. Its direction in the second block is then that of Snell's law for the two; behind both it is as
+/// before.
 void run_coincident_faces(Lab& lab) {
   for (const bool is_second_first : {false, true}) {
     const world::Box lower{vec3(0, -0.5F, 0), vec3(2.0F, 0.5F, 2.0F), vec3(0.0F)};
@@ -429,8 +430,8 @@ void run_mesh_spheres(Lab& lab) {
   }
 }
 
-/// Under the same light from everywhere, a ball of glass without colour sends as much light as it gets, whatever
-/// happens inside.
+/// If the same light comes from all directions, a colourless glass ball must have the colour of this light, for all
+/// paths inside.
 void run_furnace(Lab& lab) {
   for (const float ior : {1.1F, 1.5F, 2.4F}) {
     world::Scene scene;

@@ -25,8 +25,8 @@
 namespace promin::hard {
 namespace {
 
-/// Returns the kernel `name`.spv of the folder that PROMIN_TEST_KERNELS names, for tests of the tests; otherwise
-/// promin's own kernel.
+/// Returns the kernel `name`.spv in the folder that PROMIN_TEST_KERNELS names, for tests that check these tests. If the
+/// variable is not set, returns promin's own kernel.
 std::vector<uint32_t> load_kernel(const char* name, std::span<const uint32_t> own) {
   const char* folder = std::getenv("PROMIN_TEST_KERNELS");
   if (folder == nullptr) return {own.begin(), own.end()};
@@ -91,7 +91,7 @@ Tally Tally::without_t_errors() const {
 }
 
 double Lab::rounding_factor() const {
-  // On a CPU device, divisions and roots are the processor's own.
+  // A CPU device uses the divisions and roots of the processor.
   return gpu::info_of(device_).type == "CPU" ? 1.0 : 2.0;
 }
 

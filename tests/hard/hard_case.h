@@ -107,7 +107,7 @@ class Lab {
   /// Prints and keeps a figure without a bound.
   void note(const std::string& what, double figure) const;
 
-  /// Adds every ray cast in a row to the table of primitives, if the scene has only this kind of shape.
+  /// Adds all rays of a row to the table of primitives if the scene has only this kind of shape.
   static void credit(const std::string& primitive, const Tally& tally, uint64_t leaks = 0);
 
   /// Returns the device's own records of a packed scene, which a test may have edited. `features` are the scene's;

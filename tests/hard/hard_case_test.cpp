@@ -49,7 +49,7 @@ TEST(HardCases, AreAllInTheDocument) {
     EXPECT_NE(document.find("\n| " + std::to_string(row.row) + " | "), std::string::npos)
         << "docs/accuracy.md has no row " << row.row << "; run tools/accuracy";
   }
-  // All figures are from one commit, which anybody can check out.
+  // All figures are from one commit that exists in the repository.
   const std::regex head("\nMeasured at commit [0-9a-f]+ on ");
   EXPECT_TRUE(std::regex_search(document, head)) << "docs/accuracy.md is of several commits or of changes beside one";
 }

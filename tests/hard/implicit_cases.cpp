@@ -26,7 +26,7 @@ void expect_bounds(Lab& lab, const std::string& where, const Tally& tally) {
   lab.expect_at_most("malformed hits, " + where, 0.0, static_cast<double>(tally.malformed));
 }
 
-/// The rotations are those of box.cpp: none, small, ordinary, and the largest possible.
+/// The rotations are those of box.cpp: none, a small one, a medium one, and the largest possible one.
 constexpr std::array<vec3, 4> kTurns = {vec3(0.0F), vec3(1e-5F, -2e-6F, 3e-7F), vec3(0.1F, -0.25F, 0.2F),
                                         vec3(0.3F, 0.3F, -0.3F)};
 
@@ -98,7 +98,7 @@ void run_boxes_far_away(Lab& lab) {
 }
 
 /// Aims at edges and corners from directions that see both or all of their faces, well inside the silhouette: no ray
-/// may miss. A plate is aimed at from near by; from too far away, u S would reach its other side.
+/// may miss. Rays towards a plate start nearby, because u S would exceed the plate's thickness for distant origins.
 void run_implicit_box_edges(Lab& lab) {
   Random random(40);
   for (const BoxForm& form : {kCube, kBrick, kPlate}) {
@@ -106,7 +106,7 @@ void run_implicit_box_edges(Lab& lab) {
     Tally all;
     for (const int fixed : {2, 3}) {
       const Tally tally = cast_boxes(lab, form, vec3(0.3F, -0.2F, 0.1F), random, [&](const AimedBox& aimed, Random& r) {
-        // The place is not too near the edges of faces that are not seen.
+        // The point is not too near the edges of faces that the ray does not see.
         dvec3 place = random_place(r, 0.9);
         dvec3 outward(0.0);
         const int first = static_cast<int>(3.0 * r.uniform());
@@ -163,7 +163,7 @@ constexpr CapsuleForm kSkittle{"skittle", 1.0F, 0.7F, 0.25F};
 constexpr CapsuleForm kDrop{"drop", 1.0F, 0.8F, 0.0F};
 /// One sphere almost contains the other, so that the rest of the cone is flat.
 constexpr CapsuleForm kEgg{"egg", 0.2501F, 1.0F, 0.5F};
-/// Here the capsule is almost a sphere, as nearly as fp32 allows.
+/// Here the capsule is as close to a sphere as fp32 allows.
 constexpr CapsuleForm kSphereAndLess{"all but a sphere", 0.25000003F, 0.5F, 1.0F};
 constexpr CapsuleForm kHeld{"sphere in a sphere", 0.2F, 1.0F, 0.5F};
 constexpr CapsuleForm kBall{"no height", 0.0F, 0.5F, 0.5F};

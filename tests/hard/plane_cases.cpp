@@ -46,7 +46,7 @@ void run_slopes(Lab& lab) {
       const dvec3 origin = dvec3(plane.point) + 10.0 * n + reach * random.perpendicular(n);
       const dvec3 along = std::sqrt(1.0 - cosine * cosine) * random.perpendicular(n);
       const Ray ray = ray_towards(origin, origin - cosine * n + along);
-      // Rounding may turn the direction away from the plane.
+      // Rounding may change the direction so that it points away from the plane.
       const oracle::Real slope = glm::dot(oracle::Vector(plane.normal), oracle::Vector(ray.direction));
       if (slope < -0.5L * cosine) rays.push_back(ray);
     }

@@ -48,7 +48,7 @@ template <>
 world::Capsule random_shape(const vec3& center, Random& random) {
   const float height = random.uniform() < 0.1 ? 0.0F : random_size(random);
   const float bottom = random_size(random);
-  // A point is as likely as two equal radii.
+  // A radius of 0 is as likely as two equal radii.
   const double kind = random.uniform();
   return {center, random_axis(random), height, bottom, kind < 0.2 ? 0.0F : kind < 0.4 ? bottom : random_size(random)};
 }

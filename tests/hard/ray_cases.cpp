@@ -42,7 +42,7 @@ Ray ordinary_ray(Random& random) {
   return ray_towards(3.0 * random.direction(), target);
 }
 
-/// Returns invalid rays: each member in turn is NaN or infinite, or there is no direction.
+/// Returns invalid rays. In each ray another member is NaN or infinite, or the direction is 0.
 std::vector<Ray> make_invalid_rays(size_t count_each, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < count_each; ++i) {
@@ -112,7 +112,7 @@ void run_invalid_rays(Lab& lab) {
   }
   lab.expect_at_most("hits or not finite of invalid rays", 0.0, static_cast<double>(hit_count));
 
-  // tmax = +Inf is an ordinary value.
+  // tmax = +Inf is a valid value.
   std::vector<Ray> endless(finite.begin(), finite.begin() + 10000);
   const std::vector<Hit> ended = lab.cast(scene, endless);
   for (Ray& ray : endless) ray.tmax = kInfinity;
@@ -123,7 +123,7 @@ void run_invalid_rays(Lab& lab) {
   lab.expect_at_most("other answers with tmax = +Inf than with 1e30", 0.0, static_cast<double>(differences));
 }
 
-/// Expects the right hits for directions whose lengths the shader cannot take, and whose components are denormal.
+/// Expects the correct hits for directions with denormal components, and with lengths that the shader does not accept.
 /// `scale` keeps t between overflow and underflow.
 void expect_directions(Lab& lab, double scale, double length, bool has_denormals, const std::string& where) {
   Random random(301);
@@ -163,7 +163,8 @@ bool has_same_bits(const Hit& a, const Hit& b) {
   return std::memcmp(&a, &b, sizeof(Hit)) == 0;
 }
 
-/// The interval of a ray is open, (max(tmin, 0), tmax), bit for bit, for whatever the ray hits first.
+/// The interval of a ray is exactly the open interval (max(tmin, 0), tmax), for each kind of primitive that the ray
+/// hits first.
 void run_intervals(Lab& lab) {
   Random random(31);
   std::vector<std::pair<const char*, world::Scene>> scenes;
@@ -230,7 +231,7 @@ void run_intervals(Lab& lab) {
     expect_none("tmax = 0", count([](Ray& r, float) { r.tmax = 0.0F; }, is_miss));
     expect_none("tmax = -0", count([](Ray& r, float) { r.tmax = -0.0F; }, is_miss));
     expect_none("tmax < 0", count([](Ray& r, float t) { r.tmin = -2.0F * t, r.tmax = -t; }, is_miss));
-    // The rays go the other way along the line: a negative tmin does not lead to hits behind the origin.
+    // The rays have the opposite direction. A negative tmin must not give hits behind the origin.
     if (scene.objects.size() == 1) {
       expect_none("tmin < 0, all behind", count(
                                               [](Ray& r, float t) {

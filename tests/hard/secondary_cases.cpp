@@ -89,7 +89,7 @@ void run_plane_lift(Lab& lab) {
       ++hit_count;
       const Vector exact_n(plane.normal);
       const auto height = [&](const vec3& p) { return glm::dot(Vector(p) - Vector(plane.point), exact_n); };
-      // A start in the plane itself is right as well, because t = 0 is not a hit.
+      // A start in the plane itself is also correct, because t = 0 is not a hit.
       if (!(height(bounces[i].origin) * height(rays[i].origin) >= 0)) ++acne;
       const double reach = max_abs_component(rays[i].origin) +
                            static_cast<double>(hits[i].t) * max_abs_component(rays[i].direction) +
@@ -101,7 +101,8 @@ void run_plane_lift(Lab& lab) {
     }
     // At 1e6 an ulp is more than the height of a tenth of the starts.
     EXPECT_GT(hit_count, rays.size() * 3 / 4);
-    // If rounding has turned a direction towards the plane, the ray may meet it far away: this is not acne.
+    // If rounding has changed a direction so that it points to the plane, the ray may hit the plane far away. This is
+    // not acne.
     const auto is_acne = [&](const Ray& ray, const Hit& hit) {
       const Real slope = glm::dot(Vector(ray.direction), Vector(plane.normal));
       const Real height = glm::dot(Vector(ray.origin) - Vector(plane.point), Vector(plane.normal));
@@ -139,14 +140,14 @@ void run_contact(Lab& lab) {
     uint64_t shadowed = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
       const oracle::Hit exact =
-          oracle::find_nearest_hit(scene, {Vector(rays[i].origin), Vector(rays[i].direction), 0, oracle::kNoEnd});
+          oracle::find_nearest_hit(scene, {Vector(rays[i].origin), Vector(rays[i].direction), 0, oracle::kInfinity});
       if (!bounces[i].is_hit || !exact.exists() || glm::dot(exact.normal, Vector(to_light)) <= 0) continue;
       const Vector point = Vector(rays[i].origin) + exact.t * Vector(rays[i].direction);
-      const oracle::Ray exact_shadow{point, Vector(to_light), 1e-12L, oracle::kNoEnd};
+      const oracle::Ray exact_shadow{point, Vector(to_light), 1e-12L, oracle::kInfinity};
       if (!oracle::is_occluded(scene, exact_shadow)) continue;
       ++shadowed;
       if (blockers[i].t == 0.0F) continue;
-      // The point is lit, though the exact answer is shadow. The depth is that of the exact ray in the blocker.
+      // The point is lit, although it must be in shadow. The depth is the length of the exact ray inside the blocker.
       const Real depth = oracle::judge(scene, exact_shadow, {}).margin * kRoundoff * 2;  // S = |o - c| + r is about 2
       if (depth > glm::distance(point, Vector(bounces[i].origin)) + 2 * kRoundoff * 2) ++leaks;
     }
@@ -201,8 +202,8 @@ void run_facing_mirrors(Lab& lab) {
           worst = std::numeric_limits<double>::infinity();
           continue;
         }
-        // If its reflections are unfolded, the exact ray is a straight line: it has crossed half a gap, and one gap
-        // more with each bounce.
+        // If its reflections are unfolded, the exact ray is a straight line. It crosses half a gap before the first
+        // bounce, and one gap after each bounce.
         const Vector d(first[i].direction);
         const Real t = (Real(0.5) + bounce) * Real(gap) / d.z;
         Vector exact = Vector(first[i].origin) + t * d;

@@ -22,7 +22,7 @@ constexpr size_t kEdgeRaysPerMargin = 64;
 const size_t kRimRayCount = some_of(62500);
 constexpr double kRadian = 57.29577951308232;
 
-/// A cylinder, cone or frustum, with exactly the numbers that the device has.
+/// A cylinder, cone or frustum with the exact numbers of the device.
 struct Solid {
   const char* kind;
   world::Shape shape;
@@ -79,7 +79,7 @@ dvec3 random_point_around(const Solid& solid, double spread, Random& random) {
   return solid.center + spread * (solid.at(z, radius * random.perpendicular(solid.axis)) - solid.center);
 }
 
-/// Returns rays from all around at a distance from the centre; most of them meet the solid.
+/// Returns rays from all directions at a distance from the centre. Most of them hit the solid.
 std::vector<Ray> rays_around(const Solid& solid, double distance, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kSolidRayCount; ++i) {
@@ -116,8 +116,8 @@ Tally cast_at(Lab& lab, const Solid& solid, std::span<const Ray> rays) {
   return tally;
 }
 
-/// Adds rays that touch an edge or an apex to the table of primitives, without B1: the normal jumps there, or there is
-/// none, so B1 has no meaning.
+/// Adds rays that touch an edge or an apex to the table of primitives, without B1. B1 has no meaning there, because the
+/// normal is discontinuous or undefined.
 void credit_at_edge(const Solid& solid, const Tally& tally, uint64_t leaks = 0) {
   Lab::credit(solid.kind, tally.without_t_errors(), leaks);
 }
@@ -288,8 +288,8 @@ void run_parallel_to_solids(Lab& lab) {
   }
 }
 
-/// Returns a direction from which the faces with these unit normals are both seen, well inside the silhouette: the
-/// cosine to each is at least about a fifth of the largest that both can have.
+/// Returns a direction from which both faces with these unit normals are visible, well inside the silhouette. The
+/// cosine to each is at least about a fifth of the largest cosine that both can have.
 dvec3 random_direction_onto(const dvec3& face, const dvec3& other, Random& random) {
   const dvec3 middle = glm::normalize(face + other);
   const dvec3 across = glm::normalize(face - other);
@@ -301,8 +301,8 @@ dvec3 random_direction_onto(const dvec3& face, const dvec3& other, Random& rando
   return -glm::normalize(middle + aside * across + along_rim * glm::cross(middle, across));
 }
 
-/// Returns rays at points of the rims, well inside the silhouette: cap and side both face the ray. The last `around`
-/// rays come from all around.
+/// Returns rays towards points of the rims, well inside the silhouette: cap and side both face the ray. The last
+/// `around` rays come from all directions.
 std::vector<Ray> rays_at_rims(const Solid& solid, size_t around, Random& random) {
   std::vector<Ray> rays;
   while (rays.size() < kRimRayCount) {
@@ -311,7 +311,8 @@ std::vector<Ray> rays_at_rims(const Solid& solid, size_t around, Random& random)
     const dvec3 rim = solid.at(end * solid.half_height, solid.radius_at(end * solid.half_height) * radial);
     const dvec3 side = glm::normalize(radial - solid.slope() * solid.axis);
     const dvec3 cap = end * solid.axis;
-    // A rim as sharp as a knife is close to the silhouette; from too far away u S would reach it.
+    // A very sharp rim is close to the silhouette. For distant origins, u S would exceed the distance to the
+    // silhouette.
     const double most = glm::distance(side, -cap) > 0.1 ? 3.0 : 1.5;
     const double distance = solid.size() * std::pow(10.0, random.uniform(0.5, most));
     const dvec3 direction =
@@ -331,7 +332,7 @@ void run_rims(Lab& lab) {
     Tally tally;
     for (const dvec3& axis : axes()) {
       const Solid solid = form.make(kOrigin, axis);
-      // Rays from all around often end at the silhouette (see kEdgeRaysPerMargin).
+      // Rays from all directions often hit the silhouette (see kEdgeRaysPerMargin).
       const size_t around = kRimRayCount / kEdgeRaysPerMargin;
       const std::vector<Ray> rays = rays_at_rims(solid, around, random);
       const world::Scene scene = scene_of({solid.shape});
@@ -454,8 +455,8 @@ void run_generators_and_apex(Lab& lab) {
     }
   }
 
-  // These generators are exact in fp32: the direction (3, 4, 0) on a cone of slope 3/4, and (1, 1, 0) on one of slope
-  // 1.
+  // The directions of these generators are exact in fp32: (3, 4, 0) on a cone of slope 3/4, and (1, 1, 0) on a cone of
+  // slope 1.
   Tally exact;
   for (const auto& [slope, direction] : {std::pair{0.75, vec3(3.0F, 4.0F, 0.0F)}, {1.0, vec3(1.0F, 1.0F, 0.0F)}}) {
     const Solid solid = make_cone(kOrigin, dvec3(0.0, 1.0, 0.0), 1.0, 2.0 * slope);
@@ -533,7 +534,8 @@ std::vector<Ray> rays_in_cap_planes(const Solid& solid, Random& random) {
     const double beside = static_cast<double>(kUnitRoundoff) * solid.size() * std::round(random.uniform(-8.0, 8.0));
     const double tilt = i % 5 == 0 ? 0.0 : (i % 7 < 4 ? 1.0 : -1.0) * std::exp2(-random.uniform(8.0, 90.0));
     const vec3 origin(nearest - distance * along + beside * solid.axis);
-    // The direction is not of unit length: if the axis is one of the world's, the tilt is kept however small it is.
+    // The direction does not have unit length, so that the tilt is exact if the axis is a coordinate axis, even if the
+    // tilt is tiny.
     rays.push_back({origin, 0.0F, vec3(along + tilt * solid.axis), std::numeric_limits<float>::infinity()});
   }
   return rays;

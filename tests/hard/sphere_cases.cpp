@@ -10,8 +10,8 @@ namespace {
 
 const size_t kSphereRayCount = some_of(100000);
 
-/// Returns rays from random places at a distance from the centre, to targets spread over a disk of `spread` radii
-/// across the view.
+/// Returns rays from random points at a distance from the centre. Their targets lie in a disk of `spread` radii
+/// perpendicular to the line to the centre.
 std::vector<Ray> rays_at(const world::Sphere& sphere, double distance, double spread, Random& random) {
   std::vector<Ray> rays;
   for (size_t i = 0; i < kSphereRayCount; ++i) {
@@ -62,7 +62,8 @@ void run_large(Lab& lab) {
   while (rays.size() < kSphereRayCount) {
     const dvec3 up = random.direction();
     const dvec3 origin = (1e6 + 1.0) * up;
-    // The ray goes down enough to meet the sphere in spite of rounding: the horizon is 1.4e-3 below the level.
+    // The ray points down far enough to hit the sphere in spite of rounding. The horizon is 1.4e-3 below the
+    // horizontal.
     const dvec3 direction = random.direction();
     if (glm::dot(direction, up) < -3e-3) rays.push_back(ray_towards(origin, origin + direction));
   }

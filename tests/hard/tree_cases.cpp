@@ -21,7 +21,7 @@ const size_t kRaysPerFarShape = some_of(1000);
 struct TreeScene {
   const char* name;
   world::Scene scene;
-  /// The rays go to places around this point.
+  /// The targets of the rays are around this point.
   dvec3 center;
   double radius;
 };
@@ -70,7 +70,7 @@ world::Scene make_strewn(const dvec3& center, double radius, int count, Random& 
   return scene_of(std::move(shapes));
 }
 
-/// Returns a field of squares with shared edges; every second square is there twice, so that equal t are everywhere.
+/// Returns a field of squares with shared edges. Every second square exists twice, so that many crossings have equal t.
 world::Scene make_ties() {
   Mesh mesh;
   for (int i = 0; i < 8 * 8; ++i) mesh.positions.emplace_back(i % 8, 0.1F * static_cast<float>((i * i) % 7), i / 8);
@@ -99,7 +99,7 @@ Ray ray_through(const TreeScene& in, Random& random, size_t index) {
   return ray;
 }
 
-/// Compares the answers with every builder's boxes with those without boxes.
+/// Compares the hits with each builder's boxes with the hits without boxes.
 void expect_as_brute_force(Lab& lab, const std::string& name, const world::Scene& scene, std::span<const Ray> rays) {
   const FeatureMask features = features_of(scene);
   std::vector<layout::HitRecord> expected;
@@ -151,8 +151,8 @@ void run_trees(Lab& lab) {
   }
 }
 
-/// Small shapes lie far from the world's origin; rays come from as far and from much farther. The step that moves rays
-/// nearer may cost no more than u S, however far the whole scene is from the origin.
+/// Small shapes lie far from the world's origin. The origins of rays are at similar and at much larger distances. The
+/// step that moves origins nearer may cause an error of at most u S, for any distance of the scene from the origin.
 void run_far_from_the_origin(Lab& lab) {
   Random random(55);
   for (const vec3& center : {vec3(1e3F, -8e2F, 1.2e3F), vec3(1e5F, -1e5F, 1e5F)}) {
@@ -164,7 +164,7 @@ void run_far_from_the_origin(Lab& lab) {
           const auto size = static_cast<double>(bound.radius);
           std::vector<Ray> rays;
           for (size_t k = 0; k < kRaysPerFarShape; ++k) {
-            // The calls stand one after the other, because compilers evaluate arguments in different orders.
+            // The calls are separate statements, because compilers evaluate arguments in different orders.
             const dvec3 target = random_point_within(dvec3(bound.center), size, random);
             const dvec3 origin = dvec3(bound.center) + distance * size * random.direction();
             rays.push_back(ray_towards(origin, target));

@@ -88,7 +88,7 @@ uint64_t count_hits(std::span<const Hit> hits) {
          }));
 }
 
-/// Every one of these rays, at a mesh alone, has a surface before it.
+/// Each of these rays must hit the mesh.
 void expect_no_leaks(Lab& lab, const world::Scene& scene, std::span<const Ray> rays, const std::string& what) {
   const std::vector<Hit> hits = lab.cast(scene, rays);
   const uint64_t leaks = count_misses(hits);
@@ -122,8 +122,8 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
   expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return at(pick_on_edge); }),
                   "at edges from inside" + where);
 
-  // The rays come from outside and go through the inside. If a hit is past the middle, the near side has let the ray
-  // through.
+  // The rays come from outside and pass through the inside. If a hit is beyond the middle, the ray has passed through
+  // the near side.
   std::vector<Ray> rays;
   while (rays.size() < kTriangleRayCount) {
     const dvec3 from = center + 10.0 * random.direction();
@@ -139,7 +139,7 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
 }
 
 /// Casts rays at a triangle whose three corners lie in a line, with two triangles below and one above: the middle
-/// corner lies on the edge of the triangle above. There are many such groups, beside each other.
+/// corner lies on the edge of the triangle above. There are many such groups side by side.
 void cast_at_collinear_corners(Lab& lab) {
   Random random(210);
   Mesh mesh;
@@ -204,7 +204,7 @@ void run_spikes(Lab& lab) {
                   "at edges from the centre");
 }
 
-/// Places a drawing in [-1, 1]^2 in space: axis-aligned, or turned so that no coordinate is a round number.
+/// Places a drawing of [-1, 1]^2 in space. It is axis-aligned, or rotated so that no coordinate is a round number.
 struct Placement {
   const char* name;
   dvec3 center;
@@ -301,7 +301,7 @@ Mesh make_triangle(const vec3& a, const vec3& b, const vec3& c) {
   return mesh;
 }
 
-/// Rays lie in the plane of a triangle and pass beside it: however the plane is rounded, they must miss.
+/// Rays lie in the plane of a triangle and pass beside it. They must miss for any rounding of the plane.
 void cast_edge_on(Lab& lab) {
   Random random(240);
   uint64_t hit_count = 0;
@@ -360,15 +360,15 @@ struct Stray {
 
   void expect_little(Lab& lab, const std::string& where) const {
     lab.expect_at_most("|o + t d - plane| / uS, " + where, 8.0 * lab.rounding_factor(), static_cast<double>(off_plane));
-    // The bound is a multiple of BK: P moves along the ray, not across it, and whatever uses the hit needs it at the
-    // triangle.
+    // The bound is a multiple of BK. The correction moves P along the ray, because all code that uses the hit needs a
+    // point on the triangle.
     lab.expect_at_most("o + t d outside the triangle's box / uS, " + where, 24.0 * lab.rounding_factor(),
                        static_cast<double>(off_box));
   }
 };
 
-/// Rays go almost in the plane of a triangle and across it. Rounding may decide whether they hit. If they hit, the hit
-/// must be a point of the triangle, from which shadow rays and reflections start.
+/// Rays lie almost in the plane of a triangle and cross the triangle. Rounding may decide whether they hit. If they
+/// hit, the hit must be a point of the triangle, from which shadow rays and reflections start.
 void cast_across(Lab& lab) {
   Random random(241);
   Tally tally;
@@ -448,8 +448,9 @@ void run_degenerate(Lab& lab) {
 
 constexpr uint32_t kSliverRows = 64;
 
-/// Returns a strip of slivers side by side, with a height of at most 1 and `aspect` times as long as thick. They are
-/// needles, whose short sides lie on two lines, or caps, where every other row of vertices is shifted by half a side.
+/// Returns a strip of slivers side by side, with a height of at most 1. A sliver is `aspect` times as long as it is
+/// thick. The slivers are needles, whose short sides lie on two lines, or caps, where every other row of vertices is
+/// shifted by half a side.
 Mesh make_slivers(const Placement& place, double aspect, bool is_cap) {
   const double thickness = std::min(1.0 / aspect, 1.0 / kSliverRows);
   const double length = thickness * aspect;
@@ -469,7 +470,8 @@ Mesh make_slivers(const Placement& place, double aspect, bool is_cap) {
     } else {
       here = {add(-1.0, y), add(-0.5, y), add(0.5, y), add(1.0, y)};
     }
-    // The rows are joined like a zipper: the row whose next vertex comes first along the way goes on.
+    // Triangles join the two rows like a zipper. The next vertex always comes from the row whose next vertex is nearer
+    // to the start.
     for (size_t i = 0, j = 0; !below.empty() && (i + 1 < below.size() || j + 1 < here.size());) {
       const bool takes_below = j + 1 == here.size() || (i + 1 < below.size() && i <= j);
       if (takes_below) {
@@ -551,7 +553,7 @@ void run_slivers(Lab& lab) {
       lab.expect_at_most("|P(u,v) - plane| / uS" + where, 8.0 * lab.rounding_factor(), worst);
       lab.note("K of t" + where, tally.max_t_error);
       lab.note("margin of other answers / uS" + where, tally.max_margin);
-      // K of t belongs to the slivers, not to the primitive; it has its own lines.
+      // K of t is a property of slivers and not of the primitive, so the document has separate lines for it.
       Lab::credit("triangle", tally.without_t_errors(), leaks);
     }
   }

@@ -41,7 +41,7 @@ class CryptomatteTest : public testing::Test {
     aovs_.material_coverage[0] = {Coverage{1, 1.0F}};
   }
 
-  /// Returns the coverage of each id in a layer's pixel, read only by the letters of its channels.
+  /// Returns the coverage of each id in a layer's pixel. The function uses only the letters of the channels.
   static std::map<uint32_t, float> decode(const Cryptomatte& cryptomatte, const std::string& layer, size_t pixel) {
     std::map<std::string, uint32_t> values;
     for (const Channel& channel : cryptomatte.channels) values[channel.name] = channel.values.at(pixel);

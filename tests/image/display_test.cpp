@@ -110,7 +110,8 @@ TEST(DisplayTest, UnlitLightIsShownAsItIs) {
   const vec3 unlit(0.25F, 0.75F, 0.5F);
   EXPECT_EQ(promin::apply(display, lit, vec4(0.0F)), promin::apply(display, lit));
   EXPECT_EQ(promin::apply(display, unlit, vec4(unlit, 1.0F)), unlit);
-  // A pixel that both share shows both by their fractions, and is no brighter than the brighter one.
+  // A pixel that both surfaces cover shows both in proportion to their fractions, and is not brighter than the brighter
+  // surface.
   for (const float share : {0.25F, 0.5F, 0.75F}) {
     const vec3 shown = promin::apply(display, share * unlit + (1.0F - share) * lit, vec4(share * unlit, share));
     const vec3 expected = share * unlit + (1.0F - share) * promin::apply(display, lit);
@@ -163,7 +164,7 @@ TEST(DisplayTest, NeutralIsMonotoneAndKeepsGreyGreyAndBelowWhite) {
 }
 
 TEST(DisplayTest, NeutralKeepsBaseColorsBelowItsShoulder) {
-  // The light is that of a surface of this colour under E = pi, with the 0.04 that the surface reflects besides.
+  // The light is that of a surface of this colour under E = pi, plus the fraction 0.04 that the surface reflects.
   for (const vec3& base : {vec3(0.05F), vec3(0.76F, 0.1F, 0.3F), vec3(0.5F, 0.7F, 0.04F)}) {
     const vec3 shown = apply(ToneMapping::kNeutral, base + 0.04F);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(shown[i], base[i], 1e-7) << base[i];

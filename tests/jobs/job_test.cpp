@@ -46,7 +46,7 @@ Content make_content(size_t piece) {
 
 class JobTest : public TempFolder {
  protected:
-  /// Returns the pieces that were made, and adds those that were bad.
+  /// Returns the pieces that were made, and stores the bad pieces in bad_.
   std::vector<size_t> run(const Job& job, const Share& share = {}) {
     std::vector<size_t> made;
     bad_.clear();
@@ -157,15 +157,16 @@ TEST_F(JobTest, PiecesOfAnotherJobAreForeign) {
 TEST_F(JobTest, AFolderOfAnotherJobIsRefusedWithWhatDiffers) {
   Job::create(job_folder_, make_manifest());
   const std::pair<void (*)(Manifest&), const char*> cases[] = {
-      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", but \"8\" now"},
-      {[](Manifest& m) { m.options.pop_back(); }, "its --spp is \"4\", but is not given or has its default value now"},
+      {[](Manifest& m) { m.options[1].second = "8"; }, "its --spp is \"4\", but now it is \"8\""},
+      {[](Manifest& m) { m.options.pop_back(); },
+       "its --spp is \"4\", but now it is not given or has its default value"},
       {[](Manifest& m) { m.options.emplace_back("--crop", "0 0 1 1"); },
-       "its --crop is not given or has its default value, but is \"0 0 1 1\" now"},
-      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", but \"2\" now"},
+       "its --crop is not given or has its default value, but now it is \"0 0 1 1\""},
+      {[](Manifest& m) { m.options[0].second = "2"; }, "its results is \"1\", but now it is \"2\""},
       {[](Manifest& m) { m.files[0].sha256 = "cd"; }, "the file \"a.gltf\" has changed since"},
-      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", but \"b.gltf\" now"},
+      {[](Manifest& m) { m.files[0].name = "b.gltf"; }, "its file is \"a.gltf\", but now it is \"b.gltf\""},
       {[](Manifest& m) { m.files.clear(); }, "it has the file \"a.gltf\" as well"},
-      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, but 4 now"},
+      {[](Manifest& m) { m.pieces.pop_back(); }, "it has 5 pieces, but the number is now 4"},
       {[](Manifest& m) { m.pieces[3] = "other"; }, "its piece part3 is called other now"},
       {[](Manifest& m) { m.kind = "rays"; }, "its kind is \"bytes\""}};
   for (const auto& [change, sentence] : cases) {
@@ -229,11 +230,12 @@ TEST_F(JobTest, AnotherBuildFirstMakesOnePieceAgain) {
   EXPECT_EQ(check_build(job, {"elsewhere", "print", "two"}, other), std::nullopt) << "other devices have other bits";
   EXPECT_EQ(check_build(job, {"here", "other", "two"}, other), std::nullopt);
   EXPECT_THAT(made, ElementsAre(2U, 2U));
-  EXPECT_THAT(refusal_of<UsageError>([&] {
-                check_build(job, {"here", "print", "two"}, other);
-              }),
-              HasSubstr("were made by another build of promin, and this build computes other bits for piece part2"));
-  // After a build has made a piece, its processes need no proof.
+  EXPECT_THAT(
+      refusal_of<UsageError>([&] {
+        check_build(job, {"here", "print", "two"}, other);
+      }),
+      HasSubstr("were made by another build of promin, and this build computes different bits for piece part2"));
+  // After a build has made a piece, further processes of this build need not make it again as a proof.
   make_piece(job, 0, {"here", "print", "two"}, make_content);
   EXPECT_EQ(check_build(job, {"here", "print", "two"}, other), std::nullopt);
   // A bad piece is not a proof.
@@ -328,7 +330,7 @@ TEST_F(JobTest, HashesOfFilesAreKnownByTheirStamps) {
   KnownHashes first(folder_);
   EXPECT_EQ(first.describe(file).sha256, sha256_of("many rays"));
   first.save();
-  // The stored hash is used and the file is not read, so a hash that was written by hand is believed.
+  // The job uses the stored hash and does not read the file, so it accepts a hash that was written by hand.
   std::string kept = read(folder_ / "hashes.json");
   kept.replace(kept.find(sha256_of("many rays")), 64, std::string(64, 'a'));
   write(folder_ / "hashes.json", kept);

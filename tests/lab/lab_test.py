@@ -186,8 +186,8 @@ def check_picture_rays(folder):
         expect(done.returncode == 0, f"cast of {file.name}: {done}")
         header = file.read_bytes()[:128].decode("latin1")
         expect(f"'shape': ({count}, 8)" in header, f"{file.name} has other rays: {header}")
-    # Rays are found by the picture's rules. The scenes have highlights without diffuse light, colours, cones and
-    # parallel cameras.
+    # The rays follow the picture's rules. The scenes have highlights without diffuse light, colours, cones and parallel
+    # cameras.
     names = "showcase metallic_roughness vertex_colors light_spot light_physical orthographic mirrors"
     scenes = [SCENES / f"{name}.gltf" for name in names.split()]
     run_lab("rates", *scenes, "--runs", 1, "--side", 64, "-o", folder / "runs.json")

@@ -34,7 +34,7 @@ MessageCase spoil_strictly(std::string_view code, const Spoil& fault) {
   return spoil_document(code, fault, true);
 }
 
-/// Loads the rich scene with a fault that costs a warning.
+/// Loads the document of rich_gltf.h with a fault that causes only a warning.
 MessageCase warn(std::string_view code, const Spoil& fault) {
   return {code, [=] {
             GltfBuilder gltf = rich_gltf();

@@ -9,7 +9,7 @@
 
 namespace promin {
 
-/// A case throws this if its problem costs only a warning, also in strict loading. Such warnings have no code that a
+/// A case throws this if its problem causes only a warning, also in strict loading. Such warnings have no code that a
 /// test can see, so the case states it.
 struct Warned {
   std::vector<std::string> warnings;

@@ -198,7 +198,7 @@ TEST_F(MessagesTest, EachCodeHasASentence) {
   for (const auto& [code, sentence] : messages) EXPECT_TRUE(codes.contains(code)) << code << " occurs no longer";
 }
 
-/// Problems that need no cure.
+/// Problems whose messages contain no advice.
 const std::set<std::string> kWithoutCure = {"picture.pair.differs", "problems.more", "work.cancelled"};
 
 TEST_F(MessagesTest, HaveTheForm) {

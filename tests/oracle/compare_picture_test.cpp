@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A picture as a device would give it: the oracle's picture, rounded to fp32.
+/// A simulated picture of a device: the oracle's picture, rounded to fp32.
 struct DevicePicture {
   Image image;
   std::vector<float> depth;
@@ -85,8 +85,8 @@ class ComparePictureTest : public testing::Test {
     const PictureReport report = compare(device);
     EXPECT_FALSE(report.passes()) << report.summary(scene);
   }
-  /// Returns the lowest pixel of an object. The floor's points at the horizon are so far away that rounding may move
-  /// them a lot.
+  /// Returns the lowest pixel of an object. Points of the floor at the horizon are so far away that rounding may move
+  /// them considerably.
   size_t find_pixel_of(int32_t object) const {
     size_t i = picture.pixels.size() - 1;
     while (picture.pixels[i].hit.object != object) --i;
@@ -316,7 +316,7 @@ TEST(ComparePicture, AtARimEitherNormalIsRightInAFewPixels) {
   const world::Scene scene = make_can();
   const auto compare_below_rim = [&](Real units, size_t count) {
     const Real offset = units * kRoundoff * (std::sqrt(Real(8)) + std::sqrt(Real(2)));
-    // The ray meets the side just below the rim; the device says the disk.
+    // The ray hits the side just below the rim, but the device reports the disk.
     const Ray ray{Vector(0, 2, 2) - offset * glm::normalize(Vector(0, 1, -1)), {0, -1, -1}};
     const Picture picture = make_picture_of(scene, ray, count);
     DevicePicture device(picture);
@@ -334,7 +334,7 @@ TEST(ComparePicture, AtASilhouetteEitherObjectIsRightInAFewPixels) {
   const world::Scene scene = make_can();
   const auto compare_past_rim = [&](Real units, size_t count) {
     const Real offset = units * kRoundoff * (std::sqrt(Real(10)) + std::sqrt(Real(2)));
-    // The ray passes the rim from behind and meets the wall; the device says the can.
+    // The ray passes the rim from behind and hits the wall, but the device reports the can.
     const Ray ray{Vector(0, 3, -1) + offset * glm::normalize(Vector(0, 1, 1)), {0, -1, 1}};
     const Picture picture = make_picture_of(scene, ray, count);
     EXPECT_EQ(picture.pixels[0].hit.object, 1);

@@ -57,7 +57,7 @@ TEST(OracleLobe, DensitiesAreOfAWholeSurface) {
   }
 }
 
-// A perfectly smooth surface hides nothing at any angle, and neither does a rough one seen from above.
+// A perfectly smooth surface has no masking at any angle. A rough surface has none when seen from above.
 TEST(OracleLobe, VisibilityIsOneOverFourCosinesWhereNothingIsHidden) {
   EXPECT_NEAR(static_cast<double>(visibility(0.5L, 0.25L, 0)), 2.0, 1e-15);
   EXPECT_NEAR(static_cast<double>(visibility(1, 1, 0.7L)), 0.25, 1e-15);
@@ -83,8 +83,8 @@ TEST(OracleLobe, TheLobeIsReciprocal) {
   }
 }
 
-// The table is compared with another quadrature: Gauss's over directions to the light, instead of a lattice of half
-// vectors drawn by their density.
+// The test compares the table with another quadrature. It uses Gaussian quadrature over directions to the light instead
+// of a lattice of half vectors sampled by their density.
 TEST(OracleLobe, TheTablesEntriesAreTheIntegrals) {
   std::array<std::array<Real, kSide>, kSide> errors{};
   for_each_index(kSide, 0, [&](size_t row) {
@@ -120,8 +120,8 @@ TEST(OracleLobe, SourcesFromEverywhereAddUpToOne) {
   for (size_t i = 0; i < worst.size(); ++i) EXPECT_LE(worst[i], 0.01L) << "roughness 0." << i;
 }
 
-// The test looks between entries: in the middle of each cell and of its edges. Seen from the side, a smooth lobe
-// depends on v / alpha, which no table over v resolves. There the error is up to 0.081, in a rim of v < 0.05 on
+// The test checks positions between entries: the middle of each cell and of its edges. Seen from the side, a smooth
+// lobe depends on v / alpha, which no table over v resolves. There the error is up to 0.081, in a rim of v < 0.05 on
 // surfaces with a roughness of less than 0.06.
 TEST(OracleLobe, TheTableIsGoodBetweenItsEntries) {
   constexpr size_t kPlaces = 2 * kSide - 1;
@@ -178,8 +178,8 @@ TEST(OracleLobe, TheTableOfSheensIsTheIntegral) {
   }
 }
 
-// Over white, all light from all around comes back: the light that the sheen does not reflect is left for the layers
-// below.
+// A sheen over white reflects all light from all directions, because the layers below receive the light that the sheen
+// does not reflect.
 TEST(OracleLobe, WhiteSheensOverWhiteSendWhatTheyGet) {
   MetallicRoughness material = make_white(0, 0.5F);
   material.sheen_color = vec3(1.0F);

@@ -149,12 +149,12 @@ TEST(Oracle, ConeSideAndBase) {
 }
 
 TEST(Oracle, ConeParallelToAGenerator) {
-  // Along the generator x = 1 - y / 2 the quadratic term vanishes, and one hit is left on the opposite side.
+  // Along the generator x = 1 - y / 2 the quadratic term vanishes, and one hit remains on the opposite side.
   const Vector along(1, -2, 0);
   const Vector normal = Vector(-2, 1, 0) / std::sqrt(Real(5));
   expect_hit(cast(kCone, {-2, 3, 0}, along), 1.25L, normal);
   expect_hit(cast(kCone, {-1, 3, 0}, along), 0.75L, normal);
-  // The ray would meet the opposite side on the other nappe.
+  // The ray would hit the opposite side on the other nappe.
   EXPECT_FALSE(cast(kCone, {0, 3, 0}, along).exists());
 }
 

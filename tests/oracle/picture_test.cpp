@@ -38,7 +38,7 @@ Vector color_of(const world::Scene& scene, const View& view) {
   return render(scene, view).at(0, 0).color;
 }
 
-/// Returns a material that shows nothing by itself.
+/// Returns a material without emission and reflection.
 Material make_black() {
   Material material;
   material.phong().ambient = material.phong().diffuse = vec3(0.0F);
@@ -289,7 +289,7 @@ TEST(OraclePicture, MetalMirrorsAsFarAsItIsSmooth) {
   EXPECT_GT(color_with(0.387F).z, 0.52L);
 }
 
-// A Phong mirror's ray that meets nothing sees a different light if a metal was on its path.
+// A Phong mirror's ray that hits nothing returns different light if a metal was on its path.
 TEST(OraclePicture, MirrorsBehindMetalSeeTheAmbientLight) {
   world::Scene scene;
   scene.environment.ambient = vec3(0.5F);

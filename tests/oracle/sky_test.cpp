@@ -123,7 +123,7 @@ TEST(SurroundingsTest, APanoramaHasMinusZInItsMiddleAndTurns) {
   EXPECT_NEAR(Surroundings(environment).radiance({1, 0, 0}).x, 3.5L, 1e-9L);
   EXPECT_NEAR(Surroundings(environment).radiance({0, 0, 1}).x, 2.5L, 1e-9L);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, half}).x, 1, 1e-9L);
-  // The rotation goes from +Z towards +X: what was at -Z is at -X.
+  // The rotation is from +Z towards +X, so it moves the pixel at -Z to -X.
   environment.rotation = static_cast<float>(kHalfTurn / 2);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, -half}).x, 3, 1e-6L);
 }

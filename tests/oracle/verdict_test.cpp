@@ -79,7 +79,7 @@ TEST(Verdict, ErrorsOfTCountByTheAngleAndTheScale) {
 }
 
 TEST(Verdict, PlanesCountTheLengthOfTheRay) {
-  // The ray comes from 1 above the plane, and meets it 1000 away at a cosine of 1e-3.
+  // The ray starts 1 above the plane, and hits it at a distance of 1000 with a cosine of 1e-3.
   const world::Scene scene = world_of({world::Plane{{0, 0, 0}, {0, 0, 1}}});
   const Ray ray{{0, 0, 1}, {1000, 0, -1}};
   const Verdict verdict = judge(scene, ray, {1 + 5 * kU * 1001, 0, 0});
@@ -106,7 +106,7 @@ TEST(Verdict, AMissingSphereIsNotExcused) {
 TEST(Verdict, LeavingASolidIsNotEnteringIt) {
   expect_margin(judge(kSphere, {{0, 0, 5}, kDown}, {6, 0, 0}), 1 / (6 * kU));
   EXPECT_GT(judge(kSphere, {{0, 0, 0}, kDown}, {-1, 0, 0}).margin, 1000);
-  // If the ray starts within a unit above or below the surface, either end is right.
+  // If the ray starts within a unit above or below the surface, both the entry and the exit are correct answers.
   const Real unit = kU * 2;
   expect_margin(judge(kSphere, {{0, 0, 1 + unit}, kDown}, {2, 0, 0}), 1);
   expect_margin(judge(kSphere, {{0, 0, 1 - unit}, kDown}, {unit, 0, 0}), 1);
@@ -132,7 +132,7 @@ TEST(Verdict, EdgesExplainHitsAndMissesBesideThem) {
   EXPECT_GT(judge(kTriangle, {{1, -0.001L, 3}, kDown}, {3, 0, 0}).margin, 1000);
   EXPECT_GT(judge(kTriangle, {{1, 0.001L, 3}, kDown}, kMiss).margin, 1000);
   EXPECT_GT(judge(kTriangle, {{-1, 1, 0}, {1, 0, 1e-3L}}, {1, 0, 0}).margin, 1000);
-  // A ray in the plane of the triangle may meet it or not.
+  // A ray in the plane of the triangle may hit or miss it.
   EXPECT_EQ(judge(kTriangle, {{-1, 1, 0}, {1, 0, 0}}, {2, 0, 0}).margin, 0);
   EXPECT_GT(judge(kTriangle, {{-1, 1, 0}, {1, 0, 0}}, {9, 0, 0}).margin, 1000) << "beyond its corners";
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 
-// These tests compare whole pictures with those of POV-Ray and Tachyon: other renderers, by other people, that shade by
-// the same formulas.
+// These tests compare whole pictures with those of POV-Ray and Tachyon. These independent renderers shade with the same
+// formulas.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -72,7 +72,7 @@ TEST_F(NpyTest, ReadsRaysPieceByPiece) {
   EXPECT_EQ(rays[0].direction, vec3(24, 25, 26));
 }
 
-/// The center is subtracted from places before they are rounded, also for float32.
+/// The center is subtracted from positions before they are rounded, also for float32.
 TEST_F(NpyTest, RaysOfDoublesAreRoundedOnce) {
   const dvec3 center(5280000.0, -1.0, 0.0);
   std::string header = header_of(5000);
@@ -138,13 +138,13 @@ TEST_F(NpyTest, RefusesWhatIsNoArrayOfRays) {
   const std::string message = refusal(npy(header_of(1), data + "x"));
   EXPECT_THAT(message, HasProblem("rays.short 1 33"));
   EXPECT_THAT(refusal(npy(header_of(2), data)), HasProblem("rays.short 2 32"));
-  // The product with 32 would wrap to the right size.
+  // The product of this number and 32 would overflow and give the correct size.
   EXPECT_THAT(refusal(npy(header_of((uint64_t{1} << 59) + 1), data)), HasProblem("rays.short 32"));
   EXPECT_THAT(message_of([&] { RayReader(folder_ / "none.npy"); }), HasProblem("file.missing"));
   EXPECT_THAT(message_of([&] { RayReader reader{folder_}; }), HasProblem("file.kind"));
 }
 
-// Any flipped or missing byte of the header gives rays or a sentence, never a crash.
+// A header with a changed or missing byte gives rays or an error message, never a crash.
 TEST_F(NpyTest, EveryDamagedHeaderEndsWell) {
   const std::string good = npy(header_of(1), bytes_of(std::vector<float>(8, 1.0F)));
   for (size_t i = 0; i < good.size() - 32; ++i) {

@@ -144,7 +144,7 @@ TEST(RayTiles, RowsThatBeginHereAndThereStayBesideEachOther) {
   EXPECT_GT(fraction_of_fours(pixels, order, {3, 2}), 0.85);
 }
 
-// All that is left of the last row may be needed so that the groups of four before it begin at multiples of four.
+// The groups of four before the last row begin at multiples of four. This may need all remaining rays of the last row.
 TEST(RayTiles, TheLastRowMayBeOneRay) {
   const auto choose = [](uvec2 pixel) { return pixel != uvec2(0) && (pixel.y < 64 || pixel.x == 0); };
   const Pixels pixels = make_pixels({100, 65}, choose, make_camera_ray);

@@ -88,7 +88,7 @@ TEST(LightSceneTest, PhongsMaterialsTakeTheStudiosLightOverPi) {
   EXPECT_FLOAT_EQ(scene.lights[0].diffuse.x, kStudioLightPower / kPi);
   EXPECT_FLOAT_EQ(scene.lights[0].specular.x, kStudioLightPower / kPi);
   EXPECT_EQ(exposure_of(scene), 0.0F);
-  // If the scene also has materials of another kind, the light's power is not divided by pi.
+  // If the scene also has materials with another model, the light's power is not divided by pi.
   Scene mixed = phong_scene();
   mixed.materials.push_back({.name = "other", .model = MetallicRoughness{}});
   light_scene(mixed);
@@ -108,7 +108,7 @@ TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
   EXPECT_FALSE(has_studio(scene));
   EXPECT_EQ(display_of(scene), DisplayTransform());
 
-  // If a scene has lights of its own, however strong, nothing is assumed.
+  // If a scene has lights, promin assumes no lights, regardless of their power.
   Scene lit = classic_scene();
   lit.lights = {light_of(LightKind::kPoint, 1e4F)};
   light_scene(lit);
@@ -218,7 +218,7 @@ TEST(LightSceneTest, ASkyOfTheFilesOwnIsEnough) {
   EXPECT_TRUE(gradient.lights.empty());
   EXPECT_TRUE(std::holds_alternative<GradientSky>(gradient.environment.sky));
 
-  // A background alone gives no light, and stays.
+  // A background alone emits no light and does not change.
   Scene colored = physical_scene();
   colored.environment.background = vec3(0.1F, 0.2F, 0.3F);
   light_scene(colored);
@@ -281,7 +281,7 @@ TEST(ExposureTest, OtherLightIsBroughtToPiInHalfStops) {
     EXPECT_EQ(2.0F * stops, std::round(2.0F * stops));
     EXPECT_LE(std::abs(std::log2(power / kPi) + stops), 0.2501F) << power;
   }
-  // The brightness is that which the eye perceives.
+  // The brightness is the brightness that the eye perceives.
   scene.lights[0].diffuse = vec3(0.0F, 100.0F, 0.0F);
   EXPECT_EQ(exposure_of(scene), -4.5F) << "71.5 lux";
   scene.lights.push_back(scene.lights[0]);

@@ -15,7 +15,7 @@ namespace {
 
 std::atomic<int> count = 0;
 
-/// Counts a thread until it ends, whether it returns or calls pthread_exit.
+/// Counts a thread until it returns or calls pthread_exit.
 struct Counted {
   Counted() = default;
   Counted(const Counted&) = delete;

@@ -43,7 +43,7 @@ void set_limit(__rlimit_resource resource, size_t most) {
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   if (options.max_file_bytes) {
-    // The signal has its default action, as in a shell, whatever this process ignores.
+    // The signal has its default action, as in a shell, even if this process ignores it.
     std::signal(SIGXFSZ, SIG_DFL);
     set_limit(RLIMIT_FSIZE, *options.max_file_bytes);
   }

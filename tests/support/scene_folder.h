@@ -19,7 +19,7 @@ struct LoadedScene : world::Scene {
   std::vector<std::string> warnings;
 };
 
-/// A test with a folder of its own, in which it writes small scenes and loads them.
+/// A test with a separate folder, in which it writes small scenes and loads them.
 class SceneFolder : public TempFolder {
  protected:
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {

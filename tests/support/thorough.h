@@ -14,7 +14,7 @@ inline bool is_thorough() {
   return std::getenv("PROMIN_TEST_THOROUGH") != nullptr;
 }
 
-/// Returns all cases, or only the first ones, which every run takes.
+/// Returns all cases, or only the first cases, which every run tests.
 template <class Case>
 std::vector<Case> cases_of(std::vector<Case> all, size_t first) {
   if (!is_thorough()) all.resize(std::min(first, all.size()));

@@ -6,7 +6,7 @@
 
 namespace promin {
 
-/// Returns a scene with one of everything: a mesh with all that meshes may have, each shape, a material of each model,
+/// Returns a scene with one element of each kind: a mesh with all optional data, each shape, a material of each model,
 /// a spot light, a camera.
 inline Scene make_valid_scene() {
   Mesh mesh;

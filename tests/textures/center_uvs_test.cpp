@@ -54,7 +54,7 @@ TEST(CenterUvs, NothingMovesWithoutNeed) {
   second.uv_set = 1;
   EXPECT_EQ(center_of({500, 0}, second), dvec4(0, 0, 500, 0)) << "the other set is not read";
   EXPECT_EQ(find_uv_center(make_mesh({500, 500}), {}, {}), dvec4(0));
-  // The coordinates go from 0 to 1000: if they were moved, half of them would lose bits that the others gain.
+  // The coordinates go from 0 to 1000. A move would make half of them less precise and the others more precise.
   Mesh wide = make_mesh({0, 0});
   wide.uvs = {vec4(0.1F), vec4(999.3F), vec4(500)};
   EXPECT_EQ(find_uv_center(wide, std::vector{make_slot()}, std::vector{Texture{}}), dvec4(0));

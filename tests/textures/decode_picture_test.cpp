@@ -82,7 +82,7 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   }
 }
 
-/// The library complains about such JPEGs, and decodes what is there.
+/// The library warns of such JPEGs and decodes the existing part.
 TEST(DecodePicture, JpegsWithWarningsAreDecoded) {
   std::mt19937 random(3);
   std::vector<uint8_t> pixels(size_t{64} * 64 * 3);
@@ -323,8 +323,8 @@ constexpr std::string_view kEtc1s =
     "4/U8VhuU53dLl3ijFp8276ejOStTzvnyRS66rT/2rwsbOaytaa66X1emt+GG+4e99MeVW3brp7wP+mPbouoplhljpvGm+s50xKm3epD+Dxk8"
     "vWukxO2uBPfi/FiM8HdVnbkxpkj6tlxESUZ7Oe8mshn++DEODhX0IpboZNtcJwEc02TAy4kbKMIlEsyvXDOe8sYJM1DDzh8JIK6LpswjXSI2"
     "03BIAXxAIFQhICqG/Aw62hIUAk6uJwJcENJEwQhAIgDyAV6AoOADXEQLAdEIIMh2IohrbEgcUYgRDTg4AAUIBAUBAQ==";
-/// The checksum_of() its texels. The colours are those that basisu unpacks as ETC1. Alpha is within 3 of basisu's ETC2,
-/// whose alpha has blocks of another kind.
+/// The value of checksum_of() for its texels. The colours are those that basisu unpacks as ETC1. Alpha differs by at
+/// most 3 from basisu's ETC2, which stores alpha in a different kind of block.
 constexpr uint64_t kEtc1sChecksum = 0x3556D1FF91637501;
 
 uint64_t checksum_of(const std::vector<uint32_t>& texels) {
@@ -382,7 +382,7 @@ TEST(DecodePicture, Ktx2OfUastcInEachMode) {
               ThrowsMessage<PictureError>(HasSubstr("a UASTC block is damaged")));
 }
 
-/// Whatever the bits are, the result is a picture or an error.
+/// For any bits, the result is a picture or an error.
 TEST(DecodePicture, DamagedEtc1sIsToldOf) {
   std::mt19937 random(11);
   const Bytes file = decode_base64(kEtc1s).value();
@@ -445,7 +445,7 @@ TEST(DecodePicture, RadianceStandsUprightWhateverTheOrderOfItsRows) {
   EXPECT_THAT(decode_picture(Bytes(first, first + text.size())).texels, ElementsAre(0xFFFF0000U, 0xFF0000FFU));
 }
 
-/// Whatever the bytes are, the result is a picture of the announced size, or an error.
+/// For any bytes, the result is a picture of the declared size, or an error.
 TEST(DecodePicture, BrokenFilesOfOtherFormatsAreToldOf) {
   std::mt19937 random(5);
   std::vector<float> samples(16 * 16 * 4);

@@ -103,7 +103,7 @@ TEST(Tangents, OfTheSecondSetAreItsOwn) {
   Mesh mesh = make_plane(1);
   for (vec4& uv : mesh.uvs) uv = {uv.x, uv.y, uv.y, uv.x};
   add_tangents(mesh, 1);
-  // u grows downwards, and v to the right; with v upwards this is the other hand.
+  // u grows downwards, and v to the right. With v upwards this is the opposite handedness.
   for (const vec4& tangent : mesh.tangents) expect_near(tangent, {0, -1, 0, -1}, 1e-6F);
 }
 
@@ -154,7 +154,7 @@ Mesh make_wild(uint32_t seed) {
   });
 }
 
-/// Adds a triangle with a vertex of its own for each corner; all three have the same normal.
+/// Adds a triangle with a separate vertex for each corner. All three vertices have the same normal.
 void add_triangle(Mesh& mesh, const std::array<vec3, 3>& positions, const std::array<vec2, 3>& places,
                   const vec3& normal = vec3(0, 0, 1)) {
   const auto first = static_cast<uint32_t>(mesh.positions.size());
@@ -166,8 +166,8 @@ void add_triangle(Mesh& mesh, const std::array<vec3, 3>& positions, const std::a
   mesh.triangles.emplace_back(first, first + 1, first + 2);
 }
 
-/// Returns a mesh whose coordinates begin anew along one column, and whose normals do along another, while the
-/// positions there are the same.
+/// Returns a mesh with continuous positions. Its coordinates have a seam along one column, and its normals along
+/// another.
 Mesh make_seams() {
   Mesh mesh;
   for (const int part : {0, 1, 2}) {
@@ -207,7 +207,7 @@ Mesh make_flat_places(uint32_t seed) {
   });
 }
 
-/// Returns triangles around a vertex, closed or not, on which coordinates turn to and fro.
+/// Returns triangles around a vertex, closed or not, on which the orientation of the coordinates alternates.
 Mesh make_fan(uint32_t count, bool is_closed, uint32_t seed) {
   std::mt19937 random(seed);
   Mesh mesh;
@@ -226,8 +226,8 @@ Mesh make_fan(uint32_t count, bool is_closed, uint32_t seed) {
   return mesh;
 }
 
-/// Returns pages that hang on one edge, with corners in either order. It tests which of more than two triangles at an
-/// edge belong together.
+/// Returns triangles that share one edge like the pages of a book, with corners in either order. It tests which of more
+/// than two triangles at an edge form pairs.
 Mesh make_book(uint32_t pages, uint32_t seed) {
   std::mt19937 random(seed);
   Mesh mesh;
@@ -243,8 +243,8 @@ Mesh make_book(uint32_t pages, uint32_t seed) {
   return mesh;
 }
 
-/// Returns a strip that is closed with half a twist: neighbours share their vertices, and at the joint the edge runs
-/// the same way in both.
+/// Returns a strip that is closed with half a twist. Neighbours share their vertices, and at the joint the edge has the
+/// same direction in both triangles.
 Mesh make_moebius(uint32_t count) {
   Mesh mesh;
   for (uint32_t i = 0; i < count; ++i) {
@@ -282,8 +282,8 @@ Mesh make_opposite() {
   return mesh;
 }
 
-/// Returns a mesh of random indices and numbers of few bits: points and lines, edges of many triangles, triangles
-/// twice, coordinates without area, directions that cancel.
+/// Returns a mesh of random indices and of numbers with few bits. It contains points, lines, edges of many triangles,
+/// duplicate triangles, coordinates without area and directions that cancel.
 Mesh make_soup(uint32_t seed) {
   std::mt19937 random(seed);
   const auto small = [&](uint32_t count) { return static_cast<float>(random() % count) - 1.0F; };
@@ -304,7 +304,7 @@ Mesh make_soup(uint32_t seed) {
 /// The agreement of tangents with the oracle's.
 struct Agreement {
   size_t corners = 0;
-  /// The number of corners in no group that have a direction all the same.
+  /// The number of corners that have a direction although they belong to no group.
   size_t left = 0;
   /// The number of corners at which directions nearly cancel, so that rounding decides.
   size_t unsure = 0;
@@ -319,8 +319,8 @@ struct Agreement {
   }
 };
 
-/// From this angle on, the oracle leaves the result open. The product drops sums of 1e-12 of their parts, which
-/// rounding in double turns by as much.
+/// If the error reaches this angle, the oracle does not decide the result. The product drops sums below 1e-12 of their
+/// parts, because rounding in double can turn such sums by this angle.
 constexpr oracle::Real kUnsure = 1e-4L;
 
 /// Compares a mesh's tangents with the oracle's, corner by corner.
@@ -342,8 +342,8 @@ Agreement expect_tangents_of_oracle(const Mesh& before, uint32_t uv_set) {
     ++agreement.corners;
     oracle::CornerTangent expected = wanted[c];
     if (expected.group < 0) {
-      // The corner has the vertex's first group, unless its triangle takes part and has the other hand by another
-      // vertex; then it has none.
+      // The corner belongs to the vertex's first group. It belongs to no group if its triangle takes part and has the
+      // opposite handedness at another vertex.
       if (expected.groups_at_vertex.empty()) {
         EXPECT_TRUE(has_none) << "corner " << c;
         continue;
@@ -371,8 +371,8 @@ void tell(const char* name, const Agreement& agreement) {
               agreement.left, agreement.unsure, agreement.largest);
 }
 
-// By docs/model.md, "Textures", the difference may be what rounding a unit vector to fp32 turns it by, plus the error
-// of double.
+// According to docs/model.md, "Textures", the difference is at most the angle by which rounding to fp32 rotates a unit
+// vector, plus the error of double.
 TEST(Tangents, OfHardMeshesAreTheOracles) {
   const auto mirrored = make_grid(4, [](double s, double t, vec3& position, vec3& normal, vec4& uv) {
     position = {s, t, 0.3 * s * t};
@@ -524,7 +524,7 @@ TEST(Tangents, DoNotDependOnWhatVerticesAreShared) {
 }
 
 TEST(Tangents, WithoutNormalsAreOfFlatTriangles) {
-  // Two walls meet at a right angle, and their coordinates continue around the edge.
+  // Two walls form a right angle, and their coordinates continue around the edge.
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, -1}, {1, 1, -1}};
   mesh.uvs = {{0, 1, 0, 0}, {1, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}, {2, 1, 0, 0}, {2, 0, 0, 0}};
@@ -542,7 +542,8 @@ TEST(Tangents, WithoutNormalsAreOfFlatTriangles) {
 
 TEST(Tangents, WithoutADirectionAreInherited) {
   Mesh mesh = make_plane(2);
-  // One triangle is a line, and the coordinates of another are a line; both use vertices of other triangles.
+  // The corners of one triangle lie on a line, and the coordinates of another lie on a line. Both use vertices of other
+  // triangles.
   mesh.triangles.push_back({0, 0, 1});
   mesh.positions.push_back({-1, 0, 0});
   mesh.normals.push_back({0, 0, 1});
@@ -576,7 +577,7 @@ TEST(Tangents, OfCoordinatesWithoutAreaAreLeftOut) {
   EXPECT_TRUE(without.tangents.empty());
 }
 
-/// Indices and numbers are random, with edges of many triangles, triangles twice, points and lines among them.
+/// Indices and numbers are random. The meshes contain edges of many triangles, duplicate triangles, points and lines.
 TEST(Tangents, OfAnyMeshAreFiniteAndAcrossNormals) {
   std::mt19937 random(7);
   for (int round = 0; round < 300; ++round) {
@@ -609,8 +610,8 @@ TEST(Tangents, OfAnyMeshAreFiniteAndAcrossNormals) {
 }
 
 TEST(Tangents, ManyTrianglesAtAVertexTakeNoLonger) {
-  // These are fans whose triangles all have different hands: the vertex in the middle is split as often as there are
-  // triangles.
+  // These are fans in which neighbouring triangles have different handedness, so the vertex in the middle is split into
+  // as many vertices as there are triangles.
   constexpr uint32_t kCount = 200000;
   Mesh mesh;
   mesh.positions.emplace_back(0.0F);
@@ -627,7 +628,7 @@ TEST(Tangents, ManyTrianglesAtAVertexTakeNoLonger) {
   EXPECT_GT(mesh.positions.size(), before.positions.size() + kCount / 4);
 }
 
-/// The time is not limited here, only printed.
+/// The test prints the time but does not limit it.
 TEST(Tangents, OfAMillionTriangles) {
   Mesh mesh = make_sphere(708);
   const Stopwatch time;

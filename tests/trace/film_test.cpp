@@ -22,9 +22,9 @@ namespace {
 
 class FilmTest : public test::DeviceTest {};
 
-// A driver gives out memory with its old content. If a kernel took its numbers from it, the check of loops would turn
-// up to 2^32 times: a driver that ends loops then reports cut ones; with another driver the device is busy for a
-// minute.
+// A driver may return memory that still has its old content. If a kernel read numbers from this memory, the loop that
+// checks loops could run up to 2^32 times. A driver that ends loops would then report cut loops. With another driver
+// the device would be busy for a minute.
 TEST_F(FilmTest, WarmsUpWhateverItsMemoryHeld) {
   const world::Scene scene = test::make_scene_of_everything();
   const PackedScene packed = pack_scene(scene, "sah");

@@ -17,7 +17,7 @@
 namespace promin {
 namespace {
 
-/// Returns the color at a place of the picture, in pixels.
+/// Returns the color at a position of the picture, in pixels.
 using Scene = std::function<vec3(const dvec2&)>;
 
 /// The result for a window of a picture, row by row.
@@ -67,7 +67,7 @@ Refined refine(const View& view, const Scene& scene) {
   return refine(view, scene, {uvec2(0), view.size});
 }
 
-/// Returns the color of discs of any size and brightness before a chequered floor that goes to a horizon.
+/// Returns the color of discs of any size and brightness in front of a chequered floor that extends to the horizon.
 vec3 discs_and_floor(const dvec2& p) {
   vec3 color(0.1F, 0.2F, 0.4F);
   if (p.y > 20.0) {
@@ -191,8 +191,8 @@ double share_missed(double width, uint32_t least_samples) {
   return static_cast<double>(missed) / static_cast<double>(pixels);
 }
 
-// The manual says this of lines that are thinner than a pixel divided by the first samples: no sample of a pixel and
-// its neighbours may hit them.
+// The manual says this about lines that are thinner than a pixel divided by the number of first samples. Possibly no
+// sample of a pixel and its neighbours hits them.
 TEST(RefinementTest, ThinLinesMayLieBetweenAllSamples) {
   for (const uint32_t samples : {4U, 8U, 16U}) {
     std::printf("%u first samples:", samples);
@@ -223,7 +223,7 @@ TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
   EXPECT_LT(unmet, refined.means.size() / 4);
 }
 
-// A picture that is shown brighter by some stops is refined as if its light were brighter.
+// A picture with a positive exposure is refined as if its light were brighter.
 TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
   const auto dimmed = [](const dvec2& p) { return discs_and_floor(p) / 64.0F; };
   View view = make_view(1.0F / 64.0F);
@@ -234,25 +234,26 @@ TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
   for (size_t i = 0; i < refined.means.size(); ++i) EXPECT_EQ(64.0F * refined.means[i], expected.means[i]);
 }
 
-// Codes of sRGB change fast in the dark and slowly in bright light; their slope is finite everywhere.
+// The curve of sRGB is steep for dark colours and flat for bright ones. Its slope is finite everywhere.
 TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   const DisplayTransform plain;
   const vec3 shown = shown_claim(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), plain);
   EXPECT_FLOAT_EQ(shown.x, encode_srgb(0.01F));
   EXPECT_FLOAT_EQ(shown.y, encode_srgb(0.8F) - encode_srgb(0.79F));
   EXPECT_EQ(shown.z, 0.0F);
-  // One stop brighter, everything is twice as bright.
+  // With one stop more, all values are twice as bright.
   const vec3 brighter = shown_claim(vec3(0.01F), vec3(0.2F), {.exposure_ev = 1.0F});
   EXPECT_NEAR(brighter.x, shown_claim(vec3(0.02F), vec3(0.4F), plain).x, 1e-6F);
-  // Light beyond white without a tone mapping is not beyond white with one. A channel without error gets one if
-  // channels are mixed.
+  // Light that exceeds white without a tone mapping does not exceed white with one. If the tone mapping mixes channels,
+  // a channel without error also gets an error.
   const DisplayTransform mapped{.tone_mapping = ToneMapping::kAgx};
   EXPECT_EQ(shown_claim(vec3(0.0F, 0.0F, 2.0F), vec3(0.5F, 0.5F, 3.0F), plain), vec3(0.0F));
   const vec3 mixed = shown_claim(vec3(0.0F, 0.0F, 2.0F), vec3(0.5F, 0.5F, 3.0F), mapped);
   EXPECT_GT(mixed.x, 0.01F);
   EXPECT_GT(mixed.z, 0.01F);
   EXPECT_EQ(shown_claim(vec3(0.0F), vec3(0.5F), mapped), vec3(0.0F));
-  // If more light of one channel reduces what is shown of another, red changes most with less of it and more green.
+  // If more light in one channel reduces the displayed value of another, red changes most if red decreases and green
+  // increases.
   const DisplayTransform reinhard{.tone_mapping = ToneMapping::kReinhard};
   const vec3 red = glm::abs(shown_color(vec3(0.25F, 0.75F, 0.5F), reinhard) - shown_color(vec3(0.5F), reinhard));
   EXPECT_EQ(shown_claim(vec3(0.25F, 0.25F, 0.0F), vec3(0.5F), reinhard).x, red.x);
@@ -264,7 +265,8 @@ TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
   EXPECT_EQ(claimed_error(vec3(0.01F, 0.01F, 2.0F), vec3(0.0F, 0.8F, 9.0F), target), shown.x);
 }
 
-// An unlit surface is as bright as a lit one beside it: the light has no edge, and the shown picture has one.
+// An unlit surface and a lit one beside it have the same light. The light has no edge, but the displayed picture has
+// one.
 TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
   View view = make_view(1.0F / 64.0F);
   const auto count_samples = [&](const DisplayTransform& display) {
@@ -289,7 +291,7 @@ TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
   EXPECT_GT(count_samples({.exposure_ev = 2.0F}), view.error_target->min_samples);
 }
 
-// If any channel is not finite, nothing is known of the pixel, whatever the other channels are.
+// If any channel is not finite, the error of the pixel is unknown, regardless of the other channels.
 TEST(RefinementTest, AClaimThatIsNoNumberIsNeverSmallEnough) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   const float infinite = std::numeric_limits<float>::infinity();
@@ -330,7 +332,7 @@ TEST(RefinementTest, ErrorsAsTheyAreShownAskForMoreInTheDarkAndForLessInTheLight
   shown.error_target->display.emplace();
   EXPECT_GT(refine(shown, edge_of(0.0F, 0.02F)).samples, refine(linear, edge_of(0.0F, 0.02F)).samples);
   EXPECT_LT(refine(shown, edge_of(0.7F, 1.0F)).samples, refine(linear, edge_of(0.7F, 1.0F)).samples);
-  // Both sides are shown white, however different they are.
+  // Both sides are displayed as white, even if they differ.
   EXPECT_EQ(refine(shown, edge_of(3.0F, 9.0F)).samples, 8U * 96 * 64);
   const Refined refined = refine(shown, discs_and_floor);
   for (size_t i = 0; i < refined.means.size(); ++i) {
@@ -384,7 +386,7 @@ TEST(RefinementTest, ItDoesNotMatterHowManyAreTracedAtOnce) {
   for (const size_t most : {1U, 8U, 1000U}) EXPECT_EQ(refine(view, wires, window, most).means, expected.means) << most;
 }
 
-// The forecast of the edge has the right size, too.
+// The forecast for the edge also has the correct magnitude.
 TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
   const View view = make_view(1.0F / 16.0F);
   const PixelWindow window{uvec2(0), view.size};

@@ -38,7 +38,7 @@ TEST(TileScheduler, CoverEverySampleOnceAndInOrder) {
   }
 }
 
-// Each ray of a sample takes a step of the stream, in whatever order glass splits rays.
+// Each ray of a sample takes one step of the stream, for any order in which glass splits rays.
 TEST(TileScheduler, StepsSufficeForTheLargestTree) {
   // All light leaves the first surface as a mirror ray and as one ray for each color; each of these is split into a
   // mirror ray and one more ray.
@@ -69,7 +69,7 @@ TEST(TileScheduler, GroupsSufficeForAllPixels) {
   }
 }
 
-// The stream of paths has room for this many.
+// The stream has space for this number of paths.
 TEST(TileScheduler, PiecesAreNoLargerThanAsked) {
   for (const double units : {1.0, 1e9}) {
     for (const uint32_t most_blocks : {1U, 100U}) {

@@ -17,7 +17,7 @@ class Failure(Exception):
 
 
 def wait_for(condition, what, seconds=180.0):
-    """Calls condition() again and again. Returns its first true value."""
+    """Calls condition() repeatedly and returns its first true value."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if value := condition():
@@ -27,7 +27,7 @@ def wait_for(condition, what, seconds=180.0):
 
 
 class Display:
-    """Runs an X server of its own, on a free display number."""
+    """Runs a separate X server with a free display number."""
 
     def __init__(self, size="1024x768x24"):
         # Another server that ends at this moment may remove this one's socket. Without -noreset a server restarts when
@@ -103,7 +103,7 @@ class FileManager(Client):
         self.list_type = self.atom("text/uri-list")
 
     def drop(self, files, target, place):
-        """Drops files at a place of the desktop, on the window there."""
+        """Drops files at a position of the desktop, on the window at this position."""
         self.x11.XSetSelectionOwner(
             self.server, ctypes.c_ulong(self.selection), ctypes.c_ulong(self.window), ctypes.c_ulong(0)
         )
@@ -148,11 +148,11 @@ class FileManager(Client):
 
 
 class Typist(Client):
-    """Presses keys that have no effect, again and again, from the beginning of a block to its end."""
+    """Repeatedly presses keys that have no effect, from the beginning of a block to its end."""
 
     INTERVAL = 0.02
 
-    # GLFW takes a key that is released and pressed at the same time for one that repeats.
+    # If a key is released and pressed at the same time, GLFW reports that the key repeats.
     KEYS = "jk"
 
     def __init__(self, display):
@@ -235,13 +235,13 @@ class Viewer:
         return sum(map(int, words[11:13])) / os.sysconf("SC_CLK_TCK")
 
     def processor_share(self, seconds):
-        """Watches the program for this time. Returns the fraction of one core that it uses meanwhile."""
+        """Observes the program for this time. Returns the fraction of one core that the program uses."""
         before, start = self.processor_seconds(), time.monotonic()
         time.sleep(seconds)
         return (self.processor_seconds() - before) / (time.monotonic() - start)
 
     def read(self, stream):
-        # The file needs a handle of its own, because the program writes at this one's position.
+        # The test needs a separate handle of the file, because the program writes at the position of this handle.
         return pathlib.Path(f"/proc/self/fd/{self.logs[stream].fileno()}").read_text()
 
     @property

@@ -61,7 +61,7 @@ TEST(ScreenCover, KnowsTheWallsOfARoom) {
   Camera camera = test::make_board_view(uvec2(1280, 720)).camera;
   camera.projection = Projection::kPerspective;
   camera.yfov = 1.0F;
-  // The floor reaches from before the camera to behind it.
+  // The floor extends from the front of the camera to the space behind it.
   Scene scene = make_scene(0.0F);
   scene.objects.back().world_from_object = dmat4(dvec4(4.0, 0.0, 0.0, 0.0), dvec4(0.0, 0.0, -4.0, 0.0),
                                                  dvec4(0.0, 1.0, 0.0, 0.0), dvec4(0.0, -1.0, 0.0, 1.0));
@@ -104,7 +104,7 @@ class ExplanationPanelTest : public testing::Test {
   }
   static Camera camera() { return test::make_board_view(uvec2(1280, 720)).camera; }
 
-  /// Returns the panel's place when it no longer moves.
+  /// Returns the panel's position after it has stopped moving.
   WindowArea show(const std::optional<WindowArea>& other = std::nullopt) {
     for (int i = 0; i < 3; ++i) {
       ImGui::GetIO().DeltaTime = 0.1F;

@@ -34,7 +34,7 @@ Fault read_fault() {
   return fault;
 }
 
-/// Returns the result of this call: an error if it is the one to fail.
+/// Returns the result of this call: an error if PROMIN_TEST_FAULT selects the call.
 VkResult fail(const char* call) {
   static const Fault fault = read_fault();
   static std::atomic<int> count = 0;

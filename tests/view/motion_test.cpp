@@ -14,7 +14,7 @@ namespace {
 constexpr double kHeight = 360.0;
 constexpr vec3 kUp(0.0F, 1.0F, 0.0F);
 
-/// A cube of side 2 around this point, and a camera ten units before the middle.
+/// The scene is a cube of side 2 around this point. The camera is ten units in front of its middle.
 const vec3 kMiddle(1.0F, 2.0F, 3.0F);
 CameraControl make_control() {
   Camera camera;
@@ -22,7 +22,8 @@ CameraControl make_control() {
   return {camera, Bounds{kMiddle - 1.0F, kMiddle + 1.0F}, kUp};
 }
 
-/// Holds the key for ahead for a second and the key for fast for the middle half of it, with frames at these times.
+/// Holds the key that moves the camera ahead for a second, and the key for fast motion for the middle half of this
+/// second. The frames are at these times.
 Motion fly(const std::vector<double>& frame_times) {
   MotionSum motion;
   motion.take(1.0);
@@ -81,7 +82,7 @@ TEST(CameraControl, KeepsTheBitsOfACameraThatRests) {
   EXPECT_EQ(control.camera().eye, camera.eye);
 }
 
-// The point under the pointer in the middle stays under it, to first order.
+// The point under the pointer in the middle stays there, except for terms of second order.
 TEST(CameraControl, ADragTurnsByTheFieldOfView) {
   CameraControl control(Camera{}, Bounds(), kUp);
   Motion motion;
@@ -123,7 +124,7 @@ TEST(CameraControl, ADragTakesItAroundTheMiddleOfTheScene) {
   control.apply(motion, kHeight);
   EXPECT_NEAR(glm::distance(control.position(), dvec3(kMiddle) + dvec3(-10.0, 0.0, 0.0)), 0.0, 1e-5);
   EXPECT_NEAR(glm::dot(dvec3(control.camera().look), dvec3(1.0, 0.0, 0.0)), 1.0, 1e-6);
-  // However far the pointer goes down, the camera does not reach straight above, and stays upright.
+  // For any motion of the pointer downwards, the camera does not reach the point straight above and stays upright.
   motion.orbit = dvec2(0.0, 10.0 * kHeight);
   for (int i = 0; i < 5; ++i) control.apply(motion, kHeight);
   EXPECT_NEAR(glm::distance(control.position(), dvec3(kMiddle)), 10.0, 1e-4);

@@ -81,7 +81,7 @@ class OverlayTest : public test::DeviceTest {
     for (const bool is_down : {false, true, false, false}) show(place, is_down);
   }
 
-  /// Clicks down the panel's left side until a click has an effect.
+  /// Clicks on points along the panel's left side, from top to bottom, until a click has an effect.
   template <typename Effect>
   bool click_until(const Effect& has_effect) {
     for (float y = 20.0F; y < 400.0F && !has_effect(); y += 5.0F) click({25.0F, y});
@@ -152,7 +152,7 @@ TEST_F(OverlayTest, GrowsWithTheDisplaysScale) {
   // On this display, a unit of the window's coordinates is one pixel.
   use_scale({2.0, 1.0});
   EXPECT_NEAR(drawn_width(), 2.0F * width, 0.05F * width);
-  // On this display a unit is two pixels: the window grows by itself, and the overlay's fonts get finer.
+  // On this display a unit is two pixels. The system scales the window, and the overlay's fonts have more pixels.
   use_scale({2.0, 2.0});
   EXPECT_NEAR(drawn_width(), width, 0.05F * width);
 }

@@ -28,7 +28,8 @@ class ProgressivePictureTest : public test::DeviceTest {
     return picture;
   }
 
-  /// Records a frame's tracing and waits for it, but does not report the time: budgets stay the smallest.
+  /// Records a frame's tracing and waits for it, but does not report the time, so that budgets stay as small as
+  /// possible.
   double trace(ProgressivePicture& picture) const {
     double units = 0.0;
     device().run([&](const vk::raii::CommandBuffer& commands) { units = picture.record(commands); });
@@ -177,7 +178,7 @@ TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
   EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
 }
 
-// If only the background is seen, the first samples are exact: after them only the final error is reported.
+// If only the background is visible, the first samples are exact. The picture then reports only the final error.
 TEST_F(ProgressivePictureTest, WhatIsExactIsShownOnceMore) {
   ProgressivePicture picture = make_picture();
   View view = with_target(test::make_view(kPictureSize), 1.0F / 4096.0F);

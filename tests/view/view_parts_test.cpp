@@ -106,7 +106,7 @@ TEST(TurnLight, TurnsTheSkyAndWhatShinesAlongADirection) {
   EXPECT_EQ(lights[1].direction, spot.direction) << "it has a place";
 }
 
-/// A folder with programs that replace the desktop's; it is the only folder on PATH.
+/// A folder with programs that replace the programs of the desktop. PATH contains only this folder.
 class FileDialogTest : public TempFolder {
  protected:
   void SetUp() override { setenv("PATH", folder_.c_str(), 1); }
@@ -274,7 +274,8 @@ TEST_F(SceneWatchTest, TellsOfWhatIsWrittenAfterItWasReadAndLeftAlone) {
   EXPECT_TRUE(watch.has_changed());
 }
 
-// The window cancels a tree with an exception from the progress function: no builder may go on after it.
+// The window cancels the construction of a tree with an exception from the progress function. No builder may continue
+// after the exception.
 TEST(PackChoice, EndsByWhatItsProgressThrows) {
   world::Scene scene;
   scene.materials.resize(1);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Tests promin-view as a user meets it: a real window on an X server, with keys and pointer from xdotool.
+"""Tests promin-view as a user sees it: a real window on an X server, with keys and pointer from xdotool.
 
 window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the programs.
 """
@@ -50,7 +50,7 @@ class Session:
         try:
             words = [files[0], "--size", *map(str, SIZE), "--target-ms", "40", *arguments]
             self.viewer = Viewer(self.display, bin_folder / "promin-view", words, folder, **environment)
-            # A replay takes no keys, and may end before the window is found.
+            # A replay does not need keys, and may end before the test finds the window.
             if takes_keys and "--replay" not in arguments:
                 self.viewer.focus()
         except BaseException:
@@ -87,7 +87,7 @@ class Session:
         return self.folder / output
 
     def find_middle(self, command):
-        """Returns the point at which the camera of a command looks."""
+        """Returns the target point of a command's camera."""
         return self.find_point(command, (1, 1), (0, 0))
 
     def find_point(self, command, size, pixel):
@@ -124,7 +124,7 @@ class Session:
         return command
 
     def quit(self):
-        # The program may end before the test looks whether it runs.
+        # The program may end before the test checks whether it is still running.
         self.viewer.xdotool("key", "Escape")
         code = self.viewer.wait_for_end()
         expect(code == 0, f"it ended with {code}:\n{self.viewer.err}")
@@ -162,7 +162,8 @@ def flies_and_renders_what_it_shows(bin_folder, scenes, folder):
         reset = session.print_command()
         expect(eye_of(reset) == eye_of(start), f"the camera was not reset: {reset}")
 
-        # An orbit turns around the point in the middle: the point stays there, and the camera need not turn to it.
+        # The camera orbits the point in the middle of the picture. The point stays there, and the camera does not turn
+        # towards it first.
         middle = session.find_middle(reset)
         viewer.press("o")
         wait_for(lambda: viewer.hold("d", 0.05) or look_of(session.print_command()) != look_of(reset), "orbit")
@@ -202,7 +203,7 @@ def shows_what_is_chosen(bin_folder, scenes, folder):
         viewer.press("Tab")
         viewer.xdotool("windowsize", "--sync", viewer.window, 300, 270)
         wait_for(lambda: "--size 300 270" in session.print_command(), "new size")
-        # The switch's place depends on the number of lines of the message that a screenshot was written.
+        # The position of the switch depends on the number of lines of the message about the screenshot.
         for y in (137, 120, 154, 103):
             viewer.xdotool("mousemove", "--window", viewer.window, 28, y, "sleep", 0.2, "click", 1)
             if has_shadows_soon():
@@ -255,7 +256,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
     with session as viewer:
         viewer.press("Tab", "p")
         command = session.expect_shown(3, " ".join(words))
-        # A scene that is read again is lit and shown as before.
+        # After the scene is read again, its light and display are the same as before.
         text = session.scene.read_text()
         session.scene.write_text(text + "# changed\n")
         viewer.wait_for_line("note: read obj_materials.obj", 1, "scene again")
@@ -277,7 +278,7 @@ def lights_as_render_does(bin_folder, scenes, folder):
 def plays_what_it_recorded(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, "--record", "flight.json")
     with session as viewer:
-        # In a pause, a screenshot has one sample a pixel, as `promin render` gives below.
+        # During a pause, a screenshot has one sample per pixel, like the picture of `promin render` below.
         viewer.press("p")
         session.take_screenshot(1)
         viewer.hold("w", 0.2)
@@ -301,7 +302,7 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
             f"{len(path)} frames were recorded, and replayed: {viewer.out}",
         )
 
-    # The flight by time takes its real time.
+    # The flight at its stored times takes its real time.
     begin = time.monotonic()
     session = Session(bin_folder, scenes, folder, "--replay", "flight.json", "--fps", "10")
     with session as viewer:
@@ -372,7 +373,7 @@ def survives_its_window(bin_folder, scenes, folder):
             viewer.xdotool("windowsize", viewer.window, SIZE[0] + 37 * (i % 5) - 60, SIZE[1] + 23 * (i % 7) - 40)
             viewer.hold("w" if i % 2 else "s", 0.02)
             viewer.check_alive()
-        # A minimised window has no pixels, and traces none although a key is down and there is a picture to refine.
+        # A minimised window has no pixels and traces none, although a key is pressed and a picture could be refined.
         viewer.xdotool("keydown", "w")
         viewer.minimise(True)
         wait_for(lambda: viewer.processor_share(0.5) < 0.1, "rest of a minimised window", 30.0)
@@ -417,12 +418,12 @@ def answers_while_it_works(bin_folder, scenes, folder):
                 typed[stage] = (typist.count, int(re.search(r"(\d+) keys? pressed", line).group(1)))
         session.quit()
         worst = re.search(r"no input waited longer than (\d+) ms, for work of at most (\d+) ms; (\d+) keys", viewer.err)
-    # Tab and Esc are keys, too; the test does not wait for the last one.
+    # Tab and Esc also count as keys. The test does not wait for the last key.
     expect(int(worst.group(3)) >= typist.count + 1, f"{typist.count} keys were typed: {worst.group(0)}")
     stages = [(0, 0), *typed.values()]
     for stage, (typed_before, answered_before), (typed_then, answered_then) in zip(typed, stages, stages[1:]):
-        # If the window does not respond during a stage, it answers most keys after it. Short stages prove nothing,
-        # because the test may look late.
+        # If the window does not respond during a stage, it handles most keys after the stage. Short stages prove
+        # nothing, because the test may check late.
         count = typed_then - typed_before
         answered = answered_then - answered_before
         expect(count < 100 or 2 * answered >= count, f"few keys were answered before the {stage}: {typed}")
@@ -543,7 +544,7 @@ def turns_the_light(bin_folder, scenes, folder):
         session.expect_same_picture(2, turned)
         pictures = [(folder / f"promin-000{number}.png").read_bytes() for number in (1, 2)]
         expect(pictures[0] != pictures[1], "the light was not turned")
-        # A pixel is explained in the rotated light.
+        # This click explains a pixel while the light is rotated.
         viewer.xdotool("mousemove", "--window", viewer.window, 80, 50, "click", 1)
         session.quit()
 
@@ -596,7 +597,7 @@ def fails_in_a_sentence(bin_folder, scenes, folder):
         ("vkAllocateMemory", 3, no_memory, "the device has not enough memory ("),
         ("vkQueueSubmit", 12, lost, "the device was lost ("),
     ):
-        # The path of layers contains no others: those of validation are not there.
+        # The path of layers contains only this layer and no validation layers.
         layer = {"VK_LAYER_PATH": os.environ["PROMIN_TEST_LAYERS"], "VK_INSTANCE_LAYERS": "VK_LAYER_PROMIN_fault"}
         layer["PROMIN_VALIDATION"] = ""
         fault = {"PROMIN_TEST_FAULT": f"{call} {number} {result}"}
@@ -618,7 +619,8 @@ def only_the_window_links_glfw(bin_folder, *_):
 
 
 def needs_a_display(bin_folder, scenes, _):
-    # There is also no folder where a display could be found; neither driver nor library may complain about that.
+    # No folder exists in which a display could be found. Neither the driver nor a library may print a message about
+    # this.
     missing = ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR")
     environment = {name: value for name, value in os.environ.items() if name not in missing}
     done = run(bin_folder / "promin-view", scenes / "sphere.gltf", environment=environment)

@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Returns a path as uneven as fp32 allows: it is turned in many small steps.
+/// Returns a path with many small rotations, so that its axes are as inexact as fp32 allows.
 CameraPath make_path(size_t count) {
   CameraPath path;
   std::mt19937 generator(1);
@@ -113,7 +113,7 @@ TEST_F(CameraPathTest, HalfWayIsHalfTheTurnAndHalfTheWay) {
   }
 }
 
-// The slerp of a single rotation would not give this.
+// A slerp of a single rotation would give a different result.
 TEST_F(CameraPathTest, ARestKeepsItsBits) {
   CameraPath path = make_path(100);
   for (size_t i = 1; i < path.frames.size(); i += 2) path.frames[i].camera = path.frames[i - 1].camera;

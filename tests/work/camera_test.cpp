@@ -104,7 +104,8 @@ TEST(FreeCamera, OneRotationIsMzMyMx) {
 }
 
 TEST(FreeCamera, RotatesAboutItsOwnAxes) {
-  // The turn is Q M: after a turn to the left, "up" is still the camera's up. M Q would roll about the world's X.
+  // The rotation is Q M, so "up" is still the camera's up after a turn to the left. M Q would rotate about the world's
+  // X axis.
   FreeCamera camera;
   camera.rotate(0, kRight, 0);
   camera.rotate(0, 0, kRight);
@@ -156,7 +157,8 @@ TEST(FreeCamera, FindsItsWayBackAfterAHundredThousandSteps) {
 }
 
 TEST(FreeCamera, HasNoGimbalLock) {
-  // The camera looks straight up and then turns: every step turns it by the given angle, and look stays in its plane.
+  // The camera looks straight up and then turns. Every step turns it by the given angle, and `look` stays in the same
+  // plane.
   FreeCamera camera;
   camera.rotate(0, 0, kRight);
   const dvec3 axis = camera.up();
@@ -166,7 +168,7 @@ TEST(FreeCamera, HasNoGimbalLock) {
     EXPECT_NEAR(std::acos(glm::dot(before, camera.look())), kDegree, 1e-12);
     expect_near(camera.up(), axis, 1e-13);
   }
-  // The camera then goes over the zenith, and up turns as steadily.
+  // The camera then passes the zenith, and `up` turns at the same rate.
   for (int step = 0; step < 180; ++step) {
     const dvec3 before = camera.up();
     camera.rotate(0, 0, kDegree);

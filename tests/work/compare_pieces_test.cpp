@@ -72,7 +72,7 @@ TEST(ComparePartsTest, PartsOfOtherPicturesAreRefused) {
   EXPECT_THROW(compare_parts(make_part(), anew, "a.piece"), InputError);
 }
 
-/// Returns a ball of radius 1 at a distance of 10 before the rays, and a plane behind it.
+/// Returns a ball of radius 1 at a distance of 10 from the origins of the rays, and a plane behind it.
 Scene make_scene() {
   Scene scene;
   scene.materials.resize(1);

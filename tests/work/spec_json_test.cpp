@@ -63,7 +63,7 @@ std::string refusal(const std::string& members) {
 
 const std::string kHere = std::filesystem::current_path().string() + "/";
 
-/// Options with values, with at least one of each kind and range, and the member that each gives.
+/// Options with values, at least one for each kind and range, and the member that each option sets.
 const std::pair<std::vector<std::string>, std::pair<const char*, json>> kOptions[] = {
     {{"-o", "a.exr", "-o", "-"}, {"output", {kHere + "a.exr", "-"}}},
     {{"--spp", "16"}, {"spp", 16}},

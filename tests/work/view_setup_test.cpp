@@ -125,7 +125,7 @@ TEST(ViewSetupTest, AFieldOfViewMakesAnOrthographicCameraPerspectiveAndSaysSo) {
   options.camera = "side";
   EXPECT_EQ(say_and_view(), std::pair(std::string(), Projection::kPerspective));
 
-  // A camera of the user's own takes nothing from the scene's cameras.
+  // A camera that the user specifies takes no values from the scene's cameras.
   options.camera = "main";
   options.pose.eye = dvec3(0.0);
   options.pose.direction = dvec3(0.0, 0.0, -1.0);
@@ -252,7 +252,7 @@ TEST(LightUpTest, TheBackgroundIsTheUsers) {
   EXPECT_FALSE(ambient.environment.shows_sky);
   EXPECT_EQ(ambient.environment.background, vec3(0.1F));
 
-  // With another background, the file's own sky is no longer shown.
+  // With another background, the sky of the file is no longer visible.
   Scene sky = make_viewed_scene();
   sky.environment.sky = GradientSky{};
   sky.environment.shows_sky = true;
@@ -320,7 +320,7 @@ TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
   options.pose.from.reset();
   options.pose.eye = dvec3(0.0, 0.0, 1.0);
   EXPECT_EQ(assumptions_of(Scene(), options), "");
-  // If nothing is displayed, the notes say nothing about the display.
+  // If no picture is displayed, the notes do not mention the display.
   Scene scene;
   scene.cameras = {Camera()};
   const AssumedLight assumed = light_up(scene, {});

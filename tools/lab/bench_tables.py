@@ -81,7 +81,7 @@ _FIRST_COLUMNS = [
 
 
 def _target(value, least=None, most=None):
-    """Returns the target, and says whether the value meets it."""
+    """Returns the target, and whether the value reaches it."""
     if value is None or (least is None and most is None):
         return "–"
     if least is not None:
@@ -175,7 +175,7 @@ def _read_driver(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("drivers", nargs="+", type=pathlib.Path, help="folder of each driver, first the system's")
+    parser.add_argument("drivers", nargs="+", type=pathlib.Path, help="folders of drivers; the system's comes first")
     parser.add_argument("--growth", type=pathlib.Path, required=True, help="file that promin-lab growth has written")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help=".json file to write")
     arguments = parser.parse_args()

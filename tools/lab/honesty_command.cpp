@@ -54,7 +54,7 @@ std::vector<PixelWindow> choose_windows(const uvec2& size) {
 /// Errors of the pixels whose true value is known.
 struct Errors {
   double rmse = 0.0;
-  /// The error that 999 of 1000 pixels stay below. A pixel's error is that of its worst channel.
+  /// The error that 999 of 1000 pixels do not exceed. A pixel's error is that of its worst channel.
   double worst = 0.0;
 };
 
@@ -96,7 +96,7 @@ class HonestyBench {
     std::vector<std::function<double()>> contestants;
     for (size_t i = 0; i < views.size(); ++i) {
       contestants.emplace_back([&, i] {
-        // The time includes the host's work between dispatches, which is more where pixels are refined.
+        // The time includes the host's work between dispatches, which is larger if pixels are refined.
         const Stopwatch rendering;
         results[i] = plain_renderer_->render(views[i]);
         return rendering.ms();
@@ -173,7 +173,8 @@ class HonestyBench {
   }
 
   /// Returns the ratio of a picture's time to the time of an unrefined picture with the same error. That time is
-  /// interpolated between pictures with powers of two samples a pixel, along a straight line of logarithms.
+  /// interpolated between pictures whose numbers of samples per pixel are powers of two. The interpolation is linear in
+  /// the logarithms.
   template <typename Error>
   static std::string ratio_to(const std::vector<Point>& uniform, const Point& point, const Error& error_of) {
     for (size_t i = 1; i < uniform.size(); ++i) {

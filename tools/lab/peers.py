@@ -158,8 +158,8 @@ def _row_of(peer, promin, difference):
 
 
 def _first_row(promin):
-    """Returns the row of the first picture. It may take the time of its tracing and of two whole processes that trace
-    next to nothing."""
+    """Returns the row of the first picture. The target is the time of its tracing plus the time of two whole processes
+    that trace almost nothing."""
     allowed_ms = [trace + 2 * small for trace, small in zip(promin.trace_ms, promin.one_sphere_process_ms)]
     return {
         "trace_ms": promin.trace_ms,

@@ -32,7 +32,7 @@ Times difference_of(Times a, std::span<const double> b) {
   return a;
 }
 
-/// A picture, or the part of a picture's work that consists of the rays of these sets.
+/// A picture, or the part of its work that traces the rays of these sets.
 struct Part {
   std::string what;
   Times ms;

@@ -6,9 +6,9 @@
 
 namespace promin::lab {
 
-/// Measures rates of rays and the build of a scene beside Embree's, over the same rays and triangles and in the same
-/// turns. Appends to the arrays "rows" and "builds", and does what add_picture_over_rays does. Without runs it only
-/// counts steps.
+/// Measures the rates of rays and the time of the build for a scene, and those of Embree with the same rays and
+/// triangles in the same turns. Appends to the arrays "rows" and "builds", and does what add_picture_over_rays does.
+/// Without runs it only counts steps.
 void add_rates(const Session& session, const world::Scene& scene, Json& rates);
 
 }  // namespace promin::lab

@@ -35,7 +35,7 @@ void print_build(const std::string& scene, const Json& build) {
   fmt::print("\n");
 }
 
-/// Returns the rate of the row's rays in millions a second, from the median of these times.
+/// Returns the rate of the row's rays in millions per second, from the median of these times.
 std::string rate_of(const Json& row, const char* key) {
   if (!row.contains(key)) return "-";
   return fmt::format("{:.2f}", row["count"].get<double>() / (1e3 * quartiles_of(row, key).median));

@@ -188,8 +188,8 @@ def measure_knobs(lab, scene):
 
 
 def measure_methods(lab, scene):
-    """Compares promin's methods with the textbook's: one picture by each, and rays into a closed mesh, where each ray
-    must hit."""
+    """Compares promin's methods with the textbook's: one picture with each method, and rays into a closed mesh, each of
+    which must hit."""
     plan = lab.plan
     lab.say("promin's methods beside the textbook's")
     output = lab.lab("methods", scene, "-o", ".", "--side", plan.size[1], "--spp", 4, "--runs", plan.runs)
@@ -381,7 +381,7 @@ def _figure(source, caption):
 
 
 def page(lab, scene, renderers, knobs, methods, footer):
-    """Returns the page as one file that needs no other."""
+    """Returns the page as a single, self-contained file."""
     plan = lab.plan
     peers = join(["promin", *renderers["versions"].values()])
     top = [

@@ -71,7 +71,7 @@ void measure_robustness(const LabOptions& options) {
   session.write("robustness", {{"rows", rows}});
 }
 
-/// Compares a picture by promin's methods with one by the textbook's; both are timed in turns.
+/// Compares a picture that uses promin's methods with one that uses the textbook's methods. Both are timed in turns.
 void compare_pictures(const LabOptions& options, const fs::path& folder, uint32_t samples) {
   world::Scene scene = measure::open_scene(options.scenes.front());
   add_default_lights(scene);

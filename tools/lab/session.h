@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 /// Options of the commands that measure; each command adds the options that it uses.
 struct LabOptions {
-  /// Scenes as words that measure::open_scene() understands.
+  /// The names of the scenes, as measure::open_scene() accepts them.
   std::vector<std::string> scenes;
   /// The JSON file for the times of all runs; empty for no file.
   std::filesystem::path output;

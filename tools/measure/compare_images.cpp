@@ -78,8 +78,8 @@ ImageDifference compare_images(const Image& a, const Image& b, const CompareOpti
   require_same_size(a, b);
   ImageDifference result;
   result.pixel_count = a.pixels.size();
-  // OpenImageIO does not treat edges differently, and takes a NaN in both pictures as equal. Therefore such pixels are
-  // counted here, and OpenImageIO gets them black or equal.
+  // OpenImageIO does not treat edges differently, and takes a NaN in both pictures as equal. Therefore this function
+  // counts such pixels, and makes them black or equal for OpenImageIO.
   Image first = a;
   Image second = b;
   std::vector<PixelDifference> differing;

@@ -23,7 +23,7 @@ struct CompareOptions {
   /// A single pixel whose difference is larger fails the comparison.
   float hard_fail = 0.012F;
   /// The allowed fraction of edge pixels, in percent; with 0 no pixel counts as an edge. On an edge, a driver's
-  /// rounding may decide for the neighbour's surface. A pixel over `fail` is on an edge if its value lies between the
+  /// rounding may select the neighbour's surface. A pixel over `fail` is on an edge if its value lies between the
   /// values of the second picture at and around it. Such a pixel counts neither as failed nor in the other figures. If
   /// there were no limit, a shifted picture would pass.
   double edge_percent = 0.0;

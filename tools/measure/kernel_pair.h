@@ -22,7 +22,7 @@ struct KernelPair {
   std::vector<Hit> robust_hits;
   std::vector<Hit> plain_hits;
 
-  /// Returns the number of rays that only this kernel says hit, whichever kernel is right.
+  /// Returns the number of rays for which only this kernel reports a hit, regardless of which kernel is correct.
   uint64_t count_only_robust() const;
   uint64_t count_only_plain() const;
 };

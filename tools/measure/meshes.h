@@ -14,18 +14,18 @@ namespace promin::measure {
 /// Returns a scene of these shapes with one material, without camera or light.
 world::Scene scene_of(std::vector<world::Shape> shapes, const std::string& name = "shapes");
 
-/// Returns a mesh of one random triangle of ordinary shape: its size is about `size`, its direction is random.
+/// Returns a mesh of one random, well-shaped triangle. Its size is about `size`, and its direction is random.
 Mesh make_triangle(const dvec3& center, Random& random, double size = 1.0);
 
 // The next functions make meshes of any size to measure with. Each returns a scene of one object without camera or
 // light, with the same bits every time.
 
-/// Returns a closed surface around the origin with waves on it. It has 4 r^2 triangles, for the r that comes nearest to
-/// the number that is asked for.
+/// Returns a closed surface around the origin with waves on it. It has 4 r^2 triangles. The function chooses r so that
+/// this number is nearest to the requested number.
 world::Scene make_wavy_sphere(uint32_t triangle_count);
 
-/// Returns long thin triangles, a fiftieth as wide as long, that fill a ball at random angles. Their boxes overlap and
-/// are mostly empty.
+/// Returns long thin triangles at random angles that fill a ball. Their width is a fiftieth of their length. Their
+/// boxes overlap and are mostly empty.
 world::Scene make_needles(uint32_t triangle_count);
 
 /// Opens a scene that a program's argument names: a file, or "wavy:N" and "needles:N" for a generated mesh of about N

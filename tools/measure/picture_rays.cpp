@@ -41,7 +41,7 @@ struct Point {
   uint32_t material = 0;
 };
 
-/// The rules of shaders/shade/shading.glsl, lights.glsl and path.glsl, as far as they decide which rays are traced.
+/// The rules of shaders/shade/shading.glsl, lights.glsl and path.glsl that determine which rays are traced.
 class PictureRules {
  public:
   PictureRules(const world::Scene& scene, const View& view) : scene_(scene), view_(view) {

@@ -34,9 +34,9 @@ inline Quartiles quartiles_of(std::vector<double> values) {
 }
 
 /// Times contestants, in the same way for every measurement. Each contestant first runs once as a warm-up, whose time
-/// is dropped. Then all run in turns, so that other work of the machine affects all alike. Each turn has another order,
-/// because the caches are full of the last contestant's data: with one order for all, a depth of 16 seemed 4 % faster
-/// than 5. A contestant returns its milliseconds. The function returns `runs` times for each contestant.
+/// is dropped. Then all run in turns, so that other work of the machine affects all equally. Each turn has another
+/// order, because the caches are full of the last contestant's data: with one order for all, a depth of 16 seemed 4 %
+/// faster than 5. A contestant returns its milliseconds. The function returns `runs` times for each contestant.
 inline std::vector<std::vector<double>> time_in_turns(std::span<const std::function<double()>> contestants,
                                                       uint32_t runs) {
   for (const std::function<double()>& contestant : contestants) contestant();
@@ -51,7 +51,7 @@ inline std::vector<std::vector<double>> time_in_turns(std::span<const std::funct
   return times_ms;
 }
 
-/// Returns for each turn the ratio of one contestant's time to another's. What slows both alike cancels out.
+/// Returns for each turn the ratio of one contestant's time to another's. Influences that slow both equally cancel out.
 inline std::vector<double> ratios_of(std::span<const double> times, std::span<const double> others) {
   std::vector<double> ratios;
   for (size_t i = 0; i < times.size(); ++i) ratios.push_back(times[i] / others[i]);

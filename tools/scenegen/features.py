@@ -259,7 +259,7 @@ def light_physical():
 
 
 def ambient_and_background():
-    """Ambient light alone, in the sky's warm colour: every object is one flat tone on the plain background."""
+    """Only ambient light, in the sky's warm colour: every object has one uniform colour on the plain background."""
     g = Gltf()
     g.sky((0.85, 0.52, 0.3), (0.9, 0.75, 0.65))
     for i, (name, color) in enumerate(PALETTE.items()):
@@ -289,7 +289,7 @@ def shadows():
 
 
 def mirrors():
-    """Two facing mirrors repeat what stands between them; a sphere and a cylinder show curved reflections."""
+    """Two facing mirrors repeat the objects between them; a sphere and a cylinder show curved reflections."""
     g = _stage(floor=(0.62, 0.5, 0.36), background=(0.5, 0.64, 0.78))
     mirror = g.material("mirror", (0.02, 0.03, 0.03), reflection=(0.88, 0.92, 0.9))
     frame = g.material("frame", (0.3, 0.12, 0.05), specular=0.3, shininess=20.0)
@@ -311,7 +311,7 @@ def mirrors():
 
 
 def emissive():
-    """Lanterns that show their own colour in the dark; emission lights nothing else."""
+    """Lanterns that show their own colour in the dark; emission does not light other objects."""
     g = _stage(floor=(0.4, 0.4, 0.42), background=(0.03, 0.035, 0.05), ambient=0.25, key=0.15)
     pole = g.cylinder("pole", 0.6, 0.06, g.material("pole", STONE))
     for i, (name, color) in enumerate(PALETTE.items()):
@@ -437,7 +437,7 @@ def _lid(radius, height, rings, columns):
 
 
 def rare_materials():
-    """Paper lanterns that their lamps shine through, leaves before the sun, thin films, brushed lids."""
+    """Translucent paper lanterns with lamps inside, leaves in front of the sun, thin films, brushed lids."""
     g = Gltf()
     g.sky((0.1, 0.13, 0.2), (0.1, 0.11, 0.14))
     g.node("floor", mesh=g.plane("floor", g.metallic_roughness("floor", STONE, 0.0, 0.9)))
@@ -457,7 +457,7 @@ def rare_materials():
     for i, (x, y, turn, tilt) in enumerate(((0.7, 0.5, 20.0, 65.0), (1.3, 0.75, -15.0, 100.0), (1.75, 0.35, 5.0, 40.0))):
         stem = g.node(f"stem {i}", translation=(x, y, 0.3), rotation=quaternion_about((0.0, 0.0, 1.0), tilt))
         g.node(f"leaf {i}", parent=stem, mesh=leaf, rotation=quaternion_about((1.0, 0.0, 0.0), 90.0 + turn))
-    # A stick between the sun and a leaf: its shadow shows through.
+    # A stick between the sun and a leaf. Its shadow is visible through the leaf.
     stick = g.cylinder("stick", 1.6, 0.03, g.metallic_roughness("stick", (0.2, 0.12, 0.06), 0.0, 0.8))
     g.node("stick", mesh=stick, translation=(1.05, 1.0, -0.15), rotation=axis_rotation((0.5, 1.0, 0.0)))
     for i, thickness in enumerate((150.0, 300.0, 450.0, 600.0)):
@@ -476,7 +476,7 @@ def rare_materials():
 
 
 def all_primitives():
-    """Every primitive and every term of the shading formula at once, as far as POV-Ray has the same."""
+    """Every primitive and every term of the shading formula that POV-Ray has too."""
     g = Gltf()
     g.sky((0.2, 0.3, 0.45), (0.2, 0.22, 0.25))
     floor = g.material("floor", (0.42, 0.4, 0.36), specular=0.1, shininess=20.0, reflection=0.15)

@@ -14,15 +14,15 @@ from .gltf import Gltf
 from .vectors import axis_rotation
 
 WIRES = 48
-# _HALF_HEIGHT is half the height of what the camera sees; _ROWS is the number of picture rows at which the wires have
-# the stated width.
+# _HALF_HEIGHT is half the height of the visible area; _ROWS is the number of picture rows at which the wires have the
+# stated width.
 _HALF_HEIGHT = 1.0
 _ROWS = 360
 _TEXTURE_SIZE = 256
 
 
 def wires():
-    """Makes wires of 1/8 to 1 pixel before a dark wall, at 360 rows. Each wire has a direction of its own."""
+    """Makes wires of 1/8 to 1 pixel in front of a dark wall, at 360 rows. Each wire has a different direction."""
     g = Gltf()
     g.sky(SKY, (0.3,) * 3)
     g.directional_light("sun", (0.4, -0.6, -1.0), intensity=0.8)
@@ -64,7 +64,7 @@ def _brick(x, y):
 
 
 def textures():
-    """Makes a floor of chequers that goes to the horizon, and a box of bricks. Each texel has its own noise."""
+    """Makes a chequered floor that extends to the horizon, and a box of bricks. Each texel has its own noise."""
     g = Gltf()
     g.sky(SKY, (0.3,) * 3)
     g.directional_light("sun", (0.5, -1.0, -0.6), intensity=3.0, classic=False)

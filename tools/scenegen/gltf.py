@@ -132,7 +132,7 @@ class Gltf:
 
     def glass(self, name, base_color=(1.0, 1.0, 1.0), ior=1.5, roughness=0.0, absorbed=None):
         """Adds a material of glass. It is a thin wall; `absorbed` makes it a volume: a colour, and the distance after
-        which that colour is left."""
+        which white light has this colour."""
         index = self.metallic_roughness(name, base_color, 0.0, roughness)
         extensions = {
             "KHR_materials_transmission": {"transmissionFactor": 1},
@@ -152,7 +152,7 @@ class Gltf:
         return index
 
     def coat(self, index, roughness, factor=1.0):
-        """Puts a layer of varnish on the same material."""
+        """Adds a layer of varnish to the material."""
         parameters = {"clearcoatFactor": shortest(factor), "clearcoatRoughnessFactor": shortest(roughness)}
         return self._extend(index, "KHR_materials_clearcoat", parameters)
 
@@ -163,7 +163,7 @@ class Gltf:
         return self._extend(index, "KHR_materials_sheen", parameters)
 
     def paper(self, name, base_color, share, color):
-        """Adds a matt wall that scatters a fraction of its light to the other side, in a colour of its own."""
+        """Adds a matt wall that scatters a fraction of its light to the other side, in a separate colour."""
         index = self.metallic_roughness(name, base_color, 0.0, 0.8)
         self._root["materials"][index]["doubleSided"] = True
         parameters = {"diffuseTransmissionFactor": shortest(share), "diffuseTransmissionColorFactor": _numbers(color)}
@@ -180,7 +180,7 @@ class Gltf:
         return self._extend(index, "KHR_materials_iridescence", parameters)
 
     def brushed(self, name, base_color, roughness, strength, rotation=0.0):
-        """Adds a metal whose grain runs along the texture coordinate u, or is turned from it by an angle."""
+        """Adds a metal whose grain is parallel to the texture coordinate u, or rotated by an angle."""
         index = self.metallic_roughness(name, base_color, 1.0, roughness)
         parameters = {"anisotropyStrength": shortest(strength), "anisotropyRotation": shortest(rotation)}
         return self._extend(index, "KHR_materials_anisotropy", parameters)

@@ -36,8 +36,8 @@ def box(width, height, depth):
 
 
 def tiled(mesh, tile_size):
-    """Returns the flat triangles of a mesh. The texture coordinates of each run along the two axes that it faces
-    least."""
+    """Returns the flat triangles of a mesh. The texture coordinates of each triangle are its coordinates along the two
+    axes with the smallest components of its normal."""
     positions, uvs = [], []
     for corners in zip(*[iter(mesh.indices)] * 3):
         a, b, c = (mesh.positions[i] for i in corners)
@@ -196,7 +196,7 @@ def torus(major, minor, rows, columns):
 def torus_knot(p, q, major, minor, tube, flutes, twists, depth, rows, columns):
     """Returns a (p, q) torus knot about the Y axis: a tube with a fluted, twisting section.
 
-    The knot goes p times about the axis and q times through the hole. The tube has `flutes` grooves of relative
+    The knot winds p times around the axis and q times through the hole. The tube has `flutes` grooves of relative
     `depth`, which make `twists` turns on the way.
     """
 

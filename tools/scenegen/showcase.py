@@ -32,7 +32,7 @@ def _polished(g, name, color, specular=0.45, shininess=60.0, reflection=0.08):
 
 
 def _floor_and_light(g):
-    # Far away, the point sources shine on the floor at a grazing angle and only the directional source adds light. With
+    # Far away, the point sources light the floor at a grazing angle, so only the directional source contributes. With
     # these factors the floor fades into the background at the horizon.
     reflection = 0.18
     sun = 0.22

@@ -7,7 +7,7 @@
 
 namespace promin::app {
 
-/// Returns whether the Escape key goes down in this frame of ImGui.
+/// Returns whether the Escape key is pressed in this frame of ImGui.
 bool is_escape_pressed();
 
 /// Dear ImGui for a window: its context and its backends for GLFW and Vulkan. No other code depends on ImGui's version.

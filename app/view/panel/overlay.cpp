@@ -19,7 +19,7 @@ namespace promin::app {
 namespace {
 
 const ImVec4 kFailureColor(1.0F, 0.45F, 0.35F, 1.0F);
-// Lengths in pixels of an ordinary display.
+// Lengths in pixels, for a display that does not scale.
 constexpr float kFontSize = 14.0F;
 constexpr float kMargin = 10.0F;
 constexpr float kPanelWidth = 290.0F;

@@ -6,7 +6,7 @@ namespace promin::app {
 
 /// The scale of the overlay, which is larger on displays with a high resolution.
 struct OverlayScale {
-  /// The number of pixels that correspond to one pixel of an ordinary display.
+  /// The number of pixels that correspond to one pixel of a display that does not scale.
   double content = 1.0;
   /// The number of pixels in a unit of the window's coordinates, in which the overlay is laid out.
   double pixel_ratio = 1.0;

@@ -104,9 +104,9 @@ class SceneReader {
                           primitive_count <= (kMaxObjects - scene_.objects.size()) / instance_count;
     if (has_room) return true;
     report_.refuse("scene.size.limit",
-                   "its " + std::to_string(instance_count) + " instances of " + std::to_string(triangle_count) +
-                       " triangles in " + std::to_string(primitive_count) +
-                       " primitives exceed the capacity of a scene",
+                   "the mesh has too many instances (" + std::to_string(instance_count) + "), triangles (" +
+                       std::to_string(triangle_count) + ") or primitives (" + std::to_string(primitive_count) +
+                       ") for a scene",
                    "nodes[" + std::to_string(placed.node) + "]", "use fewer instances, or a simpler mesh");
     return false;
   }

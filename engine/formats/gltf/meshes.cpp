@@ -179,7 +179,7 @@ class PrimitiveReader {
       if (weights_[target] == 0.0 || found == primitive_.targets[target].end()) continue;
       const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(found->second)];
       if (3 * accessor.count != values.size() || accessor.component_count != 3) {
-        report_.warn({"gltf.morph.count", "a morph target has another number of vertices than its mesh", "",
+        report_.warn({"gltf.morph.count", "a morph target has a different number of vertices than its mesh", "",
                       place_ + ".targets[" + std::to_string(target) + "]", "", "promin ignores it"});
         continue;
       }
@@ -198,7 +198,7 @@ class PrimitiveReader {
     for (const uint32_t vertex : used_vertices_) {
       const float* p = &values[3 * size_t{vertex}];
       if (!is_in_range(dvec3(p[0], p[1], p[2]))) {
-        report_.refuse("gltf.position.range", "a vertex coordinate is not finite or beyond 1e15",
+        report_.refuse("gltf.position.range", "a vertex coordinate is beyond 1e15 or not finite",
                        element_place("POSITION", vertex), "export the mesh again, in a larger unit of length");
         return;
       }
@@ -261,7 +261,7 @@ class PrimitiveReader {
       for (size_t i = 0; i < used_vertices_.size(); ++i) {
         const float* uv = &values[2 * size_t{used_vertices_[i]}];
         if (!is_coordinate(uv[0]) || !is_coordinate(uv[1])) {
-          report_.repair({"gltf.uv.range", "a texture coordinate is not finite or beyond 1e15",
+          report_.repair({"gltf.uv.range", "a texture coordinate is beyond 1e15 or not finite",
                           std::to_string(is_coordinate(uv[0]) ? uv[1] : uv[0]),
                           element_place(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", used_vertices_[i]),
                           "export the mesh again", "0 is used"});

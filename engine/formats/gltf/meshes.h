@@ -20,7 +20,7 @@ namespace promin {
 Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
                     const GltfPose* pose, LoadReport& report);
 
-/// Returns the number of a primitive's triangles, as far as it is known before data is read.
+/// Returns an upper bound for the number of a primitive's triangles, which is known before data is read.
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive);
 
 /// Adds the object that shows a mesh at a node. Its geometry is the mesh at `geometry`. If the node's transform is

@@ -170,15 +170,15 @@ class MtlParser {
       const std::optional<double> number = parse_number(word);
       if (!number || std::abs(*number) > kMaxCoordinate || (keyword == "illum" && *number < 0.0)) {
         return report_.repair({"mtl.number.range", keyword + " of a material is not a number from 0 to 1e15",
-                               quote(word), place(), "use numbers from 0, with a decimal point",
+                               quote(word), place(), "use numbers of 0 or more, with a decimal point",
                                "promin ignores the statement"});
       }
       is_negative = is_negative || *number < 0.0;
       numbers[count++] = *number;
     }
     if (is_negative && !is_among(kOfAnySign, keyword)) {
-      report_.repair(
-          {"mtl.number.range", keyword + " of a material is negative", "", place(), "use numbers from 0", "0 is used"});
+      report_.repair({"mtl.number.range", keyword + " of a material is negative", "", place(),
+                      "use numbers of 0 or more", "0 is used"});
       numbers = glm::max(numbers, dvec3(0.0));
     }
     if (count > 0) materials_.back().numbers[keyword] = count == 1 ? dvec3(numbers.x) : numbers;

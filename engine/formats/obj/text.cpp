@@ -153,8 +153,8 @@ class ObjParser {
     }
     vec3 color(n[3], n[4], n[5]);
     if (!numbers.are_good(6) || n[3] < 0.0 || n[4] < 0.0 || n[5] < 0.0) {
-      repair("obj.color.range", "a vertex colour is not three numbers from 0", numbers.bad_word, "use numbers from 0",
-             "white is used");
+      repair("obj.color.range", "a vertex colour is not three numbers of 0 or more", numbers.bad_word,
+             "use numbers of 0 or more", "white is used");
       color = vec3(1.0F);
     }
     out_.colors.resize(out_.positions.size() - 1, vec3(1.0F));
@@ -317,7 +317,7 @@ class ObjParser {
                        "index " + std::to_string(uint64_t{corner.position} + 1) +
                            " is out of range, because there are only " + std::to_string(out_.positions.size()) +
                            " vertices",
-                       place_of(line), "use an index up to their number");
+                       place_of(line), "use the index of one of them");
       } else if (BadVertex* bad = find_bad_vertex(corner.position); bad != nullptr) {
         bad->is_used = true;
         if (is_placed) {

@@ -228,7 +228,7 @@ class BodyReader {
   vec2 uv_of(double u, double v, const char* element) {
     // The comparison is written so that NaN fails.
     if (std::abs(u) <= kMaxCoordinate && std::abs(v) <= kMaxCoordinate) return vec2(dvec2(u, v));
-    report_.repair({"ply.uv.range", "a texture coordinate is not finite or beyond 1e15", "", place_of(element),
+    report_.repair({"ply.uv.range", "a texture coordinate is beyond 1e15 or not finite", "", place_of(element),
                     "export the mesh again", "0 is used"});
     return vec2(0.0F);
   }

@@ -114,7 +114,8 @@ class StlParser {
   }
 
   void end_facet() {
-    if (!is_in_facet_) return refuse("stl.facet.nested", "a facet ends that has not begun", "export the file again");
+    if (!is_in_facet_)
+      return refuse("stl.facet.nested", "the file ends a facet that has not begun", "export the file again");
     is_in_facet_ = false;
     std::vector<vec3>& all = solids_.back().corners;
     if (corners_.size() < 3) {

@@ -282,7 +282,8 @@ class SliceReader {
   uint32_t palette_count_;
   uint32_t selector_count_;
   History history_;
-  /// The palettes of the blocks of the row above. To the left of the next block, they are already those of its own row.
+  /// The palettes of the blocks of the row above. Entries to the left of the next block already belong to the current
+  /// row.
   std::vector<uint32_t> above_;
   std::vector<uint32_t> predictions_below_;
   uint32_t above_left_ = 0;

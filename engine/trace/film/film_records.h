@@ -42,7 +42,8 @@ struct ReadFilm {
   dvec3 part(uint32_t which, size_t pixel) const;
   /// Returns the range of the samples' colours, with FEATURE_SAMPLE_RANGES.
   ColorRange range(size_t pixel) const;
-  /// Returns the visible unlit surfaces in the form of Aovs::unlit, but summed over samples. With FEATURE_UNLIT_SHARE.
+  /// Returns the visible unlit surfaces in the form of Aovs::unlit, but summed over samples. Requires
+  /// FEATURE_UNLIT_SHARE.
   vec4 unlit(size_t pixel) const;
 };
 

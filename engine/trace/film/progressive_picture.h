@@ -31,8 +31,8 @@ struct ShownPicture {
   /// The accuracy; set for a picture with an error target.
   std::optional<PictureError> error;
 
-  /// Returns the view for which the picture is complete: `view`, which the picture shows, with the picture's number of
-  /// samples or error.
+  /// Returns `view` with the number of samples, or the error, that the picture has reached. A complete picture of the
+  /// returned view equals this picture.
   View view_of(View view) const;
 };
 inline constexpr size_t kFilmCount = 2;

@@ -31,7 +31,7 @@ struct TunedRendererOptions : RendererOptions {
   std::optional<uint32_t> packet_size = std::nullopt;
   /// A fixed number of 8x8 blocks per dispatch, for tests that tiles do not change bits. If 0, the number is adapted.
   uint32_t blocks_per_dispatch = 0;
-  /// If true, shaders read the scene from storage buffers even if texel buffers can hold it. The image keeps its bits.
+  /// If true, shaders read the scene from storage buffers even if texel buffers can hold it. The image does not change.
   bool avoids_texels = false;
   /// The shaders. Renderer::explain() does not use other shaders with the same bindings.
   PictureShaders shaders = picture_shaders();

@@ -110,7 +110,7 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
 
 RenderResult PictureTracer::render_to_error(const View& view, const ProgressCallback& progress) {
   RenderResult result = begin_refined(view, progress);
-  // All parts are assumed to take as long as the earlier parts, as far as their times are known.
+  // The estimate assumes that the later parts take as long as the earlier parts.
   double taken = 0.0;
   double pixels_done = 0.0;
   double told = 0.0;

@@ -133,7 +133,7 @@ void check_same(const PicturePart& part, const PicturePart& first, const fs::pat
     throw InputError({"job.piece.other", "the piece does not belong to the same picture as the other pieces",
                       file.string(), "remove it and run the job again"});
   if (part.metadata.size() != first.metadata.size()) {
-    throw InputError({"job.piece.other", "the piece has other metadata than the other pieces", file.string(),
+    throw InputError({"job.piece.other", "the piece's metadata differ from those of the other pieces", file.string(),
                       "remove it and run the job again"});
   }
   for (size_t i = 0; i < part.metadata.size(); ++i) {

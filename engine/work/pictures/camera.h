@@ -48,8 +48,8 @@ class FreeCamera {
   dvec3 up() const;
   dvec3 right() const;
 
-  /// Returns pose and projection for the renderer. Position and directions keep their bits if the camera was neither
-  /// moved nor rotated.
+  /// Returns pose and projection for the renderer. Position and directions are unchanged, bit for bit, if the camera
+  /// was neither moved nor rotated.
   const Camera& camera() const { return camera_; }
 
  private:

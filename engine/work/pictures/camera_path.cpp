@@ -123,7 +123,7 @@ glm::dquat rotation_of(const Camera& camera) {
 
 /// Returns a camera between two cameras. `share` is in (0, 1).
 Camera interpolate(const Camera& from, const Camera& to, double share) {
-  // A camera that does not move keeps its bits.
+  // A camera that does not move is returned unchanged, without rounding.
   if (shows_same(from, to)) return from;
   const auto mix = [&](const auto& a, const auto& b) { return a + share * (b - a); };
   const auto mix_real = [&](float a, float b) { return static_cast<float>(mix(double{a}, double{b})); };

@@ -8,8 +8,8 @@
 
 namespace promin::work {
 
-/// Receives sentences that work reports in addition to its results. This class ignores them, as the Python module does;
-/// a program's class prints them.
+/// Receives the notes and warnings of a task. This class ignores them, as the Python module does. The programs derive a
+/// class that prints them.
 class Messages {
  public:
   virtual ~Messages() = default;

@@ -158,7 +158,7 @@ void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
     if (index < scene.lights.size()) continue;
     throw UsageError({"light.unknown", fmt::format("the scene has no light {} to switch off", index),
                       scene.file.string(),
-                      fmt::format("the scene has {} in all, and the first is number 0", scene.lights.size())});
+                      fmt::format("the number of lights is {}, and the first light is number 0", scene.lights.size())});
   }
 }
 

@@ -227,7 +227,7 @@ struct PowerOfTwo {
 struct Indices {
   Json write(const std::vector<uint32_t>& value) const { return value; }
   std::vector<uint32_t> read(const Json& json) const {
-    if (!json.is_array()) refuse_value("numbers from 0", json);
+    if (!json.is_array()) refuse_value("numbers of 0 or more", json);
     std::vector<uint32_t> numbers;
     for (const Json& part : json) numbers.push_back(read_whole(part, 0, std::numeric_limits<uint32_t>::max()));
     std::ranges::sort(numbers);

@@ -7,7 +7,7 @@
 namespace promin {
 
 /// A solid box aligned with the axes of its own space. A transform must preserve the box's right angles, but may scale
-/// each axis by another factor. Sizes in the world lie between 1e-22 and 1e15 in the world.
+/// each axis by another factor. Sizes lie between 1e-22 and 1e15 in the world.
 struct Box {
   /// Centre of the box.
   dvec3 center{0.0};

@@ -51,7 +51,7 @@ Inside hull_of(Inside a, Inside b) {
                 takes_exit ? b.exit : a.exit, takes_exit ? b.exit_part : a.exit_part);
 }
 
-// Returns the approach to a point. `from_point` leads from this point to the ray's origin.
+// Returns the approach to a point. `from_point` is the vector from this point to the ray's origin.
 Approach approach_from(Ray ray, vec3 from_point) {
   ray.origin = from_point;
   return approach(ray, vec3(0.0));

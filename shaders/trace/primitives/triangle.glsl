@@ -17,7 +17,7 @@ float dot2(vec2 a, vec2 b) {
 
 // A triangle projected to a plane, such that the ray passes through the plane's origin.
 struct ShearedTriangle {
-  bool may_be_met;  // whether the ray may hit it, as far as the areas show; cross_triangle decides
+  bool may_be_met;  // whether the tests so far allow a hit; cross_triangle decides
   float least;      // the smallest area; negative if an area and the determinant have different signs
   float determinant;
   vec2 a;
@@ -44,7 +44,7 @@ ShearedTriangle shear_triangle(Ray ray, Primitive p) {
   precise float determinant = u + v + w;
   float least = lesser(lesser(times_sign_of(u, determinant), times_sign_of(v, determinant)),
                        times_sign_of(w, determinant));
-  // True if the triangle is not seen edge-on, and the inverse of its area is a float.
+  // True if the ray does not see the triangle edge-on, and the inverse of the area does not overflow.
   bool has_area = abs(determinant) >= SMALLEST_NORMAL;
   return ShearedTriangle(least >= 0.0 && has_area, least, determinant, a2, b2, c2, vec3(u, v, w), vec3(a.z, b.z, c.z));
 }

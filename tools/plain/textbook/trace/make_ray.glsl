@@ -19,7 +19,7 @@ float shifted_tmin(float tmin, float shift) {
 
 Ray make_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
   Ray ray;
-  // The interface needs this scale, not robustness: cast.glsl gives t in its units.
+  // The scale is not for robustness. The interface needs it, because cast.glsl returns t in these units.
   float scale = power_of_two_inverse(max_abs(direction));
   ray.origin = origin;
   ray.direction = direction * scale;

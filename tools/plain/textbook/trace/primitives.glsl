@@ -91,7 +91,7 @@ Crossing intersect_cone(Ray ray, Primitive p) {
   return intersect_frustum(ray, p.a.xyz, p.b.xyz, p.b.w, p.a.w, cone_top(p), (p.c.x & SHAPE_IS_OPEN) != 0u);
 }
 
-// Tests slabs, in the frame that the rotation matrix of the box's quaternion leads to.
+// Tests slabs in the box's frame. The columns of the quaternion's rotation matrix are the axes of this frame.
 mat3 box_axes(Primitive p) {
   vec3 q = vec3(p.b.zw, uintBitsToFloat(p.c.x));
   float w = sqrt(1.0 - dot(q, q));
