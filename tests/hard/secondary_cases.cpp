@@ -138,10 +138,10 @@ void run_contact(Lab& lab) {
     uint64_t shadowed = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
       const oracle::Hit exact =
-          oracle::find_nearest_hit(scene, {Vector(rays[i].origin), Vector(rays[i].direction), 0, oracle::kNoEnd});
+          oracle::find_nearest_hit(scene, {Vector(rays[i].origin), Vector(rays[i].direction), 0, oracle::kInfinity});
       if (!bounces[i].is_hit || !exact.exists() || glm::dot(exact.normal, Vector(to_light)) <= 0) continue;
       const Vector point = Vector(rays[i].origin) + exact.t * Vector(rays[i].direction);
-      const oracle::Ray exact_shadow{point, Vector(to_light), 1e-12L, oracle::kNoEnd};
+      const oracle::Ray exact_shadow{point, Vector(to_light), 1e-12L, oracle::kInfinity};
       if (!oracle::is_occluded(scene, exact_shadow)) continue;
       ++shadowed;
       if (blockers[i].t == 0.0F) continue;
