@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include "output/run_program.h"
+#include "output/message_of.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -91,16 +91,16 @@ TEST_F(PlyTest, ZeroBytesBehindATextAreCutOff) {
 
 /// Each type of numbers can hold its whole range, in both byte orders.
 TEST_F(PlyTest, BinaryFilesHoldEveryType) {
-  struct Kind {
+  struct NumberKind {
     const char* names[2];
     double lowest;
   };
-  const Kind kinds[] = {{{"char", "int8"}, -128},          {{"uchar", "uint8"}, 255},
-                        {{"short", "int16"}, -32768},      {{"ushort", "uint16"}, 65535},
-                        {{"int", "int32"}, -2147483648.0}, {{"uint", "uint32"}, 4294967295.0},
-                        {{"float", "float32"}, -0.15625},  {{"double", "float64"}, 0.1}};
+  const NumberKind kinds[] = {{{"char", "int8"}, -128},          {{"uchar", "uint8"}, 255},
+                              {{"short", "int16"}, -32768},      {{"ushort", "uint16"}, 65535},
+                              {{"int", "int32"}, -2147483648.0}, {{"uint", "uint32"}, 4294967295.0},
+                              {{"float", "float32"}, -0.15625},  {{"double", "float64"}, 0.1}};
   for (const std::endian order : {std::endian::little, std::endian::big}) {
-    for (const Kind& kind : kinds) {
+    for (const NumberKind& kind : kinds) {
       for (const std::string name : kind.names) {
         PlyBuilder ply(order);
         ply.header("element vertex 3\nproperty " + name + " x\nproperty " + name + " y\nproperty " + name +

@@ -543,9 +543,9 @@ void run_slivers(Lab& lab) {
         const world::Scene scene = scene_of({mesh});
         const std::vector<Hit> hits = lab.cast(scene, rays);
         leaks += count_misses(hits);
-        constexpr size_t kJudged = 100;  // the number of rays that are checked by brute force
-        tally.add(Lab::judge(scene, std::span(rays).first(kJudged), std::span(hits).first(kJudged)));
-        tally.rays += rays.size() - kJudged;
+        constexpr size_t kJudgedHits = 100;  // the number of rays that are checked by brute force
+        tally.add(Lab::judge(scene, std::span(rays).first(kJudgedHits), std::span(hits).first(kJudgedHits)));
+        tally.rays += rays.size() - kJudgedHits;
         worst = std::max(worst, worst_plane_distance(lab, scene, mesh, rays));
       }
       const std::string where = ", " + kind + label(" of aspect", aspect);
