@@ -26,14 +26,20 @@ vk::BufferUsageFlags usage_for(vk::DescriptorType type) {
   return vk::BufferUsageFlagBits::eStorageBuffer;
 }
 
+vk::DeviceSize size_for(const BoundBuffer& bound) {
+  const vk::DeviceSize bytes = bound.buffer->size_bytes();
+  // Uniform buffers are small, and their largest size may be that of a stand-in.
+  if (bound.type == vk::DescriptorType::eUniformBuffer) return bytes;
+  return kStandInBytes + (std::has_single_bit(bytes) ? 0 : kTexelBytes);
+}
+
 /// Buffers on another device that have the same kinds as the given ones. All bytes are zero, so a kernel finds no work.
 class StandIns {
  public:
   StandIns(const Device& device, std::span<const BoundBuffer> buffers) {
-    const std::vector<std::byte> zeros(kStandInBytes + kTexelBytes);
+    const std::vector<std::byte> zeros(2 * kStandInBytes);
     for (const BoundBuffer& bound : buffers) {
-      const bool is_power_of_two = std::has_single_bit(bound.buffer->size_bytes());
-      const vk::DeviceSize bytes = kStandInBytes + (is_power_of_two ? 0 : kTexelBytes);
+      const vk::DeviceSize bytes = size_for(bound);
       Buffer& buffer = buffers_.emplace_back(device, bytes, usage_for(bound.type));
       buffer.write(std::span(zeros).first(bytes));
       const bool is_texels = bound.view != nullptr;

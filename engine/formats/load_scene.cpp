@@ -170,9 +170,9 @@ void refuse_folder(const std::filesystem::path& file) {
     if (scenes.size() > kMostNamed) scenes.erase(std::prev(scenes.end()));
   }
   std::string names;
-  for (const std::string& name : scenes) names.append(names.empty() ? "it holds " : " and ").append(name);
+  for (const std::string& name : scenes) names.append(names.empty() ? "it contains " : " and ").append(name);
   throw InputError({"file.folder", "the scene is a folder, not a file", file.string(),
-                    names.empty() ? "name " + name_endings() : names + "; give a file"});
+                    names.empty() ? "use " + name_endings() : names + "; give a file"});
 }
 
 const SceneFormat& find_format(const std::filesystem::path& file) {

@@ -288,7 +288,7 @@ def test_a_pickled_scene_refuses_another_file(tmp_path: Path, scenes: Path) -> N
     file.write_text(text)
     data = pickle.dumps(promin.Scene.load(file))
     file.write_text(text.replace("1 0 0", "2 0 0"))
-    with pytest.raises(promin.InputError, match="scene's file has changed since it was pickled"):
+    with pytest.raises(promin.InputError, match="the file has changed since the scene was pickled"):
         pickle.loads(data).objects
 
 

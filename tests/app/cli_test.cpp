@@ -181,7 +181,7 @@ TEST_F(CliTest, BadScenesAreRefused) {
 }
 
 TEST_F(CliTest, AFolderNamesItsScenes) {
-  const std::string named = "it holds square.gltf and triangle.obj; give a file";
+  const std::string named = "it contains square.gltf and triangle.obj; give a file";
   for (const char* place : {".", "./"}) {
     expect_failure(run({place}), 3, std::string(place) + ": the scene is a folder, not a file; " + named);
   }
@@ -427,7 +427,7 @@ TEST_F(CliTest, VariantsAreChosenByName) {
   EXPECT_EQ(run({"info", "cars.gltf", "--variant", "green"}).exit_code, 0);
   expect_failure(run({"info", "cars.gltf", "--variant", "blue"}), 2, "scene.variant.unknown \"red\", \"green\"");
   expect_failure(run({"render", "cars.gltf", "-o", "a.exr", "--variant", "blue"}), 2, "scene.variant.unknown \"blue\"");
-  expect_failure(run({"info", "square.gltf", "--variant", "blue"}), 2, "scene.variant.unknown \"blue\" other");
+  expect_failure(run({"info", "square.gltf", "--variant", "blue"}), 2, "scene.variant.unknown \"blue\" remove");
   expect_failure(run({"info", "triangle.obj", "--variant", "blue"}), 2, "scene.variant.unknown .obj");
 }
 

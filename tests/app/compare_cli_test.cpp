@@ -67,8 +67,8 @@ TEST_F(CompareCliTest, MoreThanTheLimitIsFive) {
   EXPECT_EQ(compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.53"}).exit_code, 0) << "1 of 192";
   const ProcessResult share = compare({"a.exr", "b.exr", "--fail", "0.25", "--fail-percent", "0.52"});
   EXPECT_EQ(share.exit_code, 5);
-  EXPECT_THAT(share.err, HasSubstr("1 pixel differs by more than 0.25, 0.520833 % where 0.52 % is allowed, the "
-                                   "most at"));
+  EXPECT_THAT(share.err, HasSubstr("1 pixel differs by more than 0.25, 0.520833 % where 0.52 % is allowed, with "
+                                   "the largest difference at"));
 }
 
 TEST_F(CompareCliTest, LimitsOfCodesAreFractions) {

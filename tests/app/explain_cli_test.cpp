@@ -81,7 +81,7 @@ TEST_F(CliTest, ShadingsShowOtherThanLight) {
   const Image normals = render({"square.gltf", "--size", "64", "36", "--shading", "normals"}, "a.exr");
   EXPECT_EQ(normals.at(32, 18), vec3(0.5F, 0.5F, 1.0F));
   EXPECT_EQ(normals.at(0, 0), vec3(0.0F));
-  expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--shading", "light"}), 2, "--shading takes full or ");
+  expect_failure(run({"render", "square.gltf", "-o", "b.exr", "--shading", "light"}), 2, "--shading takes full, ");
 }
 
 TEST(ExplanationTest, TextNamesWhatIsHitAndWhatIsInTheWay) {

@@ -71,7 +71,7 @@ TEST_F(ContactSheetTest, ASceneThatCannotBeReadLeavesAnEmptyPlace) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("bad.obj"));
   EXPECT_THAT(run({"contact-sheet", ".", "-o", "empty.png", "--size", "16x12"}).err,
-              HasSubstr(".: the scene is a folder, not a file; it holds bad.obj and square.gltf; give a file"));
+              HasSubstr(".: the scene is a folder, not a file; it contains bad.obj and square.gltf; give a file"));
   EXPECT_THAT(result.err, HasSubstr("1 of 2 scenes is not on the sheet"));
   const Image sheet = read_image(folder() / "sheet.png");
   const std::vector<vec3> empty = cut(sheet, {12, 12}, {16, 12});

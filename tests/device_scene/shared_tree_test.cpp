@@ -102,7 +102,7 @@ TEST_F(SharedTreeTest, WhatIsDamagedIsBuiltAgain) {
   write_bvh_file(folder_ / "other.pbvh", pack_scene(other, "median").tree());
   for (const auto& [bytes, why] : {std::pair(std::vector(whole.begin(), whole.end() - 100), "bytes, but its header"),
                                    std::pair(std::vector<std::byte>(), "empty"), std::pair(flipped, "damaged"),
-                                   std::pair(read_file(folder_ / "other.pbvh"), "stale")}) {
+                                   std::pair(read_file(folder_ / "other.pbvh"), "does not belong")}) {
     write(bytes);
     const PackedScene packed = pack(scene_);
     EXPECT_EQ(packed.file, nullptr);

@@ -135,10 +135,10 @@ TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {
               AllOf(StartsWith(where), HasSubstr("; use a file with one of the extensions .gltf, .glb")));
   write("notes.txt", "");
   write("c.nff", "");
-  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds c.nff; give a file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("; it contains c.nff; give a file"));
   write("b.GLB", "");
   write("a.obj", "");
-  EXPECT_THAT(refusal(folder_), HasSubstr("; it holds a.obj and b.GLB; give a file"));
+  EXPECT_THAT(refusal(folder_), HasSubstr("; it contains a.obj and b.GLB; give a file"));
   std::filesystem::create_directory(folder_ / "d.gltf");
   EXPECT_THAT(refusal(folder_ / "d.gltf"), HasProblem("file.folder"));
 }

@@ -340,11 +340,11 @@ TEST_F(BadGltfFileTest, GlbLengthsAreChecked) {
   EXPECT_THAT(refusal("a.glb", good.substr(0, 10)), HasProblem("glb.short"));
   EXPECT_THAT(refusal("a.glb", good.substr(0, good.size() - 4)), HasProblem("glb.short 44 40"));
   EXPECT_THAT(spoiled(4, 1), HasSubstr("the file is glTF 1.0"));
-  EXPECT_THAT(spoiled(4, 3), HasSubstr("version 3"));
+  EXPECT_THAT(spoiled(4, 3), HasSubstr("version is 3"));
   EXPECT_THAT(spoiled(12, 0xFFFFFFF0), HasSubstr("chunk declares"));
   EXPECT_THAT(spoiled(12, json_length + 8), testing::Not(""));
   EXPECT_THAT(spoiled(16, 7), HasSubstr("is not JSON"));
-  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk declares 52 bytes, 44 remain"));
+  EXPECT_THAT(spoiled(binary, 52), HasSubstr("chunk declares 52 bytes, but only 44 bytes remain"));
   EXPECT_THAT(spoiled(binary + 4, 7), HasSubstr("has no bytes")) << "a chunk of unknown type is skipped";
 }
 

@@ -267,7 +267,7 @@ const GltfRepair kGltfRepairs[] = {
        g.json["bufferViews"][0]["byteStride"] = 14;
        g.json["bufferViews"][0]["byteLength"] = 40;
      },
-     "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (14); it is used as it is"},
+     "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (14); promin uses it as it is"},
     {"NoStride", [](auto& g) { g.json["bufferViews"][0]["byteStride"] = 0; },
      "bufferViews[0].byteStride: a stride is not a multiple of 4 from 4 to 252 (0); promin reads the elements without "
      "a stride"},

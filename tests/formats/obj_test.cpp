@@ -170,7 +170,7 @@ TEST_F(ObjTest, FacesWithoutNormalsAreSharp) {
   for (const size_t sharp : {1, 2}) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(mesh.normals.at(mesh.triangles[sharp][i]), vec3(0, 0, 1));
   }
-  EXPECT_THAT(mixed.warnings, ElementsAre(HasSubstr("no length")));
+  EXPECT_THAT(mixed.warnings, ElementsAre(HasSubstr("length 0")));
 }
 
 TEST_F(ObjTest, VertexColorsFollowThePosition) {
@@ -480,8 +480,8 @@ TEST_F(ObjTest, NoMtlRefusesAMesh) {
 TEST_F(ObjTest, AMissingMtlIsGrey) {
   const LoadedScene scene = load(kSquare + "mtllib none.mtl\nusemtl red\nf 1 2 3\n");
   EXPECT_EQ(scene.materials.at(scene.objects[0].material).phong().diffuse, vec3(0.8F));
-  EXPECT_THAT(scene.warnings,
-              ElementsAre(HasSubstr("\"none.mtl\" is not read"), HasSubstr("\"red\" is not defined in any MTL")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"none.mtl\", so its materials are grey"),
+                                          HasSubstr("\"red\" is not defined in any MTL")));
 }
 
 TEST_F(ObjTest, FacesKeepTheirMaterials) {
@@ -664,7 +664,7 @@ TEST_F(ObjMapTest, WhatCannotBeReadIsSaidAndLeftOut) {
       testing::UnorderedElementsAre(
           testing::StartsWith("a referenced file does not exist (\"none.png\"); promin draws materials without it"),
           testing::StartsWith("image \"broken.png\": a picture cannot be used: its format is unknown"),
-          testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); materials"),
+          testing::StartsWith("the path of a file leads out of the scene's folder (\"../b.png\"); promin"),
           testing::StartsWith("image \"empty.png\": the file is empty")));
   const Material& material = scene.materials.at(0);
   EXPECT_EQ(material.phong().diffuse, vec3(0.8F));

@@ -52,7 +52,7 @@ TEST_F(ScenePathTest, WhatLiesElsewhereNeedsTheRoot) {
   for (const auto& [name, root, text] :
        {std::tuple("../textures/c.png", "textures", "textures/c.png"),
         std::tuple("up/c.png", "textures", "textures/c.png"), std::tuple("link.png", "store", "store/1234")}) {
-    EXPECT_THAT(read(name), HasProblem("scene.name.outside (--root DIR)")) << name;
+    EXPECT_THAT(read(name), HasProblem("scene.name.outside --root DIR")) << name;
     EXPECT_EQ(read(name, root), text) << name;
     EXPECT_EQ(read(name, "."), text) << name;
     EXPECT_THAT(read(name, "scene"), HasProblem("scene.name.outside root")) << name;

@@ -72,7 +72,8 @@ TEST_F(FilmTest, TheSecondDeviceCompilesTheVariantThatTheFirstUses) {
   if (!device().profile().compiles_on_second_device) GTEST_SKIP() << "the driver compiles no kernels in dispatches";
   const uintmax_t bytes = cache_bytes(false);
   EXPECT_GT(bytes, 0U);
-  EXPECT_EQ(cache_bytes(true), bytes);
+  // Files of the cache are compressed, and their sizes vary by some bytes. Another variant would add a tenth.
+  EXPECT_NEAR(static_cast<double>(cache_bytes(true)), static_cast<double>(bytes), 0.01 * static_cast<double>(bytes));
 }
 
 }  // namespace
