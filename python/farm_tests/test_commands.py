@@ -312,7 +312,7 @@ def test_rays_of_zarr_are_those_of_numpy(tmp_path: Path, monkeypatch: pytest.Mon
     zarr.open_array(str(tmp_path / "flat.zarr"), mode="w", shape=(8,), chunks=(8,), dtype="float32")
     with pytest.raises(jobs.InputError, match="an array of N x 8 float32 numbers"):
         module.prepare_rays([str(tmp_path / "flat.zarr")], tmp_path / "other")
-    with pytest.raises(jobs.InputError, match="no array of zarr"):
+    with pytest.raises(jobs.InputError, match="the zarr array cannot be opened"):
         module.prepare_rays([str(tmp_path / "nothing.zarr")], tmp_path / "other")
 
 
