@@ -37,6 +37,7 @@ void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_silence_s, 120.0);
   EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
+  EXPECT_FALSE(profile.compiles_on_second_device);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
   EXPECT_EQ(profile.samples_that_repay_packets, 0U);
   EXPECT_GE(profile.most_stream_paths, 1U << 17);
@@ -67,6 +68,7 @@ void expect_cpu(const DeviceProfile& profile) {
 void expect_cpu_without_packets(const DeviceProfile& profile) {
   expect_cpu(profile);
   EXPECT_FALSE(profile.may_cut_loops);
+  EXPECT_FALSE(profile.compiles_on_second_device);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
   EXPECT_EQ(profile.ray_packet_size, 1U);
 }
@@ -75,6 +77,11 @@ TEST(ProfileTest, GpusTakePixelsAndRaysAsTheyCome) {
   expect_gpu(profile_of(false, kNvidia));
   expect_gpu(profile_of(false, kIntel));
   expect_gpu(profile_of(false, 0));
+}
+
+TEST(ProfileTest, LavapipeCompilesOnASecondDeviceIfThereIsAnotherCore) {
+  EXPECT_TRUE(profile_of(true, kLlvmpipe, 2).compiles_on_second_device);
+  EXPECT_FALSE(profile_of(true, kLlvmpipe, 1).compiles_on_second_device);
 }
 
 TEST(ProfileTest, LavapipeTakesPacketsAndMayCutLoops) {
