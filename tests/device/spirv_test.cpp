@@ -61,6 +61,7 @@ TEST(SpecializeTest, WhatIsLeftIsValid) {
     SCOPED_TRACE(testing::PrintToString(std::tuple(constants.first, constants.second, constants.third)));
     EXPECT_EQ(find_faults(specialize(k_branches_spirv, constants.list())), "");
     EXPECT_EQ(find_faults(specialize(branches_with_calls(), constants.list())), "");
+    EXPECT_EQ(find_faults(specialize(read_spirv(PROMIN_BRANCHES_WITH_PHIS), constants.list())), "");
   }
 }
 

@@ -42,12 +42,14 @@ class PipelineTest : public test::DeviceTest {
 // Pipelines are compiled from the code that is live with the values of the constants.
 TEST_F(PipelineTest, ComputesTheSameWithoutItsDeadCode) {
   const std::vector<uint32_t> with_calls = read_spirv(PROMIN_BRANCHES_SPIRV);
+  const std::vector<uint32_t> with_phis = read_spirv(PROMIN_BRANCHES_WITH_PHIS);
   for (const test::BranchConstants& constants : test::all_branch_constants()) {
     SCOPED_TRACE(testing::PrintToString(std::tuple(constants.first, constants.second, constants.third)));
     std::vector<uint32_t> expected(500);
     for (uint32_t i = 0; i < expected.size(); ++i) expected[i] = test::Branches(constants).compute(i);
     EXPECT_EQ(run(k_branches_spirv, constants), expected);
     EXPECT_EQ(run(with_calls, constants), expected);
+    EXPECT_EQ(run(with_phis, constants), expected);
   }
 }
 
