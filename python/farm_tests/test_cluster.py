@@ -19,9 +19,12 @@ from conftest import Farm, wait_for
 
 
 def kill_workers(farm: Farm, process: subprocess.Popen[str], mean_s: float, most: int) -> int:
-    """Kills a worker at random times until the command ends. Returns the number of killed workers."""
+    """Kills a worker at random times from the first finished piece until the command ends. Returns the number of killed
+    workers."""
     dice = random.Random(1)
     killed = 0
+    while process.poll() is None and not farm.events("done"):
+        time.sleep(0.01)
     while process.poll() is None:
         time.sleep(dice.expovariate(1.0 / mean_s))
         pids = farm.worker_pids()
