@@ -228,11 +228,10 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
   // The condition is written so that a NaN is refused.
   if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
     refuse_option(i);
-    std::string words;
-    for (size_t k = 0; k < others.size(); ++k) {
-      words += (k + 1 == others.size() ? " or " : ", ") + std::string(others[k]);
-    }
-    refuse(fmt::format("{} takes a number from {:g} to {:g}{}, not {}", option_, min, max, words, quote(i)),
+    const std::string range = fmt::format("a number from {:g} to {:g}", min, max);
+    std::vector<std::string_view> choices = {range};
+    choices.insert(choices.end(), others.begin(), others.end());
+    refuse(fmt::format("{} takes {}, not {}", option_, list_choices(choices), quote(i)),
            nearest_name(words_[i], others));
   }
   return number;

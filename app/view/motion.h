@@ -19,7 +19,7 @@ struct Motion {
   dvec3 travel{0.0};
   /// Seconds for which the camera rolled, anticlockwise.
   double roll = 0.0;
-  // Movement of the pointer in pixels, to the right and down, while it turned the camera.
+  /// The pointer's movement in pixels, to the right and down, while it turned the camera.
   dvec2 turn{0.0};
   /// The pointer's movement while it orbited the camera around the point at which it looks.
   dvec2 orbit{0.0};

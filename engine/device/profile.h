@@ -35,20 +35,23 @@ struct TraversalForm {
 /// a hit. The defaults are for a GPU, whose lanes have few registers, which hides latency by itself, and whose driver
 /// kills dispatches of seconds.
 struct DeviceProfile {
-  // Settings for reading the scene. The largest size of a buffer in bytes for which the scene is read as texels. If a
-  // buffer is larger, the scene is read from storage buffers. A CPU driver loads storage buffers word by word, but a
-  // texel in one step.
+  // Settings for reading the scene.
+
+  /// The largest size of a buffer in bytes for which the scene is read as texels. If a buffer is larger, the scene is
+  /// read from storage buffers. A CPU driver loads storage buffers word by word, but a texel in one step.
   uint64_t most_texel_bytes = 0;
   /// True if the stream of a picture is read as texels. This needs a texel buffer that can hold a film.
   bool fetches_film_texels = false;
 
-  // The form of traversal for packets of rays.
+  /// The form of traversal for packets of rays.
   TraversalForm packet_traversal;
   /// The form of traversal for single rays.
   TraversalForm ray_traversal;
 
-  // Settings for dividing work into dispatches and workgroups. The target duration of a dispatch in milliseconds. At
-  // the end of each dispatch, the threads of a CPU driver wait for the slowest one.
+  // Settings for dividing work into dispatches and workgroups.
+
+  /// The target duration of a dispatch in milliseconds. At the end of each dispatch, the threads of a CPU driver wait
+  /// for the slowest one.
   double target_dispatch_ms = 25.0;
   /// True if the driver compiles a kernel in one thread at the kernel's first dispatch, keeps the result in a cache on
   /// the disk, and the host has another core. Kernels then compile on two devices at the same time (side_compiler.h).
@@ -61,8 +64,9 @@ struct DeviceProfile {
   /// checks whether it did.
   bool may_cut_loops = false;
 
-  // Settings for pictures. Number of pixels that a lane of the camera stage traces together: 1, 2 or
-  // 4.
+  // Settings for pictures.
+
+  /// Number of pixels that a lane of the camera stage traces together: 1, 2 or 4.
   uint32_t pixel_packet_size = 1;
   /// Number of samples below which each lane traces one pixel, because that kernel compiles faster and traces slower.
   uint64_t samples_that_repay_packets = 0;
@@ -70,22 +74,27 @@ struct DeviceProfile {
   /// be large enough to fill the device at late bounces too.
   uint32_t most_stream_paths = 1U << 18;
 
-  // Settings for casting rays. Number of neighbouring rays that a lane traces together: 1, or RayTiler::kPacketSize.
-  // For packets, rays are ordered in tiles.
+  // Settings for casting rays.
+
+  /// Number of neighbouring rays that a lane traces together: 1, or RayTiler::kPacketSize. For packets, rays are
+  /// ordered in tiles.
   uint32_t ray_packet_size = 1;
   /// True if rays without similar neighbours are sorted.
   bool sorts_rays = false;
 
-  // Settings for the frames of a window. Largest number of frames in flight. One is enough if nothing would run in
-  // parallel and the next frame would only show an older camera.
+  // Settings for the frames of a window.
+
+  /// Largest number of frames in flight. One is enough if nothing would run in parallel and the next frame would only
+  /// show an older camera.
   uint32_t most_frames_in_flight = 2;
   /// True if a frame is presented only after the device has finished it, because presenting would otherwise wait.
   bool presents_late = false;
   /// True if frames usually take less time than the display's refresh interval.
   bool keeps_up_with_display = true;
 
-  // Settings for measurements. Number of rays in a dispatch whose speed is measured. It must be large enough to fill
-  // the device.
+  // Settings for measurements.
+
+  /// Number of rays in a dispatch whose speed is measured. It must be large enough to fill the device.
   uint32_t measured_rays = 1U << 20;
 };
 

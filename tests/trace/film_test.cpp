@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "device/device.h"
 #include "device/side_compiler.h"
@@ -65,6 +67,19 @@ uintmax_t cache_bytes(bool on_second_device) {
   unsetenv("MESA_SHADER_CACHE_DIR");
   if (before) setenv("MESA_SHADER_CACHE_DIR", before->c_str(), 1);
   return bytes;
+}
+
+// A picture keeps its films in a vector, which moves them.
+TEST_F(FilmTest, TheSideKernelHasTheBuffersOfAMovedFilm) {
+  const world::Scene scene = test::make_scene_of_everything();
+  const PackedScene packed = pack_scene(scene, "sah");
+  Film film(device(),
+            upload_scene(device(), packed, {scene.materials, scene.textures, scene.lights, scene.environment}),
+            features_of(scene));
+  const Film moved = std::move(film);
+  const auto kernel = moved.side_kernel();
+  ASSERT_TRUE(kernel);
+  EXPECT_TRUE(std::ranges::any_of(kernel->buffers, [&](const auto& bound) { return bound.buffer == &moved.buffer(); }));
 }
 
 // Otherwise the second device would compile another variant of the kernel, which no device uses.

@@ -231,6 +231,11 @@ FilmCounts Film::take_counts() const {
   return {sum_counts(target.mapped()), were_loops_cut(target.mapped())};
 }
 
+std::optional<gpu::KernelSource> Film::side_kernel() const {
+  if (!stream_) return std::nullopt;
+  return stream_->largest_kernel(buffers());
+}
+
 void Film::warm_up() {
   if (is_listed()) put_list({});
   View one_pixel;
@@ -239,7 +244,7 @@ void Film::warm_up() {
   TileScheduler picture = cut(one_pixel, {uvec2(0), uvec2(1)}, piece_options(one_pixel.max_depth));
   const TileSample piece = picture.next(1.0);
   std::optional<gpu::SideCompiler> largest;
-  if (side_kernel() != nullptr) largest.emplace(*device_, *side_kernel());
+  if (const auto kernel = side_kernel()) largest.emplace(*device_, *kernel);
   device_->run([&](const vk::raii::CommandBuffer& commands) {
     record_begin(commands, picture);
     record(commands, piece);

@@ -87,9 +87,9 @@ class Film {
   FilmCounts take_counts() const;
   /// Traces a block of one pixel. Drivers compile in a pipeline's first dispatch, which must not count as tracing.
   void warm_up();
-  /// Returns the kernel that a second device may compile during warm_up(); nullptr if the film has only one large
+  /// Returns the kernel that a second device may compile during warm_up(); nullopt if the film has only one large
   /// kernel.
-  const gpu::KernelSource* side_kernel() const { return stream_ ? &stream_->largest_kernel() : nullptr; }
+  std::optional<gpu::KernelSource> side_kernel() const;
 
   /// Returns the layout of a pixel's records. Each record is a uvec4.
   const FilmRecords& records() const { return records_; }

@@ -114,8 +114,7 @@ class ProgressivePicture {
   /// Restarts tracing after a change of the scene that needs no other pipeline. The device must not be using the films.
   void take_scene_change();
 
-  // For callers that do not record their own frames: records the next pieces, runs them and
-  // waits.
+  /// Records the next pieces, runs them and waits, for callers that do not record their own frames.
   void trace();
   /// Returns the pixels of the shown picture.
   Image read() const;

@@ -86,17 +86,15 @@ PathStream::PathStream(const gpu::Device& device, FeatureMask features,
                        std::span<const gpu::SpecializationConstant> constants,
                        std::span<const gpu::BoundBuffer> buffers, const PictureShaders& shaders)
     : most_group_rows_(device.profile().most_group_rows),
-      largest_{shaders.follow_paths, with_query(constants, false), {buffers.begin(), buffers.end()}},
+      follow_paths_(shaders.follow_paths),
+      follow_constants_(with_query(constants, false)),
       place_(device, k_place_rays_spirv, constants, buffers),
       list_(device, k_list_rays_spirv, constants, buffers),
       shadow_(device, shaders.trace_shadow_rays, with_query(constants, !needs_nearest_blocker(features)), buffers),
-      follow_(device, largest_.spirv, largest_.constants, buffers) {}
+      follow_(device, follow_paths_, follow_constants_, buffers) {}
 
 void PathStream::bind(const gpu::BoundBuffer& buffer) {
   for (gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_, &follow_}) pipeline->bind(buffer);
-  for (gpu::BoundBuffer& bound : largest_.buffers) {
-    if (bound.binding == buffer.binding) bound = buffer;
-  }
 }
 
 void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film,

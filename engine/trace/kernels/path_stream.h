@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "device/pipeline.h"
 #include "device/side_compiler.h"
@@ -66,12 +68,15 @@ class PathStream {
   /// dispatch whose constants are in the film's head. The workgroups have no work, but drivers compile the kernels now.
   void record_small_warm_up(const vk::raii::CommandBuffer& commands) const;
   void record_large_warm_up(const vk::raii::CommandBuffer& commands) const;
-  /// Returns the source of the largest kernel. It is valid until bind().
-  const gpu::KernelSource& largest_kernel() const { return largest_; }
+  /// Returns the source of the largest kernel, for the buffers that are bound.
+  gpu::KernelSource largest_kernel(std::vector<gpu::BoundBuffer> buffers) const {
+    return {follow_paths_, follow_constants_, std::move(buffers)};
+  }
 
  private:
   uint32_t most_group_rows_;
-  gpu::KernelSource largest_;
+  std::span<const uint32_t> follow_paths_;
+  std::vector<gpu::SpecializationConstant> follow_constants_;
   gpu::ComputePipeline place_;
   gpu::ComputePipeline list_;
   gpu::ComputePipeline shadow_;
