@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace promin {
 
@@ -17,5 +19,21 @@ inline double srgb_to_linear(double code) {
 inline double linear_to_srgb(double light) {
   return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
 }
+
+/// The sRGB bytes of linear light, by a table. The bytes equal 255 times linear_to_srgb, rounded, for each float.
+class SrgbBytes {
+ public:
+  SrgbBytes();
+
+  /// Returns the byte of light, which counts as 0 below 0 and as 1 above 1.
+  uint8_t operator()(float light) const;
+
+ private:
+  /// The least light of each byte, and infinity after the last.
+  std::array<float, 257> least_{};
+  /// The byte of the least light in each interval of floats that have equal upper halves. The first interval begins at
+  /// kLeastLight, and the last contains 1.
+  std::array<uint8_t, 13 * 128 + 1> first_{};
+};
 
 }  // namespace promin

@@ -32,16 +32,15 @@ std::array<float, 256> make_numbers(ImageUse use) {
   return numbers;
 }
 
-uint32_t to_byte(double number) {
-  return static_cast<uint32_t>(std::lround(255.0 * std::clamp(number, 0.0, 1.0)));
+/// Returns 255 times the number, rounded. The product has at most 32 bits, so that adding 0.5 is exact.
+uint32_t to_byte(float number) {
+  return static_cast<uint32_t>(255.0 * static_cast<double>(std::clamp(number, 0.0F, 1.0F)) + 0.5);
 }
 
 uint32_t encode(const vec4& texel, ImageUse use) {
-  uint32_t word = to_byte(static_cast<double>(texel.a)) << 24;
-  for (int i = 0; i < 3; ++i) {
-    const auto light = static_cast<double>(texel[i]);
-    word |= to_byte(use == ImageUse::kColor ? linear_to_srgb(light) : light) << (8 * i);
-  }
+  static const SrgbBytes kSrgb;
+  uint32_t word = to_byte(texel.a) << 24;
+  for (int i = 0; i < 3; ++i) word |= (use == ImageUse::kColor ? kSrgb(texel[i]) : to_byte(texel[i])) << (8 * i);
   return word;
 }
 
@@ -68,10 +67,11 @@ template <typename Texel>
 Level make_coarser(const uvec2& fine, const Texel& texel) {
   Level level{glm::max(fine / 2U, uvec2(1)), {}};
   level.texels.reserve(size_t{level.size.x} * level.size.y);
+  std::vector<Taps> all_columns;
+  for (uint32_t x = 0; x < level.size.x; ++x) all_columns.push_back(taps_of(x, level.size.x, fine.x));
   for (uint32_t y = 0; y < level.size.y; ++y) {
     const Taps rows = taps_of(y, level.size.y, fine.y);
-    for (uint32_t x = 0; x < level.size.x; ++x) {
-      const Taps columns = taps_of(x, level.size.x, fine.x);
+    for (const Taps& columns : all_columns) {
       dvec4 sum(0.0);
       for (uint32_t j = 0; j < rows.count; ++j) {
         for (uint32_t i = 0; i < columns.count; ++i) {
