@@ -111,11 +111,6 @@ void refuse_leftovers(const CLI::App& program) {
       {"usage.command.unknown", "there is no command " + word, "", cure_for(path, nearest_command(word, program))});
 }
 
-/// Returns the name of an option for messages.
-std::string name_of(const CLI::Option& option) {
-  return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
-}
-
 /// Words each of which replaces all values of an option.
 struct Alternative {
   std::vector<std::string> words;
@@ -296,22 +291,6 @@ void OptionTable::add_hidden(const std::string& name, Setter set) {
 
 void OptionTable::add_flag(const std::string& names, const std::string& help, bool& value) {
   command_.add_flag(names, value, help);
-}
-
-std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command) {
-  std::map<std::string, Alternative> alternatives;
-  find_alternatives(command, alternatives);
-  std::vector<std::pair<std::string, std::vector<std::string>>> given;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0) continue;
-    const std::string name = name_of(*option);
-    std::vector<std::string> words;
-    if (option->get_items_expected_max() > 0) words = option->reduced_results();
-    const auto alternative = alternatives.find(name);
-    if (alternative != alternatives.end() && alternative->second.has(words.front())) words.resize(1);
-    given.emplace_back(name, std::move(words));
-  }
-  return given;
 }
 
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help) {

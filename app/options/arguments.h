@@ -109,11 +109,6 @@ std::vector<std::string> split_list(const std::string& list);
 /// Returns all commands of a program.
 std::vector<const CLI::App*> commands_of(const CLI::App& program);
 
-/// Returns the options and arguments of a parsed command, by their names in messages and in the order of its table.
-/// Each has the words that would set it again: for a repeated option the words that count, one word if an alternative
-/// was given, and no word for a flag.
-std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& command);
-
 /// Adds a command with --help and --version.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& help);
 

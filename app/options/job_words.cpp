@@ -3,16 +3,18 @@
 #include "options/job_words.h"
 
 #include <CLI/App.hpp>
-#include <algorithm>
-#include <iterator>
+#include <span>
+#include <string_view>
 
 #include "options/arguments.h"
 #include "options/cast_options.h"
 #include "options/render_options.h"
 #include "options/spec_options.h"
-#include "options/tracing_options.h"
 #include "promin/error.h"
+#include "work/jobs/cast_job.h"
+#include "work/jobs/picture_job.h"
 #include "work/jobs/spec_job.h"
+#include "work/spec/spec_json.h"
 
 namespace promin::app {
 namespace {
@@ -23,11 +25,14 @@ struct SaidElsewhere {
   std::string_view where;
 };
 constexpr std::string_view kMergeSays = "the files are named when the pieces are merged";
-constexpr SaidElsewhere kSaidElsewhere[] = {{"--output", kMergeSays},
-                                            {"--offsets", kMergeSays},
-                                            {"--job", "the folder is given separately"},
+constexpr std::string_view kMakerSays = "each process that makes pieces chooses it";
+constexpr SaidElsewhere kOutputs[] = {{"--output", kMergeSays}, {"--offsets", kMergeSays}};
+constexpr SaidElsewhere kSaidElsewhere[] = {{"--job", "the folder is given separately"},
                                             {"--piece", "they are chosen when pieces are made"},
-                                            {"--device", "it is chosen when pieces are made"}};
+                                            {"--device", kMakerSays},
+                                            {"--threads", kMakerSays},
+                                            {"--stats", "statistics describe a run without a job"},
+                                            {"--repeat", "each piece is made once"}};
 
 /// Throws UsageError for arguments of a job that request help or the version.
 void check_asks_for_work(const std::vector<std::string>& words) {
@@ -37,20 +42,20 @@ void check_asks_for_work(const std::vector<std::string>& words) {
   }
 }
 
-/// Throws UsageError for options that are not arguments of jobs.
-void check_is_kept(const CLI::App& command) {
-  for (const auto& [option, words] : given_options(command)) {
-    const auto* const found = std::ranges::find(kSaidElsewhere, option, &SaidElsewhere::option);
-    if (found == std::end(kSaidElsewhere)) continue;
-    throw UsageError({"job.argument.wrong", option + " is not an argument of a job", "",
-                      "remove it, because " + std::string(found->where)});
+/// Throws UsageError for the first of these options that is given.
+void refuse_given(const CLI::App& command, std::span<const SaidElsewhere> options) {
+  for (const auto& [option, where] : options) {
+    const CLI::Option* given = command.get_option_no_throw(std::string(option));
+    if (given == nullptr || given->count() == 0) continue;
+    throw UsageError({"job.argument.wrong", std::string(option) + " is not an argument of a job", "",
+                      "remove it, because " + std::string(where)});
   }
 }
 
-/// Returns the specification that these arguments of the command describe.
+/// Returns the text of the specification that these arguments of the command describe.
 template <typename Spec>
-Spec read_words(const std::string& name, void (*add_options)(CLI::App&, Spec&),
-                const std::vector<std::string>& arguments) {
+std::string read_words(const std::string& name, void (*add_options)(CLI::App&, Spec&),
+                       const std::vector<std::string>& arguments, OutputWords outputs) {
   check_asks_for_work(arguments);
   CLI::App program("", "promin");
   Spec spec;
@@ -60,19 +65,17 @@ Spec read_words(const std::string& name, void (*add_options)(CLI::App&, Spec&),
   std::vector<const char*> words = {"promin", name.c_str()};
   for (const std::string& word : arguments) words.push_back(word.c_str());
   static_cast<void>(parse_arguments(program, static_cast<int>(words.size()), words.data()));
-  check_is_kept(command);
-  static_cast<void>(verbosity_of(spec.tracing));
-  return spec;
+  if (outputs == OutputWords::kRefused) refuse_given(command, kOutputs);
+  refuse_given(command, kSaidElsewhere);
+  return write_spec(spec);
 }
 
 }  // namespace
 
-std::unique_ptr<PlannedJob> plan_job_of_words(const std::string& kind, const std::vector<std::string>& arguments,
-                                              const std::filesystem::path& folder, const Messages& messages,
-                                              std::shared_ptr<RaySource> rays) {
-  return plan_job_of_kind(
-      kind, [&] { return read_words(kind, add_render_options, arguments); },
-      [&] { return read_words(kind, add_cast_options, arguments); }, folder, messages, std::move(rays));
+std::string spec_of_words(const std::string& kind, const std::vector<std::string>& arguments, OutputWords outputs) {
+  if (kind == kPictureJob) return read_words(kind, add_render_options, arguments, outputs);
+  if (kind == kRayJob) return read_words(kind, add_cast_options, arguments, outputs);
+  work::refuse_kind(kind);
 }
 
 }  // namespace promin::app

@@ -52,7 +52,7 @@ class Farm:
         """Creates the job without running it and returns it."""
         from promin import jobs
 
-        return jobs.create("render", [str(self.scene)], self.job)
+        return jobs.create("render", {"scene": str(self.scene)}, self.job)
 
     def environment(self, **values: str) -> dict[str, str]:
         return {**os.environ, "PYTHONPATH": os.pathsep.join(PATHS), **values}

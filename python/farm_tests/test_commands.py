@@ -65,30 +65,50 @@ def test_frames_need_files_of_their_own_and_outputs_a_folder(farm: Farm) -> None
 
 
 def test_rates_are_of_rays_or_of_pixels(farm: Farm) -> None:
-    from promin_farm.status import rate_of
+    from promin_farm.status import describe_rate
     from promin_farm.survey import take_survey
 
     farm.write_scene(4, ms=5)
     job = farm.create()
-    assert rate_of(job, take_survey(job)) is None
+    assert describe_rate(job, take_survey(job)) == ""
     farm.run("work", farm.job)
     survey = take_survey(job)
-    assert survey.rate is not None and rate_of(job, survey) == (survey.rate, "rays")
-    job.options = {"--spp": "16"}
-    assert rate_of(job, survey) == (16 * survey.rate, "rays")
-    job.options = {"--target-error": "0.1"}
-    assert rate_of(job, survey) == (survey.rate, "pixels")
+    survey.rate = 1234567.0
+    assert describe_rate(job, survey) == "1.23 M pixels a second"
+    job.kind = "cast"
+    assert describe_rate(job, survey) == "1.23 M rays a second"
 
 
 def test_a_scene_that_is_not_there(farm: Farm) -> None:
     assert "cannot open" in farm.render(code=3)
 
 
-def test_what_promin_takes_goes_to_promin_in_its_order(farm: Farm) -> None:
+def test_promin_reads_the_options_in_their_order(farm: Farm) -> None:
     farm.write_scene(2)
     words = ("--size", "10", "-20", "--tiles", "2", "1")
     farm.run("render", "--workers", "1", farm.scene, *words, "-o", farm.out, "--quiet", "--job", farm.job)
-    assert json.loads((farm.job / "job.json").read_text())["arguments"] == ["scene.json", *words]
+    spec = {"scene": str(farm.scene), "size": ["10", "-20"], "tiles": ["2", "1"]}
+    assert json.loads((farm.job / "job.json").read_text())["spec"] == spec
+
+
+def test_the_farm_works_with_a_specification(farm: Farm, monkeypatch: pytest.MonkeyPatch) -> None:
+    from promin import jobs
+
+    from promin_farm.command import main
+
+    monkeypatch.chdir(farm.root)
+    read = {"scene": "scene.json", "rays": "rays.npy", "output": "hits.npy", "offsets": "offsets.npy", "odd": [1, {}]}
+    created = []
+
+    def create(kind: str, spec: object, folder: str) -> None:
+        created.append((kind, spec, folder))
+        raise jobs.UsageError("enough")
+
+    monkeypatch.setattr(jobs, "parse_arguments", lambda kind, arguments: {**read, "read": [kind, *arguments]})
+    monkeypatch.setattr(jobs, "create", create)
+    assert main(["cast", "--odd", "1", "2", "--job", "job", "x.json"]) == 2
+    spec = {"scene": "scene.json", "rays": "rays.npy", "odd": [1, {}], "read": ["cast", "--odd", "1", "2", "x.json"]}
+    assert created == [("cast", spec, str(farm.job))]
 
 
 def test_status_in_words_and_as_json(farm: Farm) -> None:
@@ -97,7 +117,7 @@ def test_status_in_words_and_as_json(farm: Farm) -> None:
     farm.run("work", farm.job, code=1)
     status = farm.status()
     assert status["pieces"] == 6 and status["done"] == 5 and status["running"] == []
-    assert status["failed"][0]["reason"].startswith("the device was lost") and status["rays_per_s"] > 0
+    assert status["failed"][0]["reason"].startswith("the device was lost") and status["pixels_per_s"] > 0
     assert status["weight_done"] + status["weight_left"] == 12 and status["time_left_s"] is None
     assert len(status["slowest"]) == 5 and all(20 <= item["ms"] < 2000 for item in status["slowest"])
     words = farm.run("status", farm.job)
@@ -301,19 +321,20 @@ def test_rays_of_zarr_are_those_of_numpy(tmp_path: Path, monkeypatch: pytest.Mon
     array = zarr.open_array(str(source), mode="w", shape=rays.shape, chunks=(300, 8), dtype="float32")
     array[:] = rays
     copy, expected = tmp_path / "job.rays.npy", tmp_path / "expected.npy"
-    words = ["scene.gltf", str(source), "--count"]
+    spec = {"scene": "scene.gltf", "rays": str(source), "count": True}
     for _ in range(2):
-        assert module.prepare_rays(words, tmp_path / "job") == ["scene.gltf", str(copy), "--count"]
+        assert module.prepare_rays(spec, tmp_path / "job") == {**spec, "rays": str(copy)}
         np.save(expected, rays)
         assert copy.read_bytes() == expected.read_bytes()
     array[5, 5] = 7
     with pytest.raises(jobs.InputError, match="the rays have changed since the start of the job"):
-        module.prepare_rays(words, tmp_path / "job")
+        module.prepare_rays(spec, tmp_path / "job")
     zarr.open_array(str(tmp_path / "flat.zarr"), mode="w", shape=(8,), chunks=(8,), dtype="float32")
     with pytest.raises(jobs.InputError, match="an array of N x 8 float32 numbers"):
-        module.prepare_rays([str(tmp_path / "flat.zarr")], tmp_path / "other")
+        module.prepare_rays({"rays": str(tmp_path / "flat.zarr")}, tmp_path / "other")
     with pytest.raises(jobs.InputError, match="the zarr array cannot be opened"):
-        module.prepare_rays([str(tmp_path / "nothing.zarr")], tmp_path / "other")
+        module.prepare_rays({"rays": str(tmp_path / "nothing.zarr")}, tmp_path / "other")
+    assert module.prepare_rays({"rays": "rays.npy"}, tmp_path / "other") == {"rays": "rays.npy"}
 
 
 def test_of_promin_only_its_jobs_are_imported() -> None:

@@ -15,6 +15,7 @@
 
 #include "bind.h"
 #include "options/arguments.h"
+#include "options/job_words.h"
 #include "options/render_options.h"
 #include "options/spec_options.h"
 #include "options/typed_words.h"
@@ -147,6 +148,10 @@ nb::dict read_quality(const std::string& word, const std::string& debug_view) {
   return fields;
 }
 
+std::string spec_of_words(const std::string& kind, const std::vector<std::string>& arguments, bool names_outputs) {
+  return app::spec_of_words(kind, arguments, names_outputs ? app::OutputWords::kAllowed : app::OutputWords::kRefused);
+}
+
 /// Returns the option, without dashes, that corresponds to another program's option of this name; empty if none is
 /// known.
 std::string find_option(const std::string& name) {
@@ -234,6 +239,7 @@ void bind_command_line(nb::module_& module) {
   module.def("read_size", &read_size);
   module.def("read_time_limit", &read_time_limit);
   module.def("read_quality", &read_quality, nb::arg("word"), nb::arg("debug_view"));
+  module.def("spec_of_words", &spec_of_words, nb::arg("kind"), nb::arg("arguments"), nb::arg("names_outputs"));
   module.def("find_option", &find_option);
   module.def("error_target", &error_target, nb::arg("asked"), nb::arg("display"));
 }

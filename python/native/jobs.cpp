@@ -18,7 +18,6 @@
 #include "in_process.h"
 #include "jobs/job.h"
 #include "jobs/sha256.h"
-#include "options/job_words.h"
 #include "promin/error.h"
 #include "watched.h"
 #include "work/jobs/build_id.h"
@@ -190,18 +189,9 @@ std::shared_ptr<work::RaySource> take_rays(const nb::object& source) {
   return source.is_none() ? nullptr : std::make_shared<PythonRays>(source);
 }
 
-SharedPlan plan_job(const std::string& kind, const std::vector<std::string>& arguments, const fs::path& folder,
-                    const nb::object& source) {
-  Plan plan;
-  run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
-    plan = app::plan_job_of_words(kind, arguments, folder, no_messages(), rays);
-  });
-  return {plan};
-}
-
 /// Plans the job of a specification, given as text. Relative names of files refer to the current folder.
-SharedPlan plan_spec(const std::string& kind, const std::string& text, const fs::path& folder,
-                     const nb::object& source) {
+SharedPlan plan_job(const std::string& kind, const std::string& text, const fs::path& folder,
+                    const nb::object& source) {
   Plan plan;
   run_watched(nb::none(), [&, rays = take_rays(source)](const ProgressCallback&) {
     plan = work::plan_job_of_text(kind, text, "spec", folder, no_messages(), rays);
@@ -351,8 +341,7 @@ void bind_jobs(nb::module_& module) {
            nb::arg("progress").none());
   module.def("fingerprint_of", &fingerprint_of);
   nb::class_<SharedPlan>(module, "PlannedJob")
-      .def_static("plan", &plan_job, nb::arg("kind"), nb::arg("arguments"), nb::arg("folder"), nb::arg("rays").none())
-      .def_static("plan_spec", &plan_spec, nb::arg("kind"), nb::arg("text"), nb::arg("folder"), nb::arg("rays").none())
+      .def_static("plan", &plan_job, nb::arg("kind"), nb::arg("spec"), nb::arg("folder"), nb::arg("rays").none())
       .def_static("plan_again", &plan_again, nb::arg("job"), nb::arg("rays").none())
       .def("create", &create);
   nb::class_<Runner>(module, "Runner")

@@ -4,7 +4,7 @@
 
     from promin import jobs
 
-    job = jobs.create("render", ["scene.gltf", "--spp", "64", "--pieces", "16"], "job")
+    job = jobs.create("render", {"scene": "scene.gltf", "spp": 64, "pieces": 16}, "job")
     runner = job.runner()
     for piece in job.pieces:
         runner.run(piece.number)
@@ -56,6 +56,7 @@ __all__ = [
     "create_with",
     "list_gpus",
     "open",
+    "parse_arguments",
 ]
 
 
@@ -141,32 +142,35 @@ class RaySource(Protocol):
         tmax."""
 
 
-def create(
-    kind: str, arguments: Sequence[str] | Mapping[str, Any], folder: PathLike, *, rays: RaySource | None = None
-) -> Job:
-    """Creates the job of a command in a folder, or continues the one that exists.
+def parse_arguments(kind: str, arguments: Sequence[str]) -> dict[str, Any]:
+    """Returns the specification that the arguments of a command describe, as the command's --print-spec prints it: a
+    dict with absolute paths of files.
 
-    kind: "render" or "cast". arguments: the arguments of this command of promin, without --output, --offsets, --job,
-    --piece and --device; --pieces (or --tiles) divides the work. Or a specification, a dict of the members that the
-    command's --print-spec prints, such as {"scene": "a.gltf", "spp": 64}. The scene and all other inputs of pieces
-    are read and hashed. The folder records the specification with absolute paths, so `open` needs only the folder.
-    rays: for "cast", replaces the file of rays, which the arguments must still name; after opening the job elsewhere,
-    pass it again to `Job.runner`. Raises UsageError for arguments that the command refuses, and if the folder belongs
-    to another job, with the difference; InputError, RunError."""
-    if isinstance(arguments, str):
-        raise UsageError(f"arguments are {arguments!r}; give a list of words")
+    kind: "render" or "cast". arguments: the arguments of this command of promin, without the options that each process
+    chooses, such as --job and --device. Raises UsageError for arguments that the command refuses, InputError for a file
+    of --spec."""
+    spec: dict[str, Any] = json.loads(_promin.spec_of_words(str(kind), _words_of(arguments), True))
+    return spec
+
+
+def create(
+    kind: str, spec: Mapping[str, Any] | Sequence[str], folder: PathLike, *, rays: RaySource | None = None
+) -> Job:
+    """Creates the job of a specification in a folder, or continues the one that exists.
+
+    kind: "render" or "cast". spec: a dict of the members that --print-spec of this command of promin prints, such as
+    {"scene": "a.gltf", "spp": 64}; "pieces" or "tiles" divides the work. Or a list of the command's arguments, without
+    --output, --offsets and the options that each process chooses, such as --job and --device. The scene and all other
+    inputs of pieces are read and hashed. The folder records the specification with absolute paths, so `open` needs only
+    the folder. rays: for "cast", replaces the file of rays, which the specification must still name; after opening the
+    job elsewhere, pass it again to `Job.runner`. Raises UsageError for a specification that the command refuses, and if
+    the folder belongs to another job, with the difference; InputError, RunError."""
+    if isinstance(spec, Mapping):
+        text = json.dumps({f"promin_{kind}_spec": 1, **spec}, default=os.fsdecode)
+    else:
+        text = _promin.spec_of_words(str(kind), _words_of(spec), False)
     name = os.fsdecode(folder)
-    if isinstance(arguments, Mapping):
-        text = json.dumps({f"promin_{kind}_spec": 1, **arguments}, default=os.fsdecode)
-        plan = _promin.PlannedJob.plan_spec(str(kind), text, name, rays)
-        return Job(plan.create(name), name, plan, rays=rays)
-    words = [os.fsdecode(word) if isinstance(word, (str, bytes, os.PathLike)) else str(word) for word in arguments]
-    for word in words:
-        if not _is_utf8(word):
-            raise UsageError(
-                f"the argument {word!r} is not UTF-8, so a job cannot record it; rename the file"
-            )
-    plan = _promin.PlannedJob.plan(str(kind), words, name, rays)
+    plan = _promin.PlannedJob.plan(str(kind), text, name, rays)
     return Job(plan.create(name), name, plan, rays=rays)
 
 
@@ -579,13 +583,16 @@ def _receipt_of(event: dict[str, Any]) -> Receipt:
     )
 
 
-def _is_utf8(word: str) -> bool:
-    """Returns whether the text is valid UTF-8: it contains no surrogates, which os.fsdecode uses for other bytes."""
-    try:
-        word.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
+def _words_of(arguments: Sequence[str]) -> list[str]:
+    """Returns the arguments of a command as texts. Raises UsageError for a single text, and for words that are not
+    UTF-8: os.fsdecode represents their bytes by surrogates."""
+    if isinstance(arguments, str):
+        raise UsageError(f"arguments are {arguments!r}; give a list of words")
+    words = [os.fsdecode(word) if isinstance(word, (str, bytes, os.PathLike)) else str(word) for word in arguments]
+    for word in words:
+        if re.search("[\ud800-\udfff]", word):
+            raise UsageError(f"the argument {word!r} is not UTF-8, so a job cannot record it; rename the file")
+    return words
 
 
 def _weigh(name: str) -> float:

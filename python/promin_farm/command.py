@@ -13,6 +13,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from promin import jobs
 
@@ -113,11 +114,9 @@ def _make_parser() -> argparse.ArgumentParser:
     )
     for command in (render, cast):
         command.add_argument("--job", metavar="DIR", help="the job's folder, which all workers must be able to access")
-        command.add_argument("-o", "--output", metavar="FILE", action="append", default=[], help="file to write")
         command.add_argument(
             "--prepare", action="store_true", help="only make the job's folder; promin-farm work makes the pieces"
         )
-    cast.add_argument("--offsets", metavar="FILE", help="file for the offsets of --all, as for promin cast")
     resume = add("resume", "Make the missing pieces of a job, then write its files")
     resume.add_argument(
         "-o",
@@ -179,17 +178,24 @@ def _add_run_options(command: argparse.ArgumentParser) -> None:
 
 
 def _begin(options: argparse.Namespace, arguments: list[str]) -> int:
-    for value, what, name in ((options.output, "output", "-o FILE"), (options.job, "folder for the job", "--job DIR")):
-        if not value:
-            raise jobs.UsageError(f"there is no {what}; give one with {name}")
+    if not options.job:
+        raise jobs.UsageError("there is no folder for the job; give one with --job DIR")
+    spec = jobs.parse_arguments(options.command, arguments)
+    options.output = _take_outputs(spec)
+    if not options.output:
+        raise jobs.UsageError("there is no output; give one with -o FILE")
     if options.command == "cast":
         from promin_farm.rays import prepare_rays  # Imported late, because loading NumPy takes a while.
 
-        arguments = prepare_rays(arguments, Path(options.job))
-        # The assembly writes the offsets after the hits.
-        options.output += [options.offsets] if options.offsets else []
-    job = jobs.create(options.command, arguments, os.path.abspath(options.job))
-    return _run(job, options)
+        spec = prepare_rays(spec, Path(options.job))
+    return _run(jobs.create(options.command, spec, os.path.abspath(options.job)), options)
+
+
+def _take_outputs(spec: dict[str, Any]) -> list[str]:
+    """Removes the outputs from a specification and returns them in the order in which the assembly writes them: first
+    the pictures or hits, then the offsets of hits."""
+    members = [spec.pop(name, []) for name in ("output", "offsets")]
+    return [file for member in members for file in ([member] if isinstance(member, str) else member)]
 
 
 def _resume(options: argparse.Namespace) -> int:

@@ -17,7 +17,7 @@ from promin import jobs
 from promin_farm.files import write_whole
 from promin_farm.markup import Markup, element, join, table
 from promin_farm.pictures import write_pictures
-from promin_farm.status import amount, rate_of, slowest
+from promin_farm.status import describe_rate, slowest
 from promin_farm.survey import Stretch, Survey, take_survey
 from promin_farm.watch import duration
 
@@ -106,8 +106,8 @@ def _describe_state(job: jobs.Job, survey: Survey) -> str:
         f"{len(survey.running)} running",
         f"{len(survey.failed)} failed",
     ]
-    if rate := rate_of(job, survey):
-        words.append(f"{amount(rate[0])} {rate[1]} a second")
+    if rate := describe_rate(job, survey):
+        words.append(rate)
     if survey.time_left_s is not None:
         words.append(f"{duration(survey.time_left_s)} left")
     return f"{', '.join(words)}. {time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime())} UTC."

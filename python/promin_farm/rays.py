@@ -6,7 +6,9 @@ by chunk."""
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,13 +19,14 @@ from promin_farm.crews import need
 _ROWS = 1 << 20
 
 
-def prepare_rays(arguments: list[str], folder: Path) -> list[str]:
-    """Returns the arguments of `cast` with DIR.rays.npy in place of a name that ends in .zarr. The file contains the
+def prepare_rays(spec: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Returns the specification of a cast with DIR.rays.npy in place of rays in a zarr array. The file contains the
     same numbers as the array, so the identity of the job depends on the rays and not on their source. Raises UsageError
     and InputError."""
-    folder = folder.absolute()
-    target = folder.with_name(f"{folder.name}.rays.npy")
-    return [str(_copy(Path(word), target)) if word.rstrip("/").endswith(".zarr") else word for word in arguments]
+    rays, folder = Path(spec["rays"]), folder.absolute()
+    if rays.suffix != ".zarr":
+        return dict(spec)
+    return {**spec, "rays": str(_copy(rays, folder.with_name(f"{folder.name}.rays.npy")))}
 
 
 def _copy(source: Path, target: Path) -> Path:

@@ -15,16 +15,9 @@ from promin_farm.watch import duration
 _SLOWEST = 5
 
 
-def rate_of(job: jobs.Job, survey: Survey) -> tuple[float, str] | None:
-    """Returns the amount of work per second and its unit; None if nothing was made. The unit is rays (for pictures,
-    camera rays), or pixels if an error target determines the number of rays."""
-    if survey.rate is None:
-        return None
-    if job.kind == "cast":
-        return survey.rate, "rays"
-    if any(name in job.options for name in ("--target-error", "--time-limit")):
-        return survey.rate, "pixels"
-    return survey.rate * int(job.options.get("--spp", "1")), "rays"
+def describe_rate(job: jobs.Job, survey: Survey) -> str:
+    """Returns the work per second, such as "1.5 M pixels a second"; empty if nothing was made."""
+    return f"{_amount(survey.rate)} {_unit_of(job)} a second" if survey.rate is not None else ""
 
 
 def slowest(survey: Survey) -> list[tuple[int, float]]:
@@ -36,7 +29,6 @@ def slowest(survey: Survey) -> list[tuple[int, float]]:
 def to_json(job: jobs.Job, survey: Survey) -> dict[str, Any]:
     """Returns the status as a dict for JSON. Times are in seconds, None if unknown."""
     names = [piece.name for piece in job.pieces]
-    rate = rate_of(job, survey)
     return {
         "id": job.id,
         "kind": job.kind,
@@ -54,7 +46,7 @@ def to_json(job: jobs.Job, survey: Survey) -> dict[str, Any]:
         },
         "weight_done": survey.weight_done,
         "weight_left": survey.weight_left,
-        f"{rate[1] if rate else 'rays'}_per_s": rate[0] if rate else None,
+        f"{_unit_of(job)}_per_s": survey.rate,
         "time_left_s": survey.time_left_s,
         "slowest": [{"piece": names[n], "ms": ms} for n, ms in slowest(survey)],
         "fingerprints": _count_fingerprints(survey),
@@ -68,8 +60,8 @@ def describe(job: jobs.Job, survey: Survey) -> str:
         f"{job.kind} of {survey.total} pieces: {len(survey.done)} done ({share:.0f} %), {len(survey.running)} running, "
         f"{len(survey.failed)} failed"
     ]
-    if rate := rate_of(job, survey):
-        lines.append(f"{amount(rate[0])} {rate[1]} a second")
+    if rate := describe_rate(job, survey):
+        lines.append(rate)
     if survey.time_left_s is not None:
         lines.append(f"{duration(survey.time_left_s)} left")
     for number, tries in sorted(survey.failed.items()):
@@ -85,7 +77,12 @@ def describe(job: jobs.Job, survey: Survey) -> str:
     return "\n".join(lines)
 
 
-def amount(value: float) -> str:
+def _unit_of(job: jobs.Job) -> str:
+    """Returns the unit of a job's work."""
+    return "rays" if job.kind == "cast" else "pixels"
+
+
+def _amount(value: float) -> str:
     """Returns a number with a letter for thousands, millions or billions."""
     for factor, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
         if value >= factor:

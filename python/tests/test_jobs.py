@@ -466,6 +466,7 @@ def test_a_specification_is_the_job_of_its_words(scene: Path, tmp_path: Path) ->
     words = [str(scene), "--size", "16", "12", "--spp", "2", "--pieces", "2", "--aov", "normal,depth"]
     spec = {"scene": scene, "size": [16, 12], "spp": 2, "pieces": 2, "aov": ["depth", "normal"]}
     first = jobs.create("render", words, tmp_path / "job")
+    assert jobs.parse_arguments("render", words) == {"promin_render_spec": 1, **spec, "scene": str(scene)} == first.spec
     assert jobs.create("render", spec, tmp_path / "job").id == first.id
     assert jobs.create("render", first.spec, tmp_path / "other").id == first.id
     with pytest.raises(promin.InputError, match='a specification has no member "sp".*did you mean spp'):
@@ -478,6 +479,37 @@ def test_a_specification_is_the_job_of_its_words(scene: Path, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
+    "kind, words",
+    [
+        ("render", ["--width", "8", "--fov", "33.3", "--eye", "0.1,2,8", "--background", "red", "--exposure", "-0.7"]),
+        ("render", ["--size", "8x6", "--quality", "draft", "--tiles", "2", "2", "--no-shadows", "--lights-off", "0"]),
+        ("cast", ["--count", "--builder", "median"]),
+    ],
+)
+def test_the_program_and_python_make_one_job(
+    scene: Path, rays: Path, tmp_path: Path, run_promin: RunPromin, kind: str, words: list[str]
+) -> None:
+    words = [str(scene), *([str(rays)] if kind == "cast" else []), *words]
+    run_promin(kind, *words, "--job", tmp_path / "job", "--piece", "0/1")
+    ids = [hashlib.sha256((tmp_path / "job/job.json").read_bytes()).hexdigest()]
+    ids += [jobs.create(kind, work, tmp_path / "job").id for work in (words, jobs.parse_arguments(kind, words))]
+    assert len(set(ids)) == 1
+
+
+def test_arguments_name_outputs(scene: Path, rays: Path, tmp_path: Path) -> None:
+    outputs = [str(tmp_path / name) for name in ("a.npy", "b.npy")]
+    words = [str(scene), str(rays), "--all", "-o", outputs[0], "--offsets", outputs[1]]
+    spec = jobs.parse_arguments("cast", words)
+    assert [spec["output"], spec["offsets"]] == outputs
+    assert jobs.create("cast", spec, tmp_path / "job").spec == {
+        "promin_cast_spec": 1,
+        "scene": str(scene),
+        "rays": str(rays),
+        "all": True,
+    }
+
+
+@pytest.mark.parametrize(
     "kind, words, error, problem",
     [
         ("render", [], promin.UsageError, "usage.words.wrong SCENE"),
@@ -487,6 +519,8 @@ def test_a_specification_is_the_job_of_its_words(scene: Path, tmp_path: Path) ->
         ("render", ["box.gltf", "-o", "a.exr"], promin.UsageError, "job.argument.wrong --output"),
         ("render", ["box.gltf", "--piece", "0/2"], promin.UsageError, "job.argument.wrong --piece"),
         ("cast", ["box.gltf", "box.gltf", "--device", "0"], promin.UsageError, "job.argument.wrong --device"),
+        ("render", ["box.gltf", "--threads", "2"], promin.UsageError, "job.argument.wrong --threads"),
+        ("render", ["box.gltf", "--stats", "a.json"], promin.UsageError, "job.argument.wrong --stats"),
         ("render", ["box.gltf", "--time-limit", "1"], promin.UsageError, "usage.options.contradict --job --time-limit"),
         ("render", ["none.gltf"], promin.InputError, "file.missing none.gltf:"),
         ("cast", ["box.gltf"], promin.UsageError, "usage.words.wrong RAYS.npy"),

@@ -49,6 +49,13 @@ def default_of(function: Callable[..., object], name: str) -> Any:
     return inspect.signature(function).parameters[name].default
 
 
+def test_only_one_file_uses_the_programs() -> None:
+    """The others use the library, so that the programs' options can change without them."""
+    folder = REPOSITORY / "python/native"
+    include = re.compile(r'#include "(commands|options|output|view)/')
+    assert [file.name for file in folder.iterdir() if include.search(file.read_text())] == ["command_line.cpp"]
+
+
 @pytest.mark.parametrize(
     "kind",
     [

@@ -223,19 +223,19 @@ std::vector<MessageCase> cases_of_pieces() {
 std::vector<MessageCase> cases_of_commands() {
   static const app::Console console(app::Verbosity::kQuiet);
   return {
-      {"job.command.unknown", [] { app::plan_job_of_words("dance", {}, "job", console, nullptr); }},
+      {"job.command.unknown", [] { app::spec_of_words("dance", {}, app::OutputWords::kAllowed); }},
       {"job.argument.wrong",
        [] {
-         app::plan_job_of_words("render", {"a.obj", "--help"}, "job", console, nullptr);
+         app::spec_of_words("render", {"a.obj", "--help"}, app::OutputWords::kAllowed);
        }},
       {"job.argument.wrong",
        [] {
-         app::plan_job_of_words("render", {"a.obj", "--job", "b"}, "job", console, nullptr);
+         app::spec_of_words("render", {"a.obj", "--job", "b"}, app::OutputWords::kAllowed);
        }},
       {"job.rays.none",
        [] {
          write_rays("rays.npy", std::vector<Ray>(1));
-         app::plan_job_of_words("render", {}, "job", console, work::open_rays("rays.npy", "job"));
+         work::plan_job_of_text("render", "", "spec.json", "job", console, work::open_rays("rays.npy", "job"));
        }},
       {"job.spec.missing", [] { work::plan_again(make_job("render"), console); }},
       {"spec.format", [] { work::parse_spec<work::RenderSpec>("{}", "a.json"); }},

@@ -49,14 +49,7 @@ std::unique_ptr<PlannedJob> plan_job(CastSpec spec, const fs::path& folder, cons
   return plan_rays(spec, messages, std::move(rays));
 }
 
-std::unique_ptr<PlannedJob> plan_job_of_kind(const std::string& kind, const std::function<RenderSpec()>& read_pictures,
-                                             const std::function<CastSpec()>& read_hits, const fs::path& folder,
-                                             const Messages& messages, std::shared_ptr<RaySource> rays) {
-  if (kind == kPictureJob) {
-    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "remove the rays"});
-    return plan_job(read_pictures(), folder, messages);
-  }
-  if (kind == kRayJob) return plan_job(read_hits(), folder, messages, std::move(rays));
+void refuse_kind(const std::string& kind) {
   throw UsageError(
       {"job.command.unknown", fmt::format("the command \"{}\" cannot be a job", kind), "", "use render or cast"});
 }
@@ -64,9 +57,12 @@ std::unique_ptr<PlannedJob> plan_job_of_kind(const std::string& kind, const std:
 std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text, const fs::path& file,
                                              const fs::path& folder, const Messages& messages,
                                              std::shared_ptr<RaySource> rays) {
-  return plan_job_of_kind(
-      kind, [&] { return parse_spec<RenderSpec>(text, file); }, [&] { return parse_spec<CastSpec>(text, file); },
-      folder, messages, std::move(rays));
+  if (kind == kPictureJob) {
+    if (rays != nullptr) throw UsageError({"job.rays.none", "a job of pictures has no rays", "", "remove the rays"});
+    return plan_job(parse_spec<RenderSpec>(text, file), folder, messages);
+  }
+  if (kind == kRayJob) return plan_job(parse_spec<CastSpec>(text, file), folder, messages, std::move(rays));
+  refuse_kind(kind);
 }
 
 jobs::Job create_job(PlannedJob& planned, const fs::path& folder) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -26,15 +25,12 @@ std::unique_ptr<PlannedJob> plan_job(RenderSpec spec, const std::filesystem::pat
 std::unique_ptr<PlannedJob> plan_job(CastSpec spec, const std::filesystem::path& folder, const Messages& messages,
                                      std::shared_ptr<RaySource> rays = nullptr);
 
-/// Plans a job of the kind "render" or "cast". One of the two functions reads its specification. Throws UsageError for
-/// another kind, and if rays are given for a job of pictures.
-std::unique_ptr<PlannedJob> plan_job_of_kind(const std::string& kind, const std::function<RenderSpec()>& read_pictures,
-                                             const std::function<CastSpec()>& read_hits,
-                                             const std::filesystem::path& folder, const Messages& messages,
-                                             std::shared_ptr<RaySource> rays);
+/// Throws UsageError for a kind of jobs that has no specification.
+[[noreturn]] void refuse_kind(const std::string& kind);
 
 /// Plans the job of the kind "render" or "cast" from the text of its specification. Messages name `file`, and relative
-/// file names in the text are relative to its folder.
+/// file names in the text are relative to its folder. Throws UsageError also for another kind, and if rays are given for
+/// a job of pictures.
 std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text,
                                              const std::filesystem::path& file, const std::filesystem::path& folder,
                                              const Messages& messages, std::shared_ptr<RaySource> rays = nullptr);

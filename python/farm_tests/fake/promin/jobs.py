@@ -19,7 +19,7 @@ import os
 import signal
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -83,19 +83,33 @@ class Comparison:
     count: int
 
 
-def create(kind: str, arguments: list[str], folder: str | os.PathLike[str]) -> Job:
-    scene = Path(arguments[0])
+def parse_arguments(kind: str, arguments: list[str]) -> dict[str, Any]:
+    """Reads the scene, for "cast" the rays, and a few options with one or two values."""
+    counts = {"--size": 2, "--tiles": 2}
+    names = iter(("scene", "rays") if kind == "cast" else ("scene",))
+    words = iter("--output" if word == "-o" else word for word in arguments)
+    spec: dict[str, Any] = {}
+    for word in words:
+        if word == "--output":
+            spec.setdefault("output", []).append(str(Path(next(words)).absolute()))
+        elif word.startswith("--"):
+            if word not in counts:
+                raise UsageError(f"{word} is not known; see --help")
+            spec[word[2:]] = [next(words) for _ in range(counts[word])]
+        else:
+            spec[next(names)] = str(Path(word).absolute())
+    return spec
+
+
+def create(kind: str, spec: Mapping[str, Any], folder: str | os.PathLike[str]) -> Job:
+    scene = Path(spec["scene"])
     if not scene.exists():
         raise InputError(f"cannot open, {scene}; check the name")
-    known = {"--tiles", "--size"}
-    for word in arguments[1:]:
-        if word.startswith("--") and word not in known:
-            raise UsageError(f"{word} is not known; see --help")
     manifest = {
         "fake_job": 1,
         "kind": kind,
-        "arguments": [scene.name, *(Path(word).name for word in arguments[1:])],
-        "files": {str(Path(f).absolute()): _hash_file(f) for f in arguments if os.path.isfile(f)},
+        "spec": dict(spec),
+        "files": {spec[name]: _hash_file(spec[name]) for name in ("scene", "rays") if name in spec},
         "scene": json.loads(scene.read_text()),
     }
     root = Path(folder).absolute()
