@@ -5,7 +5,12 @@
 # subfolders. A header is then parsed once for all of them, and a template that many of them use is compiled once. The
 # options are the same.
 
-# promin_join_sources(FOLDER): does so for the targets of FOLDER's CMakeLists.txt and of those below it.
+# The file lists the groups of sources for tools/joined_names, one source a line: TARGET/GROUP FILE.
+set(PROMIN_JOINED_SOURCES ${CMAKE_BINARY_DIR}/joined_sources.txt)
+file(WRITE ${PROMIN_JOINED_SOURCES} "")
+
+# promin_join_sources(FOLDER): does so for the targets of FOLDER's CMakeLists.txt and of those below it if
+# PROMIN_JOIN_SOURCES is set. Otherwise only lists their groups.
 function(promin_join_sources FOLDER)
   get_directory_property(TARGETS DIRECTORY ${FOLDER} BUILDSYSTEM_TARGETS)
   foreach(NAME IN LISTS TARGETS)
@@ -27,6 +32,7 @@ function(promin_join_sources_of NAME)
   get_target_property(SOURCE_FOLDER ${NAME} SOURCE_DIR)
   list(LENGTH SOURCES LENGTH)
   set(GROUPS)
+  set(LIST "")
   foreach(SOURCE IN LISTS SOURCES)
     set(GROUP)
     if(LENGTH GREATER 32)
@@ -49,9 +55,14 @@ function(promin_join_sources_of NAME)
       math(EXPR PART "${INDEX} * ${PARTS} / ${LENGTH}")
       set_source_files_properties(${SOURCE_FOLDER}/${SOURCE} TARGET_DIRECTORY ${NAME}
         PROPERTIES UNITY_GROUP ${GROUP}_${PART})
+      string(APPEND LIST "${NAME}/${GROUP}_${PART} ${SOURCE_FOLDER}/${SOURCE}\n")
       math(EXPR INDEX "${INDEX} + 1")
     endforeach()
   endforeach()
+  file(APPEND ${PROMIN_JOINED_SOURCES} "${LIST}")
+  if(NOT PROMIN_JOIN_SOURCES)
+    return()
+  endif()
   set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   # GCC takes a source that another includes for a header, in which an unnamed namespace would be a mistake.
   target_compile_options(${NAME} PRIVATE -Wno-subobject-linkage)

@@ -311,7 +311,7 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& op
   }
 }
 
-std::vector<std::filesystem::path> input_files(const RenderSpec& options) {
+std::vector<std::filesystem::path> inputs_of(const RenderSpec& options) {
   std::vector<std::filesystem::path> files = input_files(options.tracing);
   if (options.path) files.push_back(*options.path);
   if (options.view.environment.panorama) files.push_back(*options.view.environment.panorama);
@@ -386,7 +386,7 @@ void render(const RenderSpec& given, bool prints_spec) {
   const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
   if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
-  check_outputs(input_files(options), pictures_of(frames), tracing.stats);
+  check_outputs(inputs_of(options), pictures_of(frames), tracing.stats);
   if (skipped > 0) {
     console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
                              count_of(skipped + frames.size(), "frame")));

@@ -22,7 +22,7 @@ constexpr Wording kWordings[] = {{Setting::kDepth, "use a smaller depth", "lower
                                  {Setting::kBuilder, "the builder", "--builder"},
                                  {Setting::kTextureMemory, "the memory for textures", "--texture-memory"}};
 
-std::string_view option_of(Setting setting) {
+std::string_view option_for(Setting setting) {
   switch (setting) {
     case Setting::kNone:
       return "";
@@ -52,7 +52,7 @@ void name_option(Problem& problem) {
       is_named = true;
     }
   }
-  if (!is_named) problem.cure += fmt::format(" ({})", option_of(problem.setting));
+  if (!is_named) problem.cure += fmt::format(" ({})", option_for(problem.setting));
 }
 
 }  // namespace

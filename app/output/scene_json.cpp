@@ -31,12 +31,12 @@ Json hash_of(const std::vector<Element>& elements) {
   return fmt::format("{:016x}", hash.value());
 }
 
-Json json_of(bool value) {
+Json json_value(bool value) {
   return value;
 }
 
 template <typename Number>
-Json json_of(Number value) {
+Json json_value(Number value) {
   if constexpr (std::is_integral_v<Number>) return value;
   if (!std::isfinite(value)) return nullptr;
   // The shortest decimal text of an fp32 number is used, because the number converted to double has many more digits.
@@ -47,9 +47,9 @@ Json json_of(Number value) {
 }
 
 template <int N, typename Number>
-Json json_of(const glm::vec<N, Number, glm::defaultp>& value) {
+Json json_value(const glm::vec<N, Number, glm::defaultp>& value) {
   Json list = Json::array();
-  for (int i = 0; i < N; ++i) list.push_back(json_of(value[i]));
+  for (int i = 0; i < N; ++i) list.push_back(json_value(value[i]));
   return list;
 }
 
@@ -68,7 +68,7 @@ class JsonWriter {
     if constexpr (std::is_enum_v<Value>) {
       json_[name] = names_of(value)[static_cast<size_t>(value)];
     } else {
-      json_[name] = json_of(value);
+      json_[name] = json_value(value);
     }
   }
   void field(const std::string& name, std::string& value) { json_[name] = value; }
@@ -85,7 +85,7 @@ class JsonWriter {
     json_[name]["kind"] = kSkyNames[sky.index()];
   }
   void field(const std::string& name, std::shared_ptr<const Image>& image) {
-    json_[name] = {{"size", json_of(image->size)}, {"hash", hash_of(image->pixels)}};
+    json_[name] = {{"size", json_value(image->size)}, {"hash", hash_of(image->pixels)}};
   }
 
  private:
@@ -127,7 +127,7 @@ Json describe(const Geometry& geometry) {
 Json describe(const dmat4& matrix) {
   if (matrix == dmat4(1.0)) return nullptr;
   Json list = Json::array();
-  for (int i = 0; i < 16; ++i) list.push_back(json_of(matrix[i / 4][i % 4]));
+  for (int i = 0; i < 16; ++i) list.push_back(json_value(matrix[i / 4][i % 4]));
   return list;
 }
 
@@ -151,7 +151,7 @@ Json list_images(const Scene& scene) {
   Json list = Json::array();
   for (const auto& image : scene.images) {
     list.push_back({{"name", image->name},
-                    {"size", json_of(image->size)},
+                    {"size", json_value(image->size)},
                     {"use", names_of(image->use)[static_cast<size_t>(image->use)]},
                     {"hash", hash_of(image->texels)}});
   }
@@ -166,7 +166,7 @@ Json describe(const SceneCounts& counts) {
 
 Json describe(const Bounds& bounds) {
   if (bounds.is_empty()) return nullptr;
-  return {{"lo", json_of(bounds.lo)}, {"hi", json_of(bounds.hi)}};
+  return {{"lo", json_value(bounds.lo)}, {"hi", json_value(bounds.hi)}};
 }
 
 }  // namespace

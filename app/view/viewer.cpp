@@ -31,7 +31,7 @@ constexpr double kLeastTraceShare = 0.5;
 
 /// Rotates the light. A drag over the window's height rotates it by half a turn. The step size keeps the numbers in
 /// commands short.
-void turn_light(Surroundings& surroundings, double pixels, double window_height) {
+void drag_light(Surroundings& surroundings, double pixels, double window_height) {
   constexpr double kStepsOfDegree = 8.0;
   const double turned = surroundings.light_rotation_deg + 180.0 / window_height * pixels;
   surroundings.light_rotation_deg = std::remainder(std::round(kStepsOfDegree * turned) / kStepsOfDegree, 360.0);
@@ -188,7 +188,7 @@ PictureRequest Viewer::request() const {
 
 void Viewer::move_camera(bool is_of_flight) {
   const Motion motion = window_.take_motion();
-  if (motion.light != 0.0) turn_light(switches_.surroundings, motion.light, window_.framebuffer_size().y);
+  if (motion.light != 0.0) drag_light(switches_.surroundings, motion.light, window_.framebuffer_size().y);
   if (is_of_flight) control_.place(replay_->next_camera(Window::now()));
   // The camera does not move while a screenshot waits.
   if (!is_replaying() && !wants_screenshot_ && opened_.scene) control_.apply(motion, window_.framebuffer_size().y);

@@ -28,17 +28,17 @@ Scene make_copies(uint32_t copies, const Material& material) {
   return scene;
 }
 
-PackedScene pack(const Scene& scene, const char* builder = "sah") {
+PackedScene pack_with(const Scene& scene, const char* builder = "sah") {
   return pack_scene(world::flatten(scene, world::Purpose::kHits), builder);
 }
 
 TEST(DropCopiesTest, ManyLeaveTheTreeAndFewStay) {
   for (const char* builder : {"sah", "median", "spatial"}) {
-    const PackedScene few = pack(make_copies(kMostCopies, {}), builder);
+    const PackedScene few = pack_with(make_copies(kMostCopies, {}), builder);
     EXPECT_EQ(few.bounded_count, kMostCopies + 2);
     EXPECT_THAT(few.copies.by_first, IsEmpty());
     EXPECT_THAT(few.copies.materials, IsEmpty());
-    const PackedScene many = pack(make_copies(kMostCopies + 1, {}), builder);
+    const PackedScene many = pack_with(make_copies(kMostCopies + 1, {}), builder);
     EXPECT_EQ(many.bounded_count, 3U);
     ASSERT_THAT(many.copies.by_first, SizeIs(1));
     EXPECT_THAT(many.copies.materials, ElementsAre(0));
@@ -55,7 +55,7 @@ TEST(DropCopiesTest, WhatIsNotOpaqueStays) {
   Material glass;
   glass.model = Phong{.transmission = vec3(0.5F)};
   for (const Material& material : {blend, glass}) {
-    EXPECT_THAT(pack(make_copies(kMostCopies + 1, material)).copies.by_first, IsEmpty());
+    EXPECT_THAT(pack_with(make_copies(kMostCopies + 1, material)).copies.by_first, IsEmpty());
   }
 }
 

@@ -44,7 +44,7 @@ class CasterTest : public test::DeviceTest {
   }
 };
 
-bool has_same_bits(std::span<const Hit> a, std::span<const Hit> b) {
+bool have_same_bits(std::span<const Hit> a, std::span<const Hit> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
@@ -104,7 +104,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheOrder) {
     const std::vector<Hit> hits = cast(scene, shuffled, query);
     std::vector<Hit> restored(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) restored[order[i]] = hits[i];
-    EXPECT_TRUE(has_same_bits(restored, expected));
+    EXPECT_TRUE(have_same_bits(restored, expected));
     EXPECT_GT(std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.t < kInfinity; }), 1000);
   }
 }
@@ -378,7 +378,7 @@ TEST_F(CasterTest, AnswersDoNotDependOnTheCompany) {
     const size_t count = std::min<size_t>(777, rays.size() - first);
     caster.cast(std::span(rays).subspan(first, count), std::span(apart).subspan(first, count));
   }
-  EXPECT_TRUE(has_same_bits(apart, together));
+  EXPECT_TRUE(have_same_bits(apart, together));
 }
 
 // fp32 arithmetic alone would underflow or overflow for these directions. They are denormal, or near the largest

@@ -53,7 +53,7 @@ vec3 direction_at(float cosine) {
   return {std::sqrt(1.0F - cosine * cosine), cosine, 0.0F};
 }
 
-Light make_sun(const vec3& to_light, float power = 1.0F) {
+Light make_sun_at(const vec3& to_light, float power = 1.0F) {
   Light light;
   light.kind = LightKind::kDirectional;
   light.direction = -to_light;
@@ -174,11 +174,11 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
   // This box blocks light from the left, on either side of the wall.
   scene.objects.push_back({"", world::Box{.center = vec3(-9, 0, 0), .half_size = vec3(1, 8, 8)}, 0});
   scene.materials = {make_metal(model)};
-  scene.lights = {make_sun(vec3(0, 1, 0))};
+  scene.lights = {make_sun_at(vec3(0, 1, 0))};
   Renderer renderer = make_renderer(device(), scene);
   const View view = look_along(-glm::normalize(vec3(0.2F, 1, 0)));
   const auto seen_under = [&](const vec3& to_light) {
-    renderer.set_lights(std::vector{make_sun(glm::normalize(to_light), std::numbers::pi_v<float>)});
+    renderer.set_lights(std::vector{make_sun_at(glm::normalize(to_light), std::numbers::pi_v<float>)});
     return renderer.render(view).image.pixels[0];
   };
   const float cosine = glm::normalize(vec3(3, 4, 0)).y;
@@ -195,7 +195,7 @@ TEST_F(MaterialsTest, LightFromBehindIsScatteredThrough) {
     if (!is_metal) other.diffuse_transmission = 0.0F;
     scene.objects[1].material = 1;
     scene.materials = {make_metal(other), make_metal(model)};
-    scene.lights = {make_sun(vec3(0, -1, 0))};
+    scene.lights = {make_sun_at(vec3(0, -1, 0))};
     EXPECT_EQ(render(scene, view).pixels[0], vec3(0));
   }
 }
@@ -256,11 +256,11 @@ TEST_F(MaterialsTest, AGrainStretchesHighlights) {
   const double across = static_cast<double>(roughness) * static_cast<double>(roughness);
   const double along = across + (1 - across) * static_cast<double>(strength) * static_cast<double>(strength);
   world::Scene scene = make_grain(strength, 0.0F, roughness);
-  scene.lights = {make_sun(vec3(0, -1, 0))};
+  scene.lights = {make_sun_at(vec3(0, -1, 0))};
   Renderer renderer = make_renderer(device(), scene);
   const View view = look_along(vec3(0, -1, 0));
   const auto seen_under = [&](const vec3& to_light) {
-    renderer.set_lights(std::vector{make_sun(glm::normalize(to_light), std::numbers::pi_v<float>)});
+    renderer.set_lights(std::vector{make_sun_at(glm::normalize(to_light), std::numbers::pi_v<float>)});
     return static_cast<double>(renderer.render(view).image.pixels[0].x);
   };
   const double above = seen_under(vec3(0, 1, 0));
@@ -287,7 +287,7 @@ TEST_F(MaterialsTest, ASourceStraightBehindAGrainIsScatteredThrough) {
   auto& model = std::get<MetallicRoughness>(scene.materials[0].model);
   model.metallic = 0.0F;
   model.diffuse_transmission = 1.0F;
-  scene.lights = {make_sun(vec3(0, -1, 0), std::numbers::pi_v<float>)};
+  scene.lights = {make_sun_at(vec3(0, -1, 0), std::numbers::pi_v<float>)};
   const vec3 seen = render(scene, look_along(vec3(0, -1, 0))).pixels[0];
   EXPECT_GT(seen.x, 0.5F);
   EXPECT_LT(seen.x, 1.0F);
@@ -339,7 +339,7 @@ TEST_F(MaterialsTest, SourcesFromEverywhereAddUpToOne) {
     const float radius = std::sqrt(1.0F - height * height);
     const float azimuth = golden_angle * static_cast<float>(i);
     const vec3 to_light = glm::normalize(vec3(radius * std::cos(azimuth), height, radius * std::sin(azimuth)));
-    scene.lights.push_back(make_sun(to_light, 4.0F * std::numbers::pi_v<float> / kCount));
+    scene.lights.push_back(make_sun_at(to_light, 4.0F * std::numbers::pi_v<float> / kCount));
   }
   Renderer renderer = make_renderer(device(), scene);
   for (const float metallic : {0.0F, 0.5F, 1.0F}) {
@@ -381,7 +381,7 @@ class HighlightTest : public MaterialsTest {
   HighlightTest() {
     scene_.objects = {{"floor", world::Plane{vec3(0), vec3(0, 1, 0)}, 0}};
     scene_.materials = {make_metal({})};
-    scene_.lights = {make_sun(vec3(0, 1, 0))};
+    scene_.lights = {make_sun_at(vec3(0, 1, 0))};
     renderer_.emplace(make_renderer(device(), scene_));
   }
 
@@ -395,7 +395,7 @@ class HighlightTest : public MaterialsTest {
   }
 
   Highlight measure(const vec3& to_eye, const vec3& to_light) {
-    scene_.lights = {make_sun(to_light)};
+    scene_.lights = {make_sun_at(to_light)};
     renderer_->set_lights(scene_.lights);
     View view = look_along(-to_eye);
     // Any direction that is perpendicular to the view is suitable.
@@ -476,7 +476,7 @@ TEST_F(MaterialsTest, AnIndexOfZeroIsAMirror) {
 TEST_F(MaterialsTest, WithoutSpecularStrengthASurfaceIsMatt) {
   MetallicRoughness model{.base_color = vec3(0.5F), .metallic = 0.0F, .roughness = 0.3F};
   world::Scene scene;
-  scene.lights = {make_sun(direction_at(0.5F) * vec3(-1, 1, 1))};
+  scene.lights = {make_sun_at(direction_at(0.5F) * vec3(-1, 1, 1))};
   const vec3 glossy = color_of_floor(make_metal(model), 0.5F, scene);
   model.specular = 0.0F;
   const vec3 matt = color_of_floor(make_metal(model), 0.5F, scene);
@@ -505,7 +505,7 @@ Mesh make_colored_mesh(const vec3& color) {
 
 TEST_F(MaterialsTest, VertexColorsAreFactorsOfTheBaseColor) {
   world::Scene scene = make_furnace(0.5F);
-  scene.lights = {make_sun(vec3(0, 1, 0), 2.0F)};
+  scene.lights = {make_sun_at(vec3(0, 1, 0), 2.0F)};
   const View view = look_along(-glm::normalize(vec3(0.2F, 1, 0)));
   const auto color_of = [&](const Material& material, const vec3& vertex_color) {
     scene.materials = {material};
@@ -537,7 +537,7 @@ TEST_F(MaterialsTest, NoLightTouchesTheUnlit) {
   const vec3 alone = color_of_floor(unlit, 0.6F, world::Scene());
   EXPECT_EQ(alone, vec3(0.3F, 0.6F, 0.9F) + vec3(0.5F, 0, 0));
   world::Scene lit = make_furnace(3.0F);
-  lit.lights = {make_sun(vec3(0, 1, 0), 5.0F), make_headlight()};
+  lit.lights = {make_sun_at(vec3(0, 1, 0), 5.0F), make_headlight()};
   EXPECT_EQ(color_of_floor(unlit, 0.6F, lit), alone);
 }
 

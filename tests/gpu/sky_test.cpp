@@ -19,7 +19,7 @@ using test::has_same_bits;
 
 constexpr float kRoughnesses[] = {0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.3F, 0.35F, 0.5F, 0.6F, 0.8F, 1.0F};
 
-Material make_metal(float roughness) {
+Material make_rough_metal(float roughness) {
   Material material;
   material.model = MetallicRoughness{.roughness = roughness};
   return material;
@@ -58,7 +58,7 @@ View look_from(const vec3& axis) {
   return make_sky_view(5.0F * axis, -axis, up, uvec2(1));
 }
 
-Panorama make_panorama(uvec2 size, const std::function<vec3(uint32_t, uint32_t)>& pixel) {
+Panorama paint_panorama(uvec2 size, const std::function<vec3(uint32_t, uint32_t)>& pixel) {
   auto image = std::make_shared<Image>();
   image->size = size;
   for (uint32_t y = 0; y < size.y; ++y) {
@@ -78,7 +78,7 @@ constexpr Patch kPatches[] = {{{1, 0, 0}, {1, 0, 0}},  {{-1, 0, 0}, {0, 1, 1}}, 
 /// Returns a panorama. Its first and last rows are top and bottom. The columns between them are behind, left, ahead and
 /// right.
 Panorama make_patches() {
-  return make_panorama({64, 32}, [](uint32_t x, uint32_t y) {
+  return paint_panorama({64, 32}, [](uint32_t x, uint32_t y) {
     if (y < 8) return kPatches[2].color;
     if (y >= 24) return kPatches[3].color;
     const uint32_t quarter = (x + 8) / 16 % 4;
@@ -104,9 +104,9 @@ class SkyPictureTest : public test::DeviceTest {
 // A white metal in a white sky is invisible.
 TEST_F(SkyPictureTest, AWhiteFurnaceIsWhite) {
   std::vector<Material> metals;
-  for (const float roughness : kRoughnesses) metals.push_back(make_metal(roughness));
+  for (const float roughness : kRoughnesses) metals.push_back(make_rough_metal(roughness));
   world::Scene scene = make_balls(metals);
-  scene.environment.sky = make_panorama({4, 2}, [](uint32_t, uint32_t) { return vec3(1.0F); });
+  scene.environment.sky = paint_panorama({4, 2}, [](uint32_t, uint32_t) { return vec3(1.0F); });
   scene.environment.background = vec3(1.0F);
   View view = make_sky_view(vec3(12.5F, 0, 20), vec3(0, 0, -1), vec3(0, 1, 0), uvec2(280, 20));
   view.camera.yfov = 0.11F;
@@ -118,7 +118,7 @@ TEST_F(SkyPictureTest, AWhiteFurnaceIsWhite) {
 
 world::Scene make_studio_scene() {
   std::vector<Material> materials;
-  for (const float roughness : kRoughnesses) materials.push_back(make_metal(roughness));
+  for (const float roughness : kRoughnesses) materials.push_back(make_rough_metal(roughness));
   std::get<MetallicRoughness>(materials[3].model).metallic = 0.0F;
   materials.push_back(make_mirror());
   materials.push_back({});
@@ -185,7 +185,7 @@ TEST_F(SkyPictureTest, ASkyIsReplacedWithoutATree) {
 }
 
 TEST_F(SkyPictureTest, MirrorsSeeEachPatchWhereItIs) {
-  for (const Material& material : {make_metal(0.0F), make_mirror()}) {
+  for (const Material& material : {make_rough_metal(0.0F), make_mirror()}) {
     world::Scene scene = make_balls({material});
     scene.environment.sky = make_patches();
     for (const Patch& patch : kPatches) {
@@ -195,7 +195,7 @@ TEST_F(SkyPictureTest, MirrorsSeeEachPatchWhereItIs) {
 }
 
 TEST_F(SkyPictureTest, RotationAndIntensityAreSeen) {
-  world::Scene scene = make_balls({make_metal(0.0F)});
+  world::Scene scene = make_balls({make_rough_metal(0.0F)});
   scene.environment.sky = make_patches();
   scene.environment.rotation = 0.5F * std::numbers::pi_v<float>;
   scene.environment.intensity = 4.0F;
@@ -223,7 +223,7 @@ TEST_F(SkyPictureTest, AmbientLightIsTheIrradiance) {
 // A rough metal shows the mean over its lobe also for a roughness between two levels.
 TEST_F(SkyPictureTest, RoughMetalsShowTheLevelBetween) {
   for (const float roughness : {0.45F, 0.6F, 0.8F, 1.0F}) {
-    world::Scene scene = make_balls({make_metal(roughness)});
+    world::Scene scene = make_balls({make_rough_metal(roughness)});
     scene.environment.sky = Studio{};
     const Image at_once = render(scene, look_from(vec3(0, 0, 1)));
     // The test interpolates between the two neighbouring levels.
@@ -231,7 +231,7 @@ TEST_F(SkyPictureTest, RoughMetalsShowTheLevelBetween) {
     const float upper = roughness < 0.6F ? 0.6F : 1.0F;
     const auto seen_at = [&](float r) {
       world::Scene level = scene;
-      level.materials = {make_metal(r)};
+      level.materials = {make_rough_metal(r)};
       View view = look_from(vec3(0, 0, 1));
       // There is no mirror ray, so that all light comes from the level.
       view.max_depth = 0;

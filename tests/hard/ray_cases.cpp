@@ -159,7 +159,7 @@ void run_invalid_and_extreme(Lab& lab) {
   expect_directions(lab, 1.0, 1.0, true, "denormal components");
 }
 
-bool has_same_bits(const Hit& a, const Hit& b) {
+bool is_same_hit(const Hit& a, const Hit& b) {
   return std::memcmp(&a, &b, sizeof(Hit)) == 0;
 }
 
@@ -209,7 +209,7 @@ void run_intervals(Lab& lab) {
       return static_cast<double>(wrong);
     };
     const auto is_miss = [](const Hit& answer, const Hit&) { return answer.object == -1 && std::isinf(answer.t); };
-    const auto is_same = [](const Hit& answer, const Hit& first) { return has_same_bits(answer, first); };
+    const auto is_same = [](const Hit& answer, const Hit& first) { return is_same_hit(answer, first); };
     const auto is_later = [](const Hit& answer, const Hit& first) { return answer.t > first.t; };
     const auto above = [](float t) { return std::nextafter(t, kInfinity); };
     const auto below = [](float t) { return std::nextafter(t, 0.0F); };

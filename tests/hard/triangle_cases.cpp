@@ -70,7 +70,7 @@ dvec3 pick_inside(const Mesh& mesh, Random& random) {
 }
 
 template <typename MakeRay>
-std::vector<Ray> make_rays(size_t count, const MakeRay& make_ray) {
+std::vector<Ray> repeat_ray(size_t count, const MakeRay& make_ray) {
   std::vector<Ray> rays;
   rays.reserve(count);
   for (size_t i = 0; i < count; ++i) rays.push_back(make_ray());
@@ -112,14 +112,14 @@ void cast_at_closed_mesh(Lab& lab, const dvec3& center, uint32_t steps, size_t r
     const dvec3 from = origin();
     return ray_towards(from, dvec3(vec3(from)) + random.direction());
   };
-  expect_no_leaks(lab, scene, make_rays(random_count, at_random), "random rays from inside" + where);
+  expect_no_leaks(lab, scene, repeat_ray(random_count, at_random), "random rays from inside" + where);
   const auto at = [&](dvec3 (*pick_target)(const Mesh&, Random&)) {
     const dvec3 from = origin();
     return ray_towards(from, pick_target(mesh, random));
   };
-  expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return at(pick_vertex); }),
+  expect_no_leaks(lab, scene, repeat_ray(kTriangleRayCount, [&] { return at(pick_vertex); }),
                   "at vertices from inside" + where);
-  expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return at(pick_on_edge); }),
+  expect_no_leaks(lab, scene, repeat_ray(kTriangleRayCount, [&] { return at(pick_on_edge); }),
                   "at edges from inside" + where);
 
   // The rays come from outside and pass through the inside. If a hit is beyond the middle, the ray has passed through
@@ -195,12 +195,13 @@ void run_spikes(Lab& lab) {
                                    [](uint32_t row, uint32_t column) { return (row + column) % 2 == 0 ? 10.0 : 0.5; });
   const world::Scene scene = scene_of({mesh});
   const dvec3 center(0.0);
-  expect_no_leaks(lab, scene, make_rays(kTriangleRayCount, [&] { return ray_towards(center, random.direction()); }),
+  expect_no_leaks(lab, scene, repeat_ray(kTriangleRayCount, [&] { return ray_towards(center, random.direction()); }),
                   "random rays from the centre");
-  expect_no_leaks(lab, scene, make_rays(some_of(50000), [&] { return ray_towards(center, pick_vertex(mesh, random)); }),
+  expect_no_leaks(lab, scene,
+                  repeat_ray(some_of(50000), [&] { return ray_towards(center, pick_vertex(mesh, random)); }),
                   "at vertices from the centre");
   expect_no_leaks(lab, scene,
-                  make_rays(some_of(50000), [&] { return ray_towards(center, pick_on_edge(mesh, random)); }),
+                  repeat_ray(some_of(50000), [&] { return ray_towards(center, pick_on_edge(mesh, random)); }),
                   "at edges from the centre");
 }
 
@@ -294,7 +295,7 @@ void run_squares_and_fans(Lab& lab) {
   }
 }
 
-Mesh make_triangle(const vec3& a, const vec3& b, const vec3& c) {
+Mesh mesh_of(const vec3& a, const vec3& b, const vec3& c) {
   Mesh mesh;
   mesh.positions = {a, b, c};
   mesh.triangles = {{0, 1, 2}};
@@ -309,7 +310,7 @@ void cast_edge_on(Lab& lab) {
   for (int i = 0; i < 8; ++i) {
     const dvec3 right = random.direction();
     const dvec3 up = random.perpendicular(right);
-    const Mesh mesh = make_triangle(vec3(0.1 * up), vec3(right), vec3(0.3 * right + 0.8 * up));
+    const Mesh mesh = mesh_of(vec3(0.1 * up), vec3(right), vec3(0.3 * right + 0.8 * up));
     std::vector<Ray> rays;
     while (rays.size() < some_of(10000)) {
       const double angle = random.uniform(0.0, 2.0 * kPi);
@@ -377,7 +378,7 @@ void cast_across(Lab& lab) {
     for (int i = 0; i < 32; ++i) {
       const Mesh mesh = make_triangle(dvec3(offset) + random.direction(), random);
       const std::vector<Ray> rays =
-          make_rays(some_of(10000), [&] { return ray_grazing(mesh, mesh.triangles.front(), random); });
+          repeat_ray(some_of(10000), [&] { return ray_grazing(mesh, mesh.triangles.front(), random); });
       stray.add(mesh, rays, lab.cast(scene_of({mesh}), rays));
       tally.rays += rays.size();
     }
@@ -389,7 +390,7 @@ void cast_across(Lab& lab) {
     const dvec3 right = random.direction();
     const dvec3 up = random.perpendicular(right);
     const Mesh mesh = make_square({"wall", dvec3(0.0), right, up}, 1, 1);
-    const std::vector<Ray> rays = make_rays(some_of(10000), [&] {
+    const std::vector<Ray> rays = repeat_ray(some_of(10000), [&] {
       const double angle = random.uniform(-0.35, 0.35);
       const dvec3 along = std::cos(angle) * right + std::sin(angle) * up;
       return ray_towards(-3.0 * right, -3.0 * right + along);
@@ -411,15 +412,15 @@ void run_degenerate(Lab& lab) {
   };
   const vec3 corner(1.25F, -2.5F, 3.75F);
   const std::array cases{
-      Degenerate{"a repeated vertex", make_triangle(corner, vec3(0.1F, 0.2F, 0.3F), corner)},
-      Degenerate{"one point", make_triangle(corner, corner, corner)},
-      Degenerate{"area 0", make_triangle(vec3(0, 1, 2), vec3(1, 2, 3), vec3(4, 5, 6))},
-      Degenerate{"area 1e-40, needle", make_triangle(vec3(0.0F), vec3(1, 0, 0), vec3(0, 1e-40F, 0))},
-      Degenerate{"area 1e-40, 1e-20 each way", make_triangle(vec3(0.0F), vec3(1e-20F, 0, 0), vec3(0, 1e-20F, 0))},
+      Degenerate{"a repeated vertex", mesh_of(corner, vec3(0.1F, 0.2F, 0.3F), corner)},
+      Degenerate{"one point", mesh_of(corner, corner, corner)},
+      Degenerate{"area 0", mesh_of(vec3(0, 1, 2), vec3(1, 2, 3), vec3(4, 5, 6))},
+      Degenerate{"area 1e-40, needle", mesh_of(vec3(0.0F), vec3(1, 0, 0), vec3(0, 1e-40F, 0))},
+      Degenerate{"area 1e-40, 1e-20 each way", mesh_of(vec3(0.0F), vec3(1e-20F, 0, 0), vec3(0, 1e-20F, 0))},
       // This triangle is from pbrt's test Triangle.BadCases.
-      Degenerate{"collinear near -1113.45459", make_triangle(vec3(-1113.45459F, -79.049614F, -56.2431908F),
-                                                             vec3(-1113.45459F, -87.0922699F, -56.2431908F),
-                                                             vec3(-1113.45459F, -79.2090149F, -56.2431908F))},
+      Degenerate{"collinear near -1113.45459",
+                 mesh_of(vec3(-1113.45459F, -79.049614F, -56.2431908F), vec3(-1113.45459F, -87.0922699F, -56.2431908F),
+                         vec3(-1113.45459F, -79.2090149F, -56.2431908F))},
   };
   for (const Degenerate& each : cases) {
     std::vector<Ray> rays;
@@ -564,10 +565,10 @@ void run_coincident(Lab& lab) {
   const vec3 a(0.1F, 0.2F, 0.3F);
   const vec3 b(1.3F, 0.1F, 0.7F);
   const vec3 c(0.4F, 1.5F, 0.2F);
-  Mesh mesh = make_triangle(a, b, c);
+  Mesh mesh = mesh_of(a, b, c);
   mesh.triangles.assign(10000, mesh.triangles[0]);
   const world::Scene scene = scene_of({mesh});
-  const std::vector<Ray> rays = make_rays(1000, [&] {
+  const std::vector<Ray> rays = repeat_ray(1000, [&] {
     const dvec3 away = 3.0 * random.direction();
     const dvec3 target = pick_inside(mesh, random);
     return ray_towards(target + away, target);
@@ -589,7 +590,7 @@ void run_coincident(Lab& lab) {
 
 void run_unit_triangle(Lab& lab) {
   Random random(27);
-  const Mesh mesh = make_triangle(vec3(0.0F), vec3(1, 0, 0), vec3(0, 1, 0));
+  const Mesh mesh = mesh_of(vec3(0.0F), vec3(1, 0, 0), vec3(0, 1, 0));
   for (const bool is_oblique : {false, true}) {
     std::vector<Ray> rays;
     for (int y = 0; y < 16; ++y) {

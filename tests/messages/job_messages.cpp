@@ -56,7 +56,7 @@ MessageCase spoil_piece(std::string_view code, const std::function<void(std::str
           }};
 }
 
-work::PicturePart make_part(uint32_t row, const std::string& driver) {
+work::PicturePart make_row(uint32_t row, const std::string& driver) {
   work::PicturePart part;
   part.full_size = uvec2(1, 2);
   part.window = {{0, 0}, {1, 2}};
@@ -171,9 +171,9 @@ std::vector<MessageCase> cases_of_folders() {
 }
 
 std::vector<MessageCase> cases_of_pieces() {
-  work::PicturePart larger = make_part(1, "A");
+  work::PicturePart larger = make_row(1, "A");
   larger.full_size = uvec2(1, 3);
-  work::PicturePart bare = make_part(1, "A");
+  work::PicturePart bare = make_row(1, "A");
   bare.metadata.clear();
   return {
       {"file.missing", [] { static_cast<void>(make_job().read(0)); }},
@@ -194,9 +194,9 @@ std::vector<MessageCase> cases_of_pieces() {
          write_piece(job, 0, bytes_of("words", 1));
          static_cast<void>(work::merge_job(job, {"a.npy"}, {}, false, std::nullopt));
        }},
-      merge_parts("job.piece.other", make_part(0, "A"), larger),
-      merge_parts("job.piece.other", make_part(0, "A"), bare),
-      merge_parts("job.device.other", make_part(0, "A"), make_part(1, "B")),
+      merge_parts("job.piece.other", make_row(0, "A"), larger),
+      merge_parts("job.piece.other", make_row(0, "A"), bare),
+      merge_parts("job.device.other", make_row(0, "A"), make_row(1, "B")),
       merge_rays("job.piece.order", 7, "A"),
       merge_rays("job.device.other", 1, "B"),
       {"job.outputs.count",

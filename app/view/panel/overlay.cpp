@@ -56,7 +56,7 @@ void show_times(const OverlayContent& content) {
 }
 
 /// Returns a description of the picture's quality.
-std::string describe_picture(const ProgressivePicture& picture) {
+std::string describe_quality(const ProgressivePicture& picture) {
   const auto& shown = picture.shown();
   if (!shown) return "making the first picture";
   if (shown->size != picture.full_size()) return "coarse so far";
@@ -71,7 +71,7 @@ void show_state(const OverlayContent& content) {
   if (!content.awaited.empty()) {
     show_text("{} ...", content.awaited);
   } else if (content.picture != nullptr) {
-    show_text("{}", describe_picture(*content.picture));
+    show_text("{}", describe_quality(*content.picture));
   }
   // Work that is awaited has no known fraction.
   const bool has_share = content.picture != nullptr && content.awaited.empty();

@@ -63,7 +63,7 @@ std::vector<std::string> find_library(const std::string& line, LoadReport& repor
 }
 
 /// Returns a colour of the file; if the file gives none, its default, or 1 if there is a map.
-vec3 color_of(const MtlMaterial& source, const std::string& keyword, double otherwise) {
+vec3 color_from(const MtlMaterial& source, const std::string& keyword, double otherwise) {
   return vec3(source.find(keyword, source.find_map("map_" + keyword) != nullptr ? 1.0 : otherwise));
 }
 
@@ -149,7 +149,7 @@ MetallicRoughness metallic_roughness_of_mtl(const MtlMaterial& source, ObjTextur
     return has_map ? 1.0F : static_cast<float>(std::min(source.find(keyword, otherwise).x, 1.0));
   };
   MetallicRoughness model;
-  model.base_color = glm::min(color_of(source, "Kd", 0.8), vec3(1.0F));
+  model.base_color = glm::min(color_from(source, "Kd", 0.8), vec3(1.0F));
   model.base_color_texture = read_base_color(source, textures);
   model.roughness = share("Pr", 1.0);
   model.metallic = share("Pm", 0.0);
@@ -163,12 +163,12 @@ MetallicRoughness metallic_roughness_of_mtl(const MtlMaterial& source, ObjTextur
 Phong phong_of_mtl(const MtlMaterial& source, ObjTextures& textures, LoadReport& report) {
   const double illum = illum_of(source);
   Phong phong;
-  phong.diffuse = color_of(source, "Kd", 0.8);
+  phong.diffuse = color_from(source, "Kd", 0.8);
   phong.ambient = source.numbers.contains("Ka") ? vec3(source.find("Ka", 0.0)) : phong.diffuse;
   phong.diffuse_texture = read_base_color(source, textures);
   phong.normal_texture = read_normals(source, textures);
   if (illum >= 2.0) {
-    phong.specular = color_of(source, "Ks", 0.0);
+    phong.specular = color_from(source, "Ks", 0.0);
     phong.shininess = static_cast<float>(source.find("Ns", 0.0).x);
     phong.specular_texture = textures.read_slot(source.find_map("map_Ks"), ImageUse::kColor);
   }
@@ -192,7 +192,7 @@ Phong phong_of_mtl(const MtlMaterial& source, ObjTextures& textures, LoadReport&
 void make_colored(const MtlMaterial& source, ObjTextures& textures, Material& material, LoadReport& report) {
   warn_of_unused_maps(source, {"map_Ks", "map_Ke", "norm", "bump"}, report);
   material.emissive = vec3(source.find("Ke", 0.0));
-  const vec3 color = color_of(source, "Kd", 0.8);
+  const vec3 color = color_from(source, "Kd", 0.8);
   if (const TextureSlot slot = read_base_color(source, textures); slot.exists()) {
     material.model = Unlit{color, slot};
     return;
@@ -276,7 +276,7 @@ void add_obj_material(const MtlMaterial& source, ObjTextures& textures, Scene& s
   } else {
     material.model = phong_of_mtl(source, textures, report);
   }
-  material.emissive = color_of(source, "Ke", 0.0);
+  material.emissive = color_from(source, "Ke", 0.0);
   material.emissive_texture = textures.read_slot(source.find_map("map_Ke"), ImageUse::kColor);
 }
 

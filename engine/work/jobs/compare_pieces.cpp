@@ -44,7 +44,7 @@ void count(PieceDifference& difference, double value, double most) {
 }
 
 /// Returns the box of a primitive that was hit.
-Bounds bounds_of(const world::Shape& shape, uint32_t primitive) {
+Bounds bounds_of_part(const world::Shape& shape, uint32_t primitive) {
   const auto find = [&](const auto& some) -> Bounds {
     using Some = std::decay_t<decltype(some)>;
     if constexpr (std::is_same_v<Some, world::Mesh>) {
@@ -114,7 +114,7 @@ double HitComparison::scale_of(const Ray& ray, const Hit& hit) const {
   if (const auto* plane = std::get_if<world::Plane>(&shape)) {
     return glm::distance(origin, dvec3(plane->point)) + std::abs(double{hit.t}) * glm::length(dvec3(ray.direction));
   }
-  const Bounds box = bounds_of(shape, static_cast<uint32_t>(hit.primitive));
+  const Bounds box = bounds_of_part(shape, static_cast<uint32_t>(hit.primitive));
   if (box.is_empty()) return 0.0;
   return glm::distance(origin, dvec3(box.center())) + 0.5 * glm::distance(dvec3(box.lo), dvec3(box.hi));
 }

@@ -81,7 +81,7 @@ std::vector<uint32_t> divide(uint32_t length, uint32_t count) {
 }
 
 /// Returns the device and driver (driver_of) of a picture with these metadata.
-std::string driver_of(const Metadata& metadata) {
+std::string driver_from(const Metadata& metadata) {
   std::string driver;
   for (const auto& [name, value] : metadata) {
     if (name == "promin:device" || name == "promin:driver") driver += (driver.empty() ? "" : ", ") + value;
@@ -208,7 +208,7 @@ std::string name_frame(uint32_t frame) {
 }
 
 /// Returns the first word of a piece's name, which identifies its frame. Without frames it is always the same.
-std::string frame_of(const std::string& piece) {
+std::string frame_prefix_of(const std::string& piece) {
   return piece.starts_with(kOfFrame) ? piece.substr(0, piece.find('_')) : "";
 }
 
@@ -217,7 +217,7 @@ std::vector<std::vector<size_t>> find_pictures_of(const jobs::Job& job) {
   const std::vector<std::string>& names = job.manifest().pieces;
   std::vector<std::vector<size_t>> pictures;
   for (size_t piece = 0; piece < names.size(); ++piece) {
-    if (piece == 0 || frame_of(names[piece]) != frame_of(names[piece - 1])) pictures.emplace_back();
+    if (piece == 0 || frame_prefix_of(names[piece]) != frame_prefix_of(names[piece - 1])) pictures.emplace_back();
     pictures.back().push_back(piece);
   }
   return pictures;
@@ -251,7 +251,8 @@ std::vector<std::vector<size_t>> choose_pictures(const jobs::Job& job,
 /// Checks, before anything is written, that each frame has its own file.
 void check_numbered(const jobs::Job& job, const std::vector<fs::path>& files) {
   const std::vector<std::string>& pieces = job.manifest().pieces;
-  if (!pieces.front().starts_with(kOfFrame) || frame_of(pieces.front()) == frame_of(pieces.back())) return;
+  if (!pieces.front().starts_with(kOfFrame) || frame_prefix_of(pieces.front()) == frame_prefix_of(pieces.back()))
+    return;
   for (const fs::path& file : files) {
     if (number_file(file, 0) != file) continue;
     throw UsageError({"output.frames.one", "several frames would be written to one file", file.string(),
@@ -313,7 +314,7 @@ jobs::Content encode_part(const PicturePart& part) {
     channels.push_back({{"name", channel.name}, {"is_integer", channel.is_integer}});
     if (channel.is_hidden) channels.back()["is_hidden"] = true;
   }
-  Json json = {{"driver", driver_of(part.metadata)},
+  Json json = {{"driver", driver_from(part.metadata)},
                {"full_size", {part.full_size.x, part.full_size.y}},
                {"window", json_of(part.window)},
                {"part", json_of(part.part)},
@@ -380,7 +381,7 @@ std::vector<fs::path> number_pictures(const jobs::Job& job, const std::vector<fs
                                       const std::optional<std::vector<uint32_t>>& frames) {
   std::vector<fs::path> numbered;
   for (const std::vector<size_t>& pieces : choose_pictures(job, frames)) {
-    const std::string frame = frame_of(job.manifest().pieces[pieces.front()]);
+    const std::string frame = frame_prefix_of(job.manifest().pieces[pieces.front()]);
     if (frame.empty()) return files;
     uint32_t number = 0;
     std::from_chars(frame.data() + kOfFrame.size(), frame.data() + frame.size(), number);
