@@ -106,7 +106,7 @@ def lines(shares):
     """Yields the lines of a table's file."""
     yield "// SPDX-FileCopyrightText: The promin developers"
     yield "// SPDX-License-Identifier: Apache-2.0"
-    yield "// Made by tools/make_lobe_table.py. Not edited by hand."
+    yield "// tools/make_lobe_table.py made this file. Do not edit it by hand."
     for row in range(SIDE):
         words = [word(shares((column / (SIDE - 1)) ** 2, row / (SIDE - 1))) for column in range(SIDE)]
         for first in range(0, SIDE, 8):

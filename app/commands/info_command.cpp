@@ -94,7 +94,7 @@ std::string describe_camera(size_t index, const Camera& camera, const dvec3& cen
 }
 
 std::vector<std::string> describe_cameras(const Scene& scene) {
-  if (scene.cameras.empty()) return {"0; assumed: " + describe_framing(framing_of(scene))};
+  if (scene.cameras.empty()) return {"0; assumed: " + describe_framing(scene, {})};
   std::vector<std::string> rows;
   for (size_t i = 0; i < scene.cameras.size(); ++i) {
     rows.push_back(describe_camera(i, scene.cameras[i], scene.center));

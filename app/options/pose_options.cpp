@@ -40,19 +40,23 @@ void add_former_options(OptionTable& table) {
 void add_pose_options(OptionTable& table, PoseOptions& pose) {
   table.add("--from", fmt::format("{}", fmt::join(framing_names(), "|")),
             "Show the whole scene from this side and ignore its cameras [the scene's first camera; if it has none, "
-            "three-quarter, or inside if the scene is a room]",
+            "three-quarter, or inside if the scene is a room]. three-quarter shows a flat scene from the front",
             [&](const OptionValues& w) {
               const auto place = std::ranges::find(framing_names(), w.choice(framing_names()));
               pose.from = static_cast<Framing>(place - framing_names().begin());
             });
-  table.add("--fit", "X",
-            fmt::format("Fraction of the picture that the longer side of the scene covers with --from, {} to 1 [{}]",
-                        kMinFit, kDefaultFit),
-            [&](const OptionValues& w) { pose.fit = static_cast<float>(w.real(0, double{kMinFit}, 1.0)); });
+  table.add(
+      "--fit", "X",
+      fmt::format(
+          "Frame the scene, as --from does, so that its longer side covers this fraction of the picture, {} to 1 [{}]",
+          kMinFit, kDefaultFit),
+      [&](const OptionValues& w) { pose.fit = static_cast<float>(w.real(0, double{kMinFit}, 1.0)); });
   const auto add_turn = [&](const char* name, const char* help, double& turn) {
     table.add(name, "DEG", help, [&turn](const OptionValues& w) { turn = w.real(0, -kMaxTurnDeg, kMaxTurnDeg); });
   };
-  add_turn("--azimuth", "Move the camera around the scene to the right by this angle in degrees [0]",
+  add_turn("--azimuth",
+           "Move the camera around the scene to the right by this angle in degrees. It starts from the file's camera, "
+           "if there is one, or from the side of --from [0]",
            pose.orbit.azimuth_deg);
   add_turn("--elevation", "Move the camera upwards around the scene by this angle in degrees, after --azimuth [0]",
            pose.orbit.elevation_deg);

@@ -183,7 +183,7 @@ def read_aovs(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
 
 
 def write_image(path: str | os.PathLike[str], rgb: Frame | ArrayLike, display: Display = Display()) -> None:
-    """Writes linear light (rows, columns, 3) as .exr or .hdr, or after the transform `display` as .png, .jpg, .webp or
+    """Writes linear light (rows, columns, 3), or grey (rows, columns), as .exr or .hdr, or after the transform `display` as .png, .jpg, .webp or
     .tif. Raises UsageError, RunError."""
     file = os.fsdecode(path)
     unlit = None if _promin.has_named_channels(file) else unlit_of(rgb)
@@ -201,8 +201,10 @@ def to_picture(rgb: object) -> NDArray[np.float32]:
     if isinstance(rgb, Frame):
         return rgb.rgb
     array = to_numbers(rgb, "the pixels")
+    if array.ndim == 2:
+        array = np.repeat(array[..., None], 3, axis=-1)
     if array.ndim != 3 or array.shape[2] != 3 or not 0 < array.size < 3 * 2**28:
         raise UsageError(
-            f"the pixels have the shape {array.shape}; give (rows, columns, 3), with 1 to 2^28 pixels"
+            f"the pixels have the shape {array.shape}; give (rows, columns, 3) or (rows, columns), with 1 to 2^28 pixels"
         )
     return round_once(array)

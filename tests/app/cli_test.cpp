@@ -589,7 +589,8 @@ TEST_F(CliTest, InfoSaysWhatIsAssumed) {
 
   const std::string bare = run({"info", "triangle.obj"}).out;
   EXPECT_THAT(bare, ContainsRegex("lights +0; assumed: the light of a studio\n"));
-  EXPECT_THAT(bare, ContainsRegex("cameras +0; assumed: a camera that frames the scene from three quarters\n"));
+  EXPECT_THAT(
+      bare, ContainsRegex("cameras +0; assumed: a camera that frames the scene from the front, because it is flat\n"));
   EXPECT_THAT(bare, ContainsRegex("background +.* above to .* below, as shown \\(assumed\\)\n"));
   EXPECT_THAT(bare, ContainsRegex("display +exposure \\+0 EV, tone mapping neutral\n"));
   EXPECT_THAT(bare, ContainsRegex("features +.*a sky"));
@@ -597,7 +598,8 @@ TEST_F(CliTest, InfoSaysWhatIsAssumed) {
   write("classic.gltf", classic_square());
   const std::string classic = run({"info", "classic.gltf"}).out;
   EXPECT_THAT(classic, ContainsRegex("lights +0; assumed: a headlight along the view and ambient light of 0.1\n"));
-  EXPECT_THAT(classic, ContainsRegex("cameras +0; assumed: a camera that frames the scene from three quarters\n"));
+  EXPECT_THAT(classic, ContainsRegex(
+                           "cameras +0; assumed: a camera that frames the scene from the front, because it is flat\n"));
   EXPECT_THAT(classic, ContainsRegex("background +0 0 0\n"));
   EXPECT_THAT(classic, ContainsRegex("display +exposure \\+0 EV, tone mapping none\n"));
 }
@@ -937,18 +939,18 @@ TEST_F(CliTest, WhatIsAssumedIsSaid) {
     return notes;
   };
   EXPECT_EQ(notes_of({"triangle.obj", "-o", "a.exr"}),
-            "promin: note: assumed: a camera that frames the scene from three quarters, the light of a studio, a grey "
-            "background\n");
+            "promin: note: assumed: a camera that frames the scene from the front, because it is flat, the light of a "
+            "studio, a grey background\n");
   write("square.gltf", make_default_gltf());
   const std::string shown = notes_of({"square.gltf", "-o", "a.exr", "-o", "a.png"});
   EXPECT_EQ(
       shown,
-      "promin: note: assumed: weak studio light in addition to the scene's own, a grey background, an exposure of "
-      "+2 EV, tone mapping neutral\n");
+      "promin: note: assumed: the first of the file's 2 cameras, weak studio light in addition to the scene's own, a "
+      "grey background, an exposure of +2 EV, tone mapping neutral\n");
   // For an EXR, only the errors are in display terms.
   EXPECT_EQ(notes_of({"square.gltf", "-o", "a.exr", "--target-error", "0.5", "--error-in", "display"}), shown);
-  EXPECT_EQ(notes_of({"square.gltf", "-o", "a.png", "--light", "none", "--background", "0", "0", "0", "--exposure", "0",
-                      "--tone-mapping", "aces"}),
+  EXPECT_EQ(notes_of({"square.gltf", "-o", "a.png", "--camera", "0", "--light", "none", "--background", "0", "0", "0",
+                      "--exposure", "0", "--tone-mapping", "aces"}),
             "");
 }
 
@@ -1092,8 +1094,9 @@ TEST_F(CliTest, TheDefaultSizeFollowsTheCamera) {
 
 TEST_F(CliTest, LongWorkTellsItsProgressInPlainLines) {
   // These arguments leave nothing to assume.
-  const OptionValues arguments = {"render", "square.gltf", "--size", "4000",         "4000", "-s", "4096", "-o",
-                                  "a.exr",  "--light",     "none",   "--background", "0",    "0",  "0"};
+  const OptionValues arguments = {"render", "square.gltf",  "--camera", "0",  "--size", "4000",
+                                  "4000",   "-s",           "4096",     "-o", "a.exr",  "--light",
+                                  "none",   "--background", "0",        "0",  "0"};
   Process program(PROMIN_EXECUTABLE, arguments, options_);
   const auto tells_progress = [&] { return program.err().find(" left\n") != std::string::npos; };
   for (int i = 0; i < 600 && !tells_progress(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -1123,8 +1126,8 @@ TEST_F(CliTest, AnInterruptLeavesNoPartialFile) {
 TEST_F(CliTest, AnInterruptLeavesNothingOfAPictureThatWaitsOnDisk) {
   write("old.exr", "old");
   Process program(PROMIN_EXECUTABLE,
-                  {"render", "square.gltf", "--size", "4000", "4000", "--target-error", "1e-4", "--max-spp", "32768",
-                   "-o", "old.exr", "--light", "none", "--background", "0", "0", "0"},
+                  {"render", "square.gltf", "--camera", "0", "--size", "4000", "4000", "--target-error", "1e-4",
+                   "--max-spp", "32768", "-o", "old.exr", "--light", "none", "--background", "0", "0", "0"},
                   options_);
   const auto tells_progress = [&] { return program.err().find(" left\n") != std::string::npos; };
   for (int i = 0; i < 600 && !tells_progress(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));

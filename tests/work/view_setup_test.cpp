@@ -309,6 +309,22 @@ TEST(DescribeAssumptionsTest, OneSentenceTellsAll) {
             "mapping neutral");
 }
 
+TEST(DescribeAssumptionsTest, TheCameraIsNamedAsItLooks) {
+  Mesh board;
+  board.positions = {vec3(0.0F), vec3(4.0F, 0.0F, 0.0F), vec3(0.0F, 4.0F, 0.5F)};
+  board.triangles = {uvec3(0, 1, 2)};
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.add("board", board);
+  EXPECT_THAT(assumptions_of(scene, {}),
+              HasSubstr("a camera that frames the scene from the front, because it is flat"));
+  scene.cameras = {Camera(), Camera()};
+  EXPECT_THAT(assumptions_of(scene, {}), HasSubstr("assumed: the first of the file's 2 cameras"));
+  ViewOptions second;
+  second.camera = "1";
+  EXPECT_THAT(assumptions_of(scene, second), Not(HasSubstr("camera")));
+}
+
 TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
   ViewOptions options;
   options.look = {.light = LightChoice::kHeadlight,
@@ -411,7 +427,7 @@ TEST(ViewSetupTest, AShareFramesTheSceneEvenIfItHasACamera) {
 TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
   Scene scene = make_ball();
   const auto sentence_of = [&](const ViewOptions& options) {
-    return describe_small_model(scene, options, make_view(scene, options, kSilent));
+    return describe_file_camera(scene, options, make_view(scene, options, kSilent));
   };
   EXPECT_EQ(sentence_of({}), "") << "promin frames it";
   Camera far;
@@ -428,6 +444,11 @@ TEST(ViewSetupTest, ACameraOfTheFileThatShowsTheModelSmallIsSaid) {
   EXPECT_EQ(sentence_of(named), "") << "the user's choice";
   scene.cameras[0].eye.z = 5.0F;
   EXPECT_EQ(sentence_of({}), "");
+  scene.cameras[0].eye.z = 4.25F;
+  EXPECT_THAT(sentence_of({}), HasSubstr("the file's camera does not show the whole model"));
+  EXPECT_EQ(sentence_of(named), "") << "the user's choice";
+  scene.cameras[0].eye.z = 3.75F;
+  EXPECT_EQ(sentence_of({}), "") << "a detail of the model";
 }
 
 TEST(ViewSetupTest, ACameraOfTheFileShowsAtLeastWhatItShowedItsAuthor) {

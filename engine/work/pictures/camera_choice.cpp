@@ -197,13 +197,18 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
       middle.x, middle.y, middle.z);
 }
 
-std::string describe_small_model(const Scene& scene, const ViewOptions& options, const View& view) {
+std::string describe_file_camera(const Scene& scene, const ViewOptions& options, const View& view) {
   // The largest fraction of the picture for which a note says that the author's camera shows the model small.
   constexpr double kSmall = 0.4;
+  // A model that covers more than this is one in which the camera stands, or of which it shows a detail.
+  constexpr double kLarge = 1.5;
   if (options.camera || options.pose.any() || find_file_camera(scene, options) == nullptr) return "";
   const double share =
       covered_share(scene, view.camera, static_cast<float>(view.size.x) / static_cast<float>(view.size.y));
-  if (share >= kSmall || bounds_of(scene).is_empty()) return "";
+  if (bounds_of(scene).is_empty()) return "";
+  if (share > 1.0 && share <= kLarge)
+    return "the file's camera does not show the whole model; --from three-quarter frames it";
+  if (share >= kSmall) return "";
   return fmt::format(
       "the model covers only {:.0f} % of the picture's side in the file's camera; --from three-quarter frames it",
       100.0 * share);

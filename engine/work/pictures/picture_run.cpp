@@ -44,7 +44,7 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
   warn_of_empty_pictures(scene, cameras_of(run), stats.view->size, console);
-  if (const std::string small = describe_small_model(scene, view, *stats.view); !small.empty()) console.note(small);
+  if (const std::string note = describe_file_camera(scene, view, *stats.view); !note.empty()) console.note(note);
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
   AssumedLight assumed = light_up(scene, view.look, surroundings);

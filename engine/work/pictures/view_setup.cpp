@@ -119,9 +119,17 @@ bool shows_unlit_apart(const Scene& scene, const Environment& environment, const
   return mixes_unlit(scene, environment) && (look.averages_exposure || !shows_light_as_it_is);
 }
 
-std::string describe_framing(Framing framing) {
-  return framing == Framing::kInside ? "a camera that stands inside the scene"
-                                     : "a camera that frames the scene from three quarters";
+std::string describe_framing(const Scene& scene, const PoseOptions& pose) {
+  const Framing framing = choose_framing(scene, pose);
+  if (framing == Framing::kInside) return "a camera that stands inside the scene";
+  if (framing != Framing::kThreeQuarter) {
+    return fmt::format("a camera that looks into the scene from the {}", framing_names()[static_cast<size_t>(framing)]);
+  }
+  const vec3 up = pose.up ? vec3(*pose.up) : FrameOptions().up;
+  const Camera camera = frame_scene(scene, 1.0F, {.from = framing, .up = up});
+  const bool is_level = std::abs(glm::dot(camera.look, glm::normalize(up))) < 1e-3F;
+  return is_level ? "a camera that frames the scene from the front, because it is flat"
+                  : "a camera that frames the scene from three quarters";
 }
 
 std::string describe_light(const AssumedLight& light) {
@@ -135,7 +143,9 @@ std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions&
                                           const std::optional<DisplayTransform>& display) {
   const LookOptions& look = options.look;
   std::vector<std::string> parts;
-  if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(choose_framing(scene, options.pose)));
+  if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(scene, options.pose));
+  if (scene.cameras.size() > 1 && !options.camera && !options.pose.any() && find_file_camera(scene, options) != nullptr)
+    parts.push_back(fmt::format("the first of the file's {} cameras", scene.cameras.size()));
   if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
   if (light.has_background) parts.emplace_back("a grey background");
   if (display && !look.exposure_ev && !look.averages_exposure && display->exposure_ev != 0.0F) {

@@ -52,8 +52,8 @@ std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions&
 std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
                                  const std::optional<DisplayTransform>& display);
 
-/// Returns the text for a framing, for describe_assumptions() and `promin info`; empty if nothing is assumed.
-std::string describe_framing(Framing framing);
+/// Returns a text for the camera that frames a scene without a camera, for describe_assumptions() and `promin info`.
+std::string describe_framing(const Scene& scene, const PoseOptions& pose);
 std::string describe_light(const AssumedLight& light);
 
 /// Throws UsageError if the scene, including its default lights, has no light with one of these indices.
