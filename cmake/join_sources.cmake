@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Compiles at most 32 sources of a target together (CMake's unity builds), of a larger target those of a folder and its
-# subfolders. A header is then parsed once for all of them, and a template that many of them use is compiled once. The
+# subfolders. Folders with fewer than 9 sources are taken together. A header is then parsed once for all of them, and a template that many of them use is compiled once. The
 # options are the same.
 
 # The file lists the groups of sources for tools/joined_names, one source a line: TARGET/GROUP FILE.
@@ -43,6 +43,18 @@ function(promin_join_sources_of NAME)
     list(APPEND ${GROUP} ${SOURCE})
   endforeach()
   list(REMOVE_DUPLICATES GROUPS)
+  list(LENGTH GROUPS LENGTH)
+  if(LENGTH GREATER 1)
+    set(in_small_folders)
+    foreach(GROUP IN LISTS GROUPS)
+      list(LENGTH ${GROUP} LENGTH)
+      if(LENGTH LESS 9)
+        list(APPEND in_small_folders ${${GROUP}})
+        list(REMOVE_ITEM GROUPS ${GROUP})
+      endif()
+    endforeach()
+    list(APPEND GROUPS in_small_folders)
+  endif()
   foreach(GROUP IN LISTS GROUPS)
     list(LENGTH ${GROUP} LENGTH)
     if(LENGTH EQUAL 1)

@@ -22,11 +22,11 @@ using std::numbers::pi;
 
 constexpr float kLargestHalf = 65504.0F;
 
-struct Level {
+struct SkyLevel {
   double roughness;
   uint32_t shift;
 };
-constexpr Level kLevels[] = {
+constexpr SkyLevel kLevels[] = {
 #define PROMIN_SKY_LEVEL(ROUGHNESS, SHIFT) {ROUGHNESS, SHIFT},
 #include "shade/sky_levels.def"
 };
@@ -153,7 +153,7 @@ std::vector<LobeSample> sample_lobe(double roughness, uint32_t count, const std:
 }
 
 /// Returns two unit vectors that are perpendicular to n and to each other.
-std::pair<vec3, vec3> make_tangents(const vec3& n) {
+std::pair<vec3, vec3> make_frame(const vec3& n) {
   const vec3 other = std::abs(n.y) < 0.9F ? vec3(0.0F, 1.0F, 0.0F) : vec3(1.0F, 0.0F, 0.0F);
   const vec3 tangent = glm::normalize(glm::cross(other, n));
   return {tangent, glm::cross(n, tangent)};
@@ -168,7 +168,7 @@ SkyMap blur(const std::vector<SkyMap>& maps, uint32_t side, const std::vector<Lo
     for (int x = 0; x < blurred.side(); ++x) {
       const dvec2 place = (dvec2(x, y) + 0.5) / static_cast<double>(side);
       const vec3 normal(glm::normalize(octahedral_point(place)));
-      const auto [tangent, bitangent] = make_tangents(normal);
+      const auto [tangent, bitangent] = make_frame(normal);
       vec4 sum(0.0F);
       for (const LobeSample& sample : lobe) {
         const vec3 direction =

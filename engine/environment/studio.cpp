@@ -46,7 +46,7 @@ double smoothstep(double from, double to, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-dvec3 direction_of(double azimuth, double elevation) {
+dvec3 direction_at(double azimuth, double elevation) {
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
 
@@ -54,7 +54,7 @@ dvec3 direction_of(double azimuth, double elevation) {
 class HungLamp {
  public:
   explicit HungLamp(const Lamp& lamp)
-      : middle_(direction_of(glm::radians(lamp.azimuth_deg), glm::radians(lamp.elevation_deg))),
+      : middle_(direction_at(glm::radians(lamp.azimuth_deg), glm::radians(lamp.elevation_deg))),
         right_(std::cos(glm::radians(lamp.azimuth_deg)), 0.0, -std::sin(glm::radians(lamp.azimuth_deg))),
         up_(glm::cross(middle_, right_)),
         half_width_(0.5 * glm::radians(lamp.width_deg)),

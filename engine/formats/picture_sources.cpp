@@ -51,7 +51,7 @@ bool tells_size(std::span<const std::byte> head) {
   try {
     read_picture_size(head);
     return true;
-  } catch (const PictureError&) {
+  } catch (const DecodeError&) {
     return false;
   }
 }
@@ -110,7 +110,7 @@ void decode_pictures(std::span<PictureSource> sources, LoadReport& report) {
     if (source.problem) return;
     try {
       warnings[i] = decode(source);
-    } catch (const PictureError& error) {
+    } catch (const DecodeError& error) {
       source.problem = Fault{.code = "picture.unusable",
                              .what = std::string("a picture cannot be used: ") + error.what(),
                              .cure = "use another picture"};

@@ -23,9 +23,9 @@ constexpr float kNearDirection = 0.1F;
 
 /// Number of bits in a sort key for each coordinate of the entry point and of the direction; the highest bits come
 /// first. There are kCells cells along each side of the cube of points and of the cube of directions.
-constexpr uint32_t kLevels = 5;
-constexpr float kCells = 1U << kLevels;
-constexpr uint32_t kKeyBits = 6 * kLevels;
+constexpr uint32_t kGridLevels = 5;
+constexpr float kCells = 1U << kGridLevels;
+constexpr uint32_t kKeyBits = 6 * kGridLevels;
 constexpr uint32_t kMissKey = (1U << kKeyBits) - 1;
 constexpr uint32_t kDigitBits = 10;
 constexpr uint32_t kBuckets = 1U << kDigitBits;
@@ -37,7 +37,7 @@ constexpr size_t kLeastPart = 16384;
 // Number of rays whose keys are computed at a time. Loops over arrays without branches become vector instructions; a
 // computation ray by ray takes five times as long.
 constexpr size_t kBlock = 64;
-using Block = std::array<float, kBlock>;
+using RayBlock = std::array<float, kBlock>;
 
 // These functions return the first number if the second is NaN.
 float lesser(float a, float b) {
@@ -56,14 +56,14 @@ float cell_of(float x) {
 /// Rounds a cell down and moves bit i of its number to bit 6 i. The product contains copies of the number at distances
 /// that are one bit less than 6, so bit i of copy i is at bit 6 i.
 uint32_t spread_bits(float cell) {
-  static_assert(kLevels == 5);
+  static_assert(kGridLevels == 5);
   return (static_cast<uint32_t>(static_cast<int32_t>(cell)) * 0x108421U) & 0x1041041U;
 }
 
 /// Computes the keys of at most kBlock rays.
 void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<uint32_t, kBlock> keys) {
-  std::array<Block, 3> origins{};
-  std::array<Block, 3> directions{};
+  std::array<RayBlock, 3> origins{};
+  std::array<RayBlock, 3> directions{};
   for (size_t i = 0; i < rays.size(); ++i) {
     const vec3& origin = rays[i].origin;
     const vec3& direction = rays[i].direction;
@@ -74,22 +74,22 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
     directions[1][i] = direction.y;
     directions[2][i] = direction.z;
   }
-  Block scales;
+  RayBlock scales;
   for (size_t i = 0; i < kBlock; ++i) {
     const float size_of_two = greater(std::fabs(directions[0][i]), std::fabs(directions[1][i]));
     scales[i] = 1.0F / greater(size_of_two, std::fabs(directions[2][i]));
   }
 
   // The following coordinates are relative to a cube from -1 to 1.
-  Block entry;
-  Block exit;
+  RayBlock entry;
+  RayBlock exit;
   entry.fill(0.0F);
   exit.fill(std::numeric_limits<float>::infinity());
   const float unit = 1.0F / cube.radius;
   for (int axis = 0; axis < 3; ++axis) {
     const float center = cube.center[axis];
-    Block& origin = origins[axis];
-    Block& direction = directions[axis];
+    RayBlock& origin = origins[axis];
+    RayBlock& direction = directions[axis];
     for (size_t i = 0; i < kBlock; ++i) {
       direction[i] *= scales[i];
       origin[i] = (origin[i] - center) * unit;
@@ -101,13 +101,13 @@ void compute_keys(std::span<const Ray> rays, const SceneCube& cube, std::span<ui
     }
   }
 
-  Block sums{};
-  Block point_cells;
-  Block direction_cells;
+  RayBlock sums{};
+  RayBlock point_cells;
+  RayBlock direction_cells;
   std::fill(keys.begin(), keys.end(), 0U);
   for (int axis = 0; axis < 3; ++axis) {
-    const Block& origin = origins[axis];
-    const Block& direction = directions[axis];
+    const RayBlock& origin = origins[axis];
+    const RayBlock& direction = directions[axis];
     for (size_t i = 0; i < kBlock; ++i) {
       const float point = origin[i] + entry[i] * direction[i];
       sums[i] += point + direction[i];

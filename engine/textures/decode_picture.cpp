@@ -25,9 +25,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "texels have red in the lowest byte");
 
 void check_size(uint64_t width, uint64_t height) {
-  if (width == 0 || height == 0) throw PictureError("it has no pixels");
+  if (width == 0 || height == 0) throw DecodeError("it has no pixels");
   if (width <= kMaxTextureSide && height <= kMaxTextureSide && width * height <= kMaxTextureTexels) return;
-  throw PictureError("its size of " + std::to_string(width) + "x" + std::to_string(height) + " is too large", false);
+  throw DecodeError("its size of " + std::to_string(width) + "x" + std::to_string(height) + " is too large", false);
 }
 
 /// Reads a PNG file with libpng. libpng returns from errors by longjmp, so no object with a destructor may be created
@@ -52,13 +52,13 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
 
   uvec2 read_header() {
-    if (setjmp(png_jmpbuf(png_)) != 0) throw PictureError(error_.data());
+    if (setjmp(png_jmpbuf(png_)) != 0) throw DecodeError(error_.data());
     png_read_info(png_, info_);
     return {png_get_image_width(png_, info_), png_get_image_height(png_, info_)};
   }
 
   void read_texels(const uvec2& size, uint32_t* texels) {
-    if (setjmp(png_jmpbuf(png_)) != 0) throw PictureError(error_.data());
+    if (setjmp(png_jmpbuf(png_)) != 0) throw DecodeError(error_.data());
     png_set_expand(png_);
     png_set_scale_16(png_);
     png_set_gray_to_rgb(png_);
@@ -108,7 +108,7 @@ class JpegReader {
     int subsampling = 0;
     int colors = 0;
     check(tjDecompressHeader3(handle_.get(), data_, bytes_, &width, &height, &subsampling, &colors));
-    if (colors == TJCS_CMYK || colors == TJCS_YCCK) throw PictureError("its colours are CMYK", false);
+    if (colors == TJCS_CMYK || colors == TJCS_YCCK) throw DecodeError("its colours are CMYK", false);
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
   }
 
@@ -124,7 +124,7 @@ class JpegReader {
   /// Checks the result of a call of the library. After a warning the readable part of the picture is still decoded.
   void check(int result) {
     if (result == 0) return;
-    if (tjGetErrorCode(handle_.get()) != TJERR_WARNING) throw PictureError(tjGetErrorStr2(handle_.get()));
+    if (tjGetErrorCode(handle_.get()) != TJERR_WARNING) throw DecodeError(tjGetErrorStr2(handle_.get()));
     warning_ = tjGetErrorStr2(handle_.get());
   }
 
@@ -147,7 +147,7 @@ class PluginReader {
     ProminPicturesReader* opened = nullptr;
     check(plugin_.open_bytes(file_.data(), file_.size(), format_.name, &opened, &info, &message_));
     reader_.reset(opened);
-    if (info.is_flat == 0) throw PictureError("it is not a two-dimensional picture", false);
+    if (info.is_flat == 0) throw DecodeError("it is not a two-dimensional picture", false);
     check_size(info.width, info.height);
     return {static_cast<uint32_t>(info.width), static_cast<uint32_t>(info.height)};
   }
@@ -161,12 +161,12 @@ class PluginReader {
     try {
       return open_pictures();
     } catch (const RunError& error) {
-      throw PictureError(error.problems().front().what, false);
+      throw DecodeError(error.problems().front().what, false);
     }
   }
   void check(int status) {
     if (status == PROMIN_PICTURES_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (status != PROMIN_PICTURES_DONE) throw PictureError(format_.name + std::string(": ") + message_.text);
+    if (status != PROMIN_PICTURES_DONE) throw DecodeError(format_.name + std::string(": ") + message_.text);
   }
 
   const PicturesPlugin& plugin_;
@@ -180,7 +180,7 @@ class PluginReader {
 template <typename Task>
 auto with_reader(std::span<const std::byte> file, const Task& task) {
   const PictureFormat* format = find_picture_format(file);
-  if (format == nullptr) throw PictureError("its format is unknown");
+  if (format == nullptr) throw DecodeError("its format is unknown");
   if (std::string_view(format->name) == "png") {
     PngReader reader(file);
     return task(reader);

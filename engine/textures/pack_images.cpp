@@ -99,7 +99,7 @@ uint64_t count_words(const uvec2& size, uint32_t levels) {
 }
 
 /// Returns the size after this number of halvings.
-uvec2 halve(const uvec2& size, uint32_t halvings) {
+uvec2 halve_size(const uvec2& size, uint32_t halvings) {
   return {std::max(size.x >> halvings, 1U), std::max(size.y >> halvings, 1U)};
 }
 
@@ -119,11 +119,11 @@ class ImageSizes {
   uint32_t levels(size_t image, uint32_t halvings) const {
     const TextureImage& source = *images_[image];
     if (needs_texels_ ? source.texels.empty() : source.size.x == 0 || source.size.y == 0) return 0;
-    return has_levels_[image] ? count_levels(halve(images_[image]->size, halvings)) : 1;
+    return has_levels_[image] ? count_levels(halve_size(images_[image]->size, halvings)) : 1;
   }
   uint64_t words(size_t image, uint32_t halvings) const {
     const uint32_t count = levels(image, halvings);
-    return count == 0 ? 0 : count_words(halve(images_[image]->size, halvings), count);
+    return count == 0 ? 0 : count_words(halve_size(images_[image]->size, halvings), count);
   }
 
  private:
@@ -172,7 +172,7 @@ std::string to_mib(uint64_t bytes) {
 
 /// The largest size of all images in bytes. The words of the buffer that contains images are numbered in 32 bits.
 constexpr uint64_t kMostBytes = uint64_t{8} << 30;
-constexpr const char* kCure = "raise the memory for textures, or make images smaller";
+constexpr const char* kTextureCure = "raise the memory for textures, or make images smaller";
 
 }  // namespace
 
@@ -200,7 +200,7 @@ TextureFit fit_images(std::span<const std::shared_ptr<const TextureImage>> image
       throw RunError({"textures.memory.short",
                       "the scene's " + std::to_string(images.size()) + " images need more than " + to_mib(most_bytes) +
                           " even with one texel each",
-                      "", kCure, Setting::kTextureMemory});
+                      "", kTextureCure, Setting::kTextureMemory});
     }
     fit.bytes -= sizeof(uint32_t) * (words - fewer);
     words = fewer;
@@ -218,7 +218,7 @@ std::optional<Problem> warn_of(const TextureFit& fit) {
                      " images of textures are halved in size";
   if (count_from(2) > 0) what += ", " + std::to_string(count_from(2)) + " of these more than once";
   what += ", so that " + to_mib(fit.whole_bytes) + " become " + to_mib(fit.bytes);
-  return Problem{"textures.halved", what, "", kCure, Setting::kTextureMemory};
+  return Problem{"textures.halved", what, "", kTextureCure, Setting::kTextureMemory};
 }
 
 uint64_t packed_image_bytes(std::span<const std::shared_ptr<const TextureImage>> images,
@@ -241,7 +241,7 @@ PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> im
     const uint32_t halvings = fit.halvings[i];
     const uint32_t levels = sizes.levels(i, halvings);
     if (levels == 0) continue;
-    placed = {static_cast<uint32_t>(words), halve(images[i]->size, halvings), levels, images[i]->use};
+    placed = {static_cast<uint32_t>(words), halve_size(images[i]->size, halvings), levels, images[i]->use};
     words += sizes.words(i, halvings);
   }
   packed.words.resize(words);

@@ -220,13 +220,13 @@ TEST_P(BvhTest, PartsOfBoxesCoverThem) {
   EXPECT_EQ(std::count_if(points.begin(), points.end(), [](const auto& left) { return !left.empty(); }), 0);
 }
 
-struct Ray {
+struct HostRay {
   dvec3 origin;
   dvec3 direction;
 };
 
 /// The slab test. If a ray hits a box, it also hits every box around it.
-bool is_met(const Bounds& box, const Ray& ray) {
+bool is_met(const Bounds& box, const HostRay& ray) {
   const dvec3 below = (dvec3(box.lo) - ray.origin) / ray.direction;
   const dvec3 above = (dvec3(box.hi) - ray.origin) / ray.direction;
   const dvec3 in = glm::min(below, above);
@@ -234,7 +234,7 @@ bool is_met(const Bounds& box, const Ray& ray) {
   return std::max({in.x, in.y, in.z, 0.0}) <= std::min({out.x, out.y, out.z});
 }
 
-std::vector<uint32_t> find_met_boxes(const Bvh& bvh, const Boxes& boxes, const Ray& ray) {
+std::vector<uint32_t> find_met_boxes(const Bvh& bvh, const Boxes& boxes, const HostRay& ray) {
   std::vector<uint32_t> met;
   std::vector<uint32_t> open = {0};
   while (!open.empty()) {
@@ -262,7 +262,7 @@ TEST_P(BvhTest, RaysMeetTheSameBoxesAsByBruteForce) {
   for (int i = 0; i < 20; ++i) {
     const Bounds& target = input[random() % input.size()];
     const dvec3 origin = size * dvec3(random_point(random, -1.0F, 1.0F)) + dvec3(random_point(random, -1e-30F, 1e-30F));
-    const Ray ray = {origin, dvec3(target.center()) - origin};
+    const HostRay ray = {origin, dvec3(target.center()) - origin};
     std::vector<uint32_t> expected;
     for (uint32_t k = 0; k < input.size(); ++k) {
       if (is_met(input[k], ray)) expected.push_back(k);

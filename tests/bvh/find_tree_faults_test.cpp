@@ -20,7 +20,7 @@ namespace {
 using layout::Node;
 using testing::HasSubstr;
 
-world::Scene scene_of(std::vector<world::Object> objects) {
+world::Scene scene_with(std::vector<world::Object> objects) {
   world::Scene scene;
   scene.materials.resize(1);
   scene.objects = std::move(objects);
@@ -98,7 +98,7 @@ TEST(FindTreeFaults, ShrunkenBoxesAreFound) {
 }
 
 TEST(FindTreeFaults, WhatIsNoBoxHoldsNothing) {
-  PackedScene packed = pack_scene(scene_of({{"", world::Sphere{}, 0}}), "sah");
+  PackedScene packed = pack_scene(scene_with({{"", world::Sphere{}, 0}}), "sah");
   ASSERT_EQ(find_tree_faults(packed).count, 0U);
   for (const float origin : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     PackedScene spoilt = packed;
@@ -147,7 +147,7 @@ class SplitTree : public testing::Test {
     Mesh mesh;
     mesh.positions = {vec3(0, 0, 0), vec3(4, 0, 0.5F), vec3(0, 3, 1)};
     mesh.triangles = {{0, 1, 2}};
-    return scene_of({{"", mesh, 0}, {"", world::Sphere{vec3(10, 0, 0), 1.0F}, 0}});
+    return scene_with({{"", mesh, 0}, {"", world::Sphere{vec3(10, 0, 0), 1.0F}, 0}});
   }
 
   TreeFaults faults() const { return find_tree_faults(with_tree(scene_, chain_of(boxes_, references_))); }

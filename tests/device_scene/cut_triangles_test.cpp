@@ -18,7 +18,7 @@ Mesh make_mesh() {
   return mesh;
 }
 
-world::Scene scene_of(std::initializer_list<world::Shape> shapes) {
+world::Scene scene_from(std::initializer_list<world::Shape> shapes) {
   world::Scene scene;
   scene.materials.resize(1);
   for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
@@ -33,7 +33,7 @@ std::vector<TrianglePart> parts_of(const world::Scene& scene, const Mesh& mesh, 
 
 TEST(CutTriangles, CutsTheNeighbourAtTheCornerOnItsEdge) {
   const Mesh mesh = make_mesh();
-  const world::Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_from({mesh});
   for (const uint32_t whole : {1U, 2U, 4U}) EXPECT_EQ(parts_of(scene, mesh, whole).size(), 1U);
   const std::vector<TrianglePart> parts = parts_of(scene, mesh, 3);
   ASSERT_EQ(parts.size(), 2U);
@@ -54,7 +54,7 @@ TEST(CutTriangles, CutsAcrossTrianglesInOneLine) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0}, {1, 2, 0}, {1, -2, 0}};
   mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 4, 1}, {1, 4, 3}, {0, 2, 5}, {2, 3, 5}};
-  const world::Scene scene = scene_of({mesh});
+  const world::Scene scene = scene_from({mesh});
   EXPECT_EQ(parts_of(scene, mesh, 2).size(), 1U);
   EXPECT_EQ(parts_of(scene, mesh, 3).size(), 2U) << "from 1 to 4 past 2";
   EXPECT_EQ(parts_of(scene, mesh, 4).size(), 2U) << "from 0 to 2 past 1";
@@ -65,7 +65,7 @@ TEST(CutTriangles, NumbersStayThoseOfTheScene) {
   Mesh mesh = make_mesh();
   mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
   const PackedScene packed =
-      pack_scene(scene_of({world::Sphere(), mesh, world::NotDrawn(), mesh, world::Plane()}), "sah");
+      pack_scene(scene_from({world::Sphere(), mesh, world::NotDrawn(), mesh, world::Plane()}), "sah");
   // The scene has one sphere, two objects of five triangles and a plane. In each object one triangle is cut in two and
   // one is not packed.
   ASSERT_EQ(packed.primitives.size(), 12U);

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-FIRST = """
+FIRST = '''
 #include <span>
 #define PARTS(NAME) case NAME: return 1;
 namespace promin {
@@ -38,7 +38,7 @@ int count(int value) {
 Row::Row() : member_(1) {}
 TEST(Names, Differ) {}
 }  // namespace promin
-"""
+'''
 # Each text declares a name of FIRST once more. The line is that of the clash in FIRST.
 CLASHES = {
     "namespace { using Json = long; }": 6,
@@ -50,7 +50,7 @@ CLASHES = {
     "static int turn(int x) {\n  return x;\n}": 20,
     "TEST(Names, Differ) {}": 27,
 }
-FINE = """
+FINE = '''
 namespace {
 using Json = int;
 using std::string;
@@ -60,7 +60,7 @@ void PARTS_of() {}
 }  // namespace
 TEST(Names, Agree) {}
 int other(int value) { return value; }
-"""
+'''
 
 
 def run(tool, folder, *texts):

@@ -37,7 +37,7 @@ struct DevicePicture {
 };
 
 /// Returns a ball, a can and a sheet on a mirroring floor.
-world::Scene make_scene() {
+world::Scene make_small_scene() {
   world::Scene scene;
   scene.environment.ambient = vec3(0.1F);
   scene.environment.background = vec3(0.2F, 0.4F, 0.6F);
@@ -59,7 +59,7 @@ world::Scene make_scene() {
   return scene;
 }
 
-View make_view() {
+View look_at_scene() {
   View view;
   view.size = uvec2(80, 50);
   view.camera.eye = vec3(0, 2, 8);
@@ -71,7 +71,7 @@ View make_view() {
 
 /// Returns the same scene with all objects of smooth metal.
 world::Scene make_shiny_scene(float roughness) {
-  world::Scene scene = make_scene();
+  world::Scene scene = make_small_scene();
   for (Material& material : scene.materials) material.model = MetallicRoughness{.roughness = roughness};
   return scene;
 }
@@ -93,8 +93,8 @@ class ComparePictureTest : public testing::Test {
     return i;
   }
 
-  const world::Scene scene = make_scene();
-  const View view = make_view();
+  const world::Scene scene = make_small_scene();
+  const View view = look_at_scene();
   const Picture picture = render(scene, view);
   const DevicePicture rounded{picture};
 };

@@ -15,7 +15,7 @@
 namespace promin::oracle {
 namespace {
 
-constexpr Real kPi = std::numbers::pi_v<Real>;
+constexpr Real kRealPi = std::numbers::pi_v<Real>;
 constexpr size_t kSide = layout::LOBE_TABLE_SIDE;
 constexpr Real kLast = kSide - 1;
 
@@ -51,7 +51,7 @@ TEST(OracleLobe, DensitiesAreOfAWholeSurface) {
       const Real tangent = std::exp(first + (i + 0.5L) * step);
       const Real theta = std::atan(tangent);
       const Real d_theta = tangent / (1 + tangent * tangent) * step;
-      sum += 2 * kPi * std::sin(theta) * std::cos(theta) * microfacet_density(theta, alpha) * d_theta;
+      sum += 2 * kRealPi * std::sin(theta) * std::cos(theta) * microfacet_density(theta, alpha) * d_theta;
     }
     EXPECT_NEAR(static_cast<double>(sum), 1.0, 1e-6) << static_cast<double>(alpha);
   }

@@ -12,14 +12,14 @@ namespace {
 
 constexpr Real kHitTolerance = 1e-15L;
 
-world::Scene scene_of(std::initializer_list<world::Shape> shapes) {
+world::Scene scene_around(std::initializer_list<world::Shape> shapes) {
   world::Scene scene;
   for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
   return scene;
 }
 
 Hit cast(const world::Shape& shape, const Vector& origin, const Vector& direction) {
-  return find_nearest_hit(scene_of({shape}), {origin, direction});
+  return find_nearest_hit(scene_around({shape}), {origin, direction});
 }
 
 void expect_hit(const Hit& hit, Real t, const Vector& normal) {
@@ -190,7 +190,7 @@ TEST(Oracle, DegenerateTrianglesKeepTheirNumberAndAreNotHit) {
 }
 
 TEST(Oracle, TheIntervalIsOpen) {
-  const world::Scene scene = scene_of({world::Plane{{0, 0, 0}, {0, 1, 0}}});
+  const world::Scene scene = scene_around({world::Plane{{0, 0, 0}, {0, 1, 0}}});
   const auto exists = [&](Real tmin, Real tmax) { return is_occluded(scene, {{0, 2, 0}, {0, -1, 0}, tmin, tmax}); };
   EXPECT_TRUE(exists(0, kInfinity));
   EXPECT_TRUE(exists(-5, 2.5L));
@@ -204,7 +204,7 @@ TEST(Oracle, TheIntervalIsOpen) {
 
 TEST(Oracle, TheNearestAndOfEqualOnesTheFirstIsFound) {
   const world::Sphere sphere{{0, 0, 0}, 1};
-  const world::Scene scene = scene_of({world::NotDrawn{}, world::Sphere{{0, 0, -5}, 1}, sphere, sphere});
+  const world::Scene scene = scene_around({world::NotDrawn{}, world::Sphere{{0, 0, -5}, 1}, sphere, sphere});
   EXPECT_EQ(find_nearest_hit(scene, {{0, 0, 5}, {0, 0, -1}}).object, 2);
   EXPECT_EQ(find_nearest_hit(scene, {{0, 0, -9}, {0, 0, 1}}).object, 1);
   Mesh twice = make_right_triangle();
@@ -213,7 +213,7 @@ TEST(Oracle, TheNearestAndOfEqualOnesTheFirstIsFound) {
 }
 
 TEST(Oracle, RaysWithoutMeaningMiss) {
-  const world::Scene scene = scene_of({world::Sphere{{0, 0, 0}, 1}});
+  const world::Scene scene = scene_around({world::Sphere{{0, 0, 0}, 1}});
   const Real nan = std::numeric_limits<Real>::quiet_NaN();
   const Vector origin(0, 0, 5);
   const Vector direction(0, 0, -1);

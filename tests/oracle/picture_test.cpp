@@ -34,7 +34,7 @@ View look_at(const vec3& eye, const vec3& target, const vec3& up) {
   return view;
 }
 
-Vector color_of(const world::Scene& scene, const View& view) {
+Vector color_in(const world::Scene& scene, const View& view) {
   return render(scene, view).at(0, 0).color;
 }
 
@@ -129,7 +129,7 @@ TEST(OraclePicture, DepthCountsFromTheEyeAndNormalsAreNotFlipped) {
 TEST(OraclePicture, WhatMissesShowsTheBackground) {
   world::Scene scene;
   scene.environment.background = vec3(0.25F, 0.5F, 1.0F);
-  expect_color(color_of(scene, look_down_at(0)), {0.25L, 0.5L, 1});
+  expect_color(color_in(scene, look_down_at(0)), {0.25L, 0.5L, 1});
 }
 
 TEST(OraclePicture, AmbientAndEmissiveAdd) {
@@ -138,18 +138,18 @@ TEST(OraclePicture, AmbientAndEmissiveAdd) {
   scene.environment.ambient = vec3(0.5F, 1.0F, 2.0F);
   scene.materials[0].phong().ambient = vec3(0.25F);
   scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
-  expect_color(color_of(scene, look_down_at(0)), {0.125L, 0.25L, 1.5L});
+  expect_color(color_in(scene, look_down_at(0)), {0.125L, 0.25L, 1.5L});
 }
 
 TEST(OraclePicture, DiffuseLightFollowsTheCosine) {
   world::Scene scene = make_lit_floor();
-  expect_color(color_of(scene, look_down_at(0)), Vector(1));
-  expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L));
+  expect_color(color_in(scene, look_down_at(0)), Vector(1));
+  expect_color(color_in(scene, look_down_at(1.5F)), Vector(0.8L));
   // The floor's underside faces away from the light.
-  expect_color(color_of(scene, look_at(vec3(0, -1, 0), vec3(0), vec3(0, 0, 1))), Vector(0));
+  expect_color(color_in(scene, look_at(vec3(0, -1, 0), vec3(0), vec3(0, 0, 1))), Vector(0));
   scene.lights[0].kind = LightKind::kDirectional;
   scene.lights[0].direction = vec3(0.6F, -0.8F, 0);
-  expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L));
+  expect_color(color_in(scene, look_down_at(1.5F)), Vector(0.8L));
 }
 
 TEST(OraclePicture, HighlightsFollowThePower) {
@@ -159,34 +159,34 @@ TEST(OraclePicture, HighlightsFollowThePower) {
   scene.materials[0].phong().shininess = 10;
   const vec3 eye(std::sqrt(1.0F / 3.0F), 1, 0);
   const View view = look_at(eye, vec3(0), glm::normalize(vec3(-1, std::sqrt(1.0F / 3.0F), 0)));
-  expect_color(color_of(scene, view), Vector(0.5L * std::pow(0.75L, Real(5))));
+  expect_color(color_in(scene, view), Vector(0.5L * std::pow(0.75L, Real(5))));
   scene.materials[0].phong().shininess = 0;
-  expect_color(color_of(scene, view), Vector(0));
+  expect_color(color_in(scene, view), Vector(0));
 }
 
 TEST(OraclePicture, ShadowsAreCastByWhatLiesBetween) {
   world::Scene scene = make_lit_floor();
   scene.objects.push_back({"ball", world::Sphere{{1, 1.5F, 0}, 0.25F}, 0});
   // The shadow of the ball's centre falls on x = 4.
-  expect_color(color_of(scene, look_down_at(4)), Vector(0));
-  expect_color(color_of(scene, look_down_at(-4)), Vector(1 / std::sqrt(Real(5))));
+  expect_color(color_in(scene, look_down_at(4)), Vector(0));
+  expect_color(color_in(scene, look_down_at(-4)), Vector(1 / std::sqrt(Real(5))));
   // An object behind a point light casts no shadow; a directional light has no back.
   scene.objects[1].shape = world::Sphere{{0, 3, 0}, 0.25F};
-  expect_color(color_of(scene, look_down_at(0)), Vector(1));
+  expect_color(color_in(scene, look_down_at(0)), Vector(1));
   scene.lights[0].kind = LightKind::kDirectional;
   scene.lights[0].direction = vec3(0, -1, 0);
-  expect_color(color_of(scene, look_down_at(0)), Vector(0));
+  expect_color(color_in(scene, look_down_at(0)), Vector(0));
 }
 
 TEST(OraclePicture, PhysicalLightsFallOffToTheirRange) {
   world::Scene scene = make_lit_floor();
   scene.lights[0].attenuation = Attenuation::kInverseSquare;
-  expect_color(color_of(scene, look_down_at(0)), Vector(0.25L));
-  expect_color(color_of(scene, look_down_at(1.5F)), Vector(0.8L / 6.25L));
+  expect_color(color_in(scene, look_down_at(0)), Vector(0.25L));
+  expect_color(color_in(scene, look_down_at(1.5F)), Vector(0.8L / 6.25L));
   scene.lights[0].range = 4;
-  expect_color(color_of(scene, look_down_at(0)), Vector(0.25L * 15 / 16));
+  expect_color(color_in(scene, look_down_at(0)), Vector(0.25L * 15 / 16));
   scene.lights[0].range = 2;
-  expect_color(color_of(scene, look_down_at(0)), Vector(0));
+  expect_color(color_in(scene, look_down_at(0)), Vector(0));
 }
 
 TEST(OraclePicture, SpotsFadeBetweenTheirAngles) {
@@ -196,7 +196,7 @@ TEST(OraclePicture, SpotsFadeBetweenTheirAngles) {
   scene.lights[0].inner_cone_angle = 0.2F;
   scene.lights[0].outer_cone_angle = 0.4F;
   const auto seen_at = [&](Real angle) {
-    return color_of(scene, look_down_at(static_cast<float>(2 * std::tan(angle)))).x / std::cos(angle);
+    return color_in(scene, look_down_at(static_cast<float>(2 * std::tan(angle)))).x / std::cos(angle);
   };
   const Real ramp = (std::cos(0.3L) - std::cos(0.4L)) / (std::cos(0.2L) - std::cos(0.4L));
   EXPECT_NEAR(seen_at(0.19L), 1, kColorTolerance);
@@ -210,12 +210,12 @@ TEST(OraclePicture, AMirrorAddsWhatItSees) {
   scene.materials = {make_mirror(vec3(0.5F, 0.25F, 0.0F), vec3(0.125F)), make_emitter(vec3(1.0F, 1.0F, 8.0F))};
   scene.objects = {{"floor", kFloor, 0}, {"lamp", world::Sphere{{4, 3, 0}, 1}, 1}};
   View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
-  expect_color(color_of(scene, view), {0.625L, 0.375L, 0.125L});
+  expect_color(color_in(scene, view), {0.625L, 0.375L, 0.125L});
   view.max_depth = 0;
-  expect_color(color_of(scene, view), Vector(0.125L));
+  expect_color(color_in(scene, view), Vector(0.125L));
   view.max_depth = 1;
   scene.objects.pop_back();
-  expect_color(color_of(scene, view), {1.125L, 0.625L, 0.125L});
+  expect_color(color_in(scene, view), {1.125L, 0.625L, 0.125L});
 }
 
 TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
@@ -226,7 +226,7 @@ TEST(OraclePicture, FacingMirrorsSumAGeometricSeries) {
   View view = look_down_at(0);
   for (const uint32_t depth : {0U, 1U, 5U, 20U}) {
     view.max_depth = depth;
-    expect_color(color_of(scene, view), Vector(2 - std::pow(0.5L, Real(depth))));
+    expect_color(color_in(scene, view), Vector(2 - std::pow(0.5L, Real(depth))));
   }
 }
 
@@ -243,12 +243,12 @@ TEST(OraclePicture, MetallicRoughnessFromAbove) {
   const Real reflectance = k * (0.04L * (shares.all - shares.grazing) + shares.grazing);
   const Real highlight = 0.25L / (pi * 0.0625L);
   const Vector dielectric = (1 - reflectance) * Vector(model.base_color) / pi + k * 0.04L * highlight;
-  expect_color(color_of(scene, look_down_at(0)), dielectric);
+  expect_color(color_in(scene, look_down_at(0)), dielectric);
   model.metallic = 1;
   scene.materials = {make_metallic_roughness(model)};
   const Vector base(model.base_color);
   const Vector metal_k = Real(1) / (Real(1) - (base + (Real(1) - base) / Real(21)) * (1 - shares.all));
-  expect_color(color_of(scene, look_down_at(0)), metal_k * base * highlight);
+  expect_color(color_in(scene, look_down_at(0)), metal_k * base * highlight);
 }
 
 TEST(OraclePicture, MetallicRoughnessSharesAmbientLight) {
@@ -260,9 +260,9 @@ TEST(OraclePicture, MetallicRoughnessSharesAmbientLight) {
     for (const float metallic : {0.0F, 0.5F, 1.0F}) {
       scene.materials = {make_metallic_roughness({.metallic = metallic, .roughness = roughness})};
       View view = look_at(vec3(-3, 1, 0), vec3(0), glm::normalize(vec3(1, 3, 0)));
-      expect_color(color_of(scene, view), Vector(0.5L));
+      expect_color(color_in(scene, view), Vector(0.5L));
       view.max_depth = 0;
-      expect_color(color_of(scene, view), Vector(0.5L));
+      expect_color(color_in(scene, view), Vector(0.5L));
     }
   }
 }
@@ -277,7 +277,7 @@ TEST(OraclePicture, MetalMirrorsAsFarAsItIsSmooth) {
   const View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
   const auto color_with = [&](float roughness) {
     scene.materials = {make_metallic_roughness({.roughness = roughness}), make_emitter(vec3(1, 1, 8))};
-    return color_of(scene, view);
+    return color_in(scene, view);
   };
   expect_color(color_with(0), {1, 1, 8});
   expect_color(color_with(0.1F), {1, 1, 8});
@@ -298,11 +298,11 @@ TEST(OraclePicture, MirrorsBehindMetalSeeTheAmbientLight) {
   scene.objects = {{"floor", kFloor, 0}, {"wall", world::Plane{{4, 0, 0}, {1, 0, 0}}, 1}};
   const View view = look_at(vec3(-4, 3, 0), vec3(0), glm::normalize(vec3(3, 4, 0)));
   scene.materials = {make_mirror(vec3(1.0F)), make_mirror(vec3(1.0F))};
-  expect_color(color_of(scene, view), Vector(9));
+  expect_color(color_in(scene, view), Vector(9));
   scene.materials[0] = metal;
-  expect_color(color_of(scene, view), Vector(0.5L));
+  expect_color(color_in(scene, view), Vector(0.5L));
   scene.materials = {make_mirror(vec3(1.0F)), metal};
-  expect_color(color_of(scene, view), Vector(0.5L));
+  expect_color(color_in(scene, view), Vector(0.5L));
 }
 
 TEST(OraclePicture, UnlitIsItsColor) {
@@ -310,7 +310,7 @@ TEST(OraclePicture, UnlitIsItsColor) {
   scene.environment.ambient = vec3(1.0F);
   scene.materials[0].model = Unlit{vec3(0.25F, 0.5F, 2.0F)};
   scene.materials[0].emissive = vec3(0.0F, 0.0F, 1.0F);
-  expect_color(color_of(scene, look_down_at(0)), {0.25L, 0.5L, 3});
+  expect_color(color_in(scene, look_down_at(0)), {0.25L, 0.5L, 3});
   EXPECT_EQ(render(scene, look_down_at(0)).at(0, 0).explained_error, 0);
 }
 
@@ -340,7 +340,7 @@ TEST(OraclePicture, VertexColorsAndMaterialsOfTriangles) {
   mesh.triangle_materials = {1};
   scene.objects = {{"", mesh, 0}};
   const View view = look_at(vec3(0.4F, 0, 3), vec3(0.4F, 0, 0), vec3(0, 1, 0));
-  expect_color(color_of(scene, view), {0.3L, 0.1L, 0.1L});
+  expect_color(color_in(scene, view), {0.3L, 0.1L, 0.1L});
 }
 
 TEST(OraclePicture, InterpolatedNormalsShadeFromEitherSide) {
@@ -351,7 +351,7 @@ TEST(OraclePicture, InterpolatedNormalsShadeFromEitherSide) {
     // The normal is along (0.4, 0, 2), and faces the eye.
     scene.lights[0].direction = vec3(0, 0, -side);
     const View view = look_at(vec3(0.4F, 0, 3 * side), vec3(0.4F, 0, 0), vec3(0, 1, 0));
-    expect_color(color_of(scene, view), Vector(2 / std::sqrt(4.16L)));
+    expect_color(color_in(scene, view), Vector(2 / std::sqrt(4.16L)));
     EXPECT_EQ(render(scene, view).at(0, 0).hit.normal, Vector(0, 0, 1));
   }
 }
@@ -365,7 +365,7 @@ TEST(OraclePicture, ShadowRaysStartFromTheCurveThatVertexNormalsSuggest) {
   const View view = look_at(vec3(0.1F, 0, 3), vec3(0.1F, 0, 0), vec3(0, 1, 0));
   const auto is_lit_past = [&](float height) {
     scene.objects = {{"", make_bent_triangle(), 0}, {"", world::Sphere{{5, 0, height}, 0.01F}, 0}};
-    return color_of(scene, view).x > 0;
+    return color_in(scene, view).x > 0;
   };
   EXPECT_TRUE(is_lit_past(0));
   EXPECT_FALSE(is_lit_past(0.396F));
@@ -382,7 +382,7 @@ TEST(OraclePicture, MirrorRaysNeverEnterTheSurface) {
                    {"below", world::Plane{{0, 0, -1}, {0, 0, 1}}, 2}};
   // The ray along (0.96, 0, -0.28) would be reflected along (0.5376, 0, -0.8432), below the triangle.
   const View view = look_at(vec3(-1.92F, 0, 0.56F), vec3(0), vec3(0.28F, 0, 0.96F));
-  expect_color(color_of(scene, view), {0, 1, 0});
+  expect_color(color_in(scene, view), {0, 1, 0});
 }
 
 /// Renders a ball and a can on a mirroring floor under two lights. Lengths are multiples of `size`; the scene is around

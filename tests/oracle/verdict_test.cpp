@@ -13,7 +13,7 @@ constexpr Real kU = kRoundoff;
 const Vector kDown(0, 0, -1);
 const Answer kMiss;
 
-world::Scene world_of(std::initializer_list<world::Shape> shapes) {
+world::Scene world_with(std::initializer_list<world::Shape> shapes) {
   world::Scene scene;
   for (const world::Shape& shape : shapes) scene.objects.push_back({"", shape, 0});
   return scene;
@@ -26,15 +26,15 @@ void expect_margin(const Verdict& verdict, Real expected) {
   EXPECT_NEAR(verdict.margin, expected, 1e-5L * expected);
 }
 
-const world::Scene kSphere = world_of({world::Sphere{{0, 0, 0}, 1}});
+const world::Scene kSphere = world_with({world::Sphere{{0, 0, 0}, 1}});
 const world::Scene kTriangle = [] {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 1, 1}};
-  return world_of({mesh});
+  return world_with({mesh});
 }();
 /// The can reaches from y = -2 to 2.
-const world::Scene kCan = world_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}});
+const world::Scene kCan = world_with({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1}});
 
 TEST(Verdict, TheExactAnswerIsTheSame) {
   const Verdict verdict = judge(kSphere, {{0, 0, 5}, kDown}, {4, 0, 0});
@@ -49,7 +49,7 @@ TEST(Verdict, TheExactAnswerIsTheSame) {
 
 TEST(Verdict, DisksThatAreMissingHideNothing) {
   // The tube reaches from y = -2 to 2.
-  const world::Scene tube = world_of({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1, true}});
+  const world::Scene tube = world_with({world::Cylinder{{0, 0, 0}, {0, 1, 0}, 2, 1, true}});
   const Ray through{{0.5L, 9, 0}, {0, -1, 0}};
   EXPECT_TRUE(judge(tube, through, kMiss).is_same);
   EXPECT_GT(judge(tube, through, {7, 0, 0}).margin, 1e5L) << "a hit of the disk";
@@ -80,7 +80,7 @@ TEST(Verdict, ErrorsOfTCountByTheAngleAndTheScale) {
 
 TEST(Verdict, PlanesCountTheLengthOfTheRay) {
   // The ray starts 1 above the plane, and hits it at a distance of 1000 with a cosine of 1e-3.
-  const world::Scene scene = world_of({world::Plane{{0, 0, 0}, {0, 0, 1}}});
+  const world::Scene scene = world_with({world::Plane{{0, 0, 0}, {0, 0, 1}}});
   const Ray ray{{0, 0, 1}, {1000, 0, -1}};
   const Verdict verdict = judge(scene, ray, {1 + 5 * kU * 1001, 0, 0});
   EXPECT_TRUE(verdict.is_same);
@@ -152,7 +152,7 @@ TEST(Verdict, RimsExplainHitsAndMissesBesideThem) {
 }
 
 TEST(Verdict, ConesHaveAnApex) {
-  const world::Scene scene = world_of({world::Cone{{0, 0, 0}, {0, 1, 0}, 1, 1, 0}});
+  const world::Scene scene = world_with({world::Cone{{0, 0, 0}, {0, 1, 0}, 1, 1, 0}});
   const Real scale = std::hypot(Real(1), Real(5)) + std::sqrt(Real(2));
   expect_margin(judge(scene, {{0, 1 + 1.5L * kU * scale, 5}, kDown}, {5, 0, 0}), 1.5L);
   EXPECT_GT(judge(scene, {{0, 1.5L, 5}, kDown}, {5, 0, 0}).margin, 1000) << "the mirror nappe";
@@ -162,10 +162,11 @@ TEST(Verdict, SurfacesCloserThanRoundingMaySwap) {
   // S = 5 + |t d| is 10 for both.
   for (const Real units : {1.0L, 1.5L, 50.0L}) {
     const auto below = static_cast<float>(units * 20 * kU);
-    const world::Scene planes = world_of({world::Plane{{0, 0, 0}, {0, 0, 1}}, world::Plane{{0, 0, -below}, {0, 0, 1}}});
+    const world::Scene planes =
+        world_with({world::Plane{{0, 0, 0}, {0, 0, 1}}, world::Plane{{0, 0, -below}, {0, 0, 1}}});
     expect_margin(judge(planes, {{0, 0, 5}, kDown}, {5 + Real(below), 1, 0}), units);
   }
-  const world::Scene spheres = world_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{0, 0, -1}, 1}});
+  const world::Scene spheres = world_with({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{0, 0, -1}, 1}});
   expect_margin(judge(spheres, {{0, 0, 5}, kDown}, {5, 1, 0}), 1 / ((6 + 7) * kU));
 }
 
@@ -173,10 +174,10 @@ TEST(Verdict, TheSamePlaceOnAnotherPrimitiveIsExcusedButNotAnyPlace) {
   Mesh twice = std::get<Mesh>(kTriangle.objects[0].shape);
   twice.triangles[1] = twice.triangles[0];
   const Ray ray{{1, 1, 3}, kDown};
-  expect_margin(judge(world_of({twice}), ray, {3, 0, 1}), 0);
-  EXPECT_GT(judge(world_of({twice}), ray, {2, 0, 1}).margin, 1000);
-  EXPECT_GT(judge(world_of({twice}), ray, {4, 0, 1}).margin, 1000);
-  const world::Scene spheres = world_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{0, 0, 0}, 1}});
+  expect_margin(judge(world_with({twice}), ray, {3, 0, 1}), 0);
+  EXPECT_GT(judge(world_with({twice}), ray, {2, 0, 1}).margin, 1000);
+  EXPECT_GT(judge(world_with({twice}), ray, {4, 0, 1}).margin, 1000);
+  const world::Scene spheres = world_with({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{0, 0, 0}, 1}});
   expect_margin(judge(spheres, {{0, 0, 5}, kDown}, {4, 1, 0}), 0);
   EXPECT_GT(judge(spheres, {{0, 0, 5}, kDown}, {3.9L, 1, 0}).margin, 1000);
 }
@@ -184,15 +185,15 @@ TEST(Verdict, TheSamePlaceOnAnotherPrimitiveIsExcusedButNotAnyPlace) {
 TEST(Verdict, AllThatLiesInFrontNeedsAnExcuse) {
   // The ray passes near the silhouette of the exact hit; the second sphere is in full view.
   const Real offset = 0.5L * kU * (std::hypot(Real(1), Real(5)) + 1);
-  const world::Scene two = world_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}});
+  const world::Scene two = world_with({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}});
   const world::Scene three =
-      world_of({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}, world::Sphere{{1, 0, -5}, 1}});
+      world_with({world::Sphere{{0, 0, 0}, 1}, world::Sphere{{1, 0, -9}, 1}, world::Sphere{{1, 0, -5}, 1}});
   expect_margin(judge(two, {{1 - offset, 0, 5}, kDown}, {13, 1, 0}), 0.5L);
   EXPECT_GT(judge(three, {{1 - offset, 0, 5}, kDown}, {13, 1, 0}).margin, 1000);
 }
 
 TEST(Verdict, PlanesAreMissedOnlyByRaysAlongThem) {
-  const world::Scene scene = world_of({world::Plane{{0, 0, 0}, {0, 0, 1}}});
+  const world::Scene scene = world_with({world::Plane{{0, 0, 0}, {0, 0, 1}}});
   expect_margin(judge(scene, {{0, 0, 1}, {1, 0, -1.5L * kU}}, kMiss), 1.5L);
   expect_margin(judge(scene, {{0, 0, 1}, {1, 0, 1.5L * kU}}, {1e12L, 0, 0}), 1.5L);
   EXPECT_GT(judge(scene, {{0, 0, 1}, {1, 0, -1e-3L}}, kMiss).margin, 1000);
@@ -203,7 +204,7 @@ TEST(Verdict, PlanesAreMissedOnlyByRaysAlongThem) {
 TEST(Verdict, NothingExplainsWhatDoesNotExist) {
   const Ray ray{{0, 0, 5}, kDown};
   const Real nan = std::numeric_limits<Real>::quiet_NaN();
-  const world::Scene scene = world_of({world::Sphere{{0, 0, 0}, 1}, world::NotDrawn{}});
+  const world::Scene scene = world_with({world::Sphere{{0, 0, 0}, 1}, world::NotDrawn{}});
   for (const Answer& answer : {Answer{4, 2, 0}, Answer{4, 1, 0}, Answer{4, 0, 1}, Answer{4, 0, -1}, Answer{4, -2, 0},
                                Answer{nan, 0, 0}, Answer{kInfinity, 0, 0}}) {
     const Verdict verdict = judge(scene, ray, answer);
@@ -221,7 +222,7 @@ TEST(Verdict, ScalesAndDistancesOfAllSizes) {
   for (const Real size : {1e-3L, 1.0L, 1e6L}) {
     for (const Real far : {0.0L, 1e5L}) {
       const Vector center(vec3(far, -far, far));
-      const world::Scene scene = world_of({world::Sphere{vec3(center), static_cast<float>(size)}});
+      const world::Scene scene = world_with({world::Sphere{vec3(center), static_cast<float>(size)}});
       const Real r = static_cast<float>(size);
       const Real scale = std::hypot(r, 5 * r) + r;
       const Vector origin = center + Vector(r + 1.5L * kU * scale, 0, 5 * r);

@@ -19,17 +19,17 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Returns a ball of radius 1 at the origin with one material. Its bounds have a radius of sqrt(3).
-Scene scene_of(const Material& material) {
+Scene ball_of(const Material& material) {
   Scene scene;
   scene.materials = {material};
   scene.add("ball", Sphere{.radius = 1.0F});
   return scene;
 }
 Scene physical_scene() {
-  return scene_of({.name = "white", .model = MetallicRoughness{}});
+  return ball_of({.name = "white", .model = MetallicRoughness{}});
 }
 Scene phong_scene() {
-  return scene_of({.name = "grey", .model = Phong{}});
+  return ball_of({.name = "grey", .model = Phong{}});
 }
 Scene classic_scene() {
   Scene scene = phong_scene();

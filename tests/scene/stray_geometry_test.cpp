@@ -17,7 +17,7 @@ void add_box(Scene& scene, const dvec3& center, const dvec3& size = dvec3(1.0)) 
   scene.add("box", Box{}, 0, place);
 }
 
-void add_triangle(Scene& scene, const vec3& place, float size) {
+void add_corner_triangle(Scene& scene, const vec3& place, float size) {
   Mesh mesh;
   mesh.positions = {place, place + vec3(size, 0, 0), place + vec3(0, size, 0)};
   mesh.triangles = {{0, 1, 2}};
@@ -34,8 +34,8 @@ Scene make_scene_of_a_box() {
 TEST(StrayGeometry, IsLeftOutWhereItIsFarAndSmall) {
   Scene scene = make_scene_of_a_box();
   const Bounds box = find_main_part(scene).bounds;
-  add_triangle(scene, vec3(2000, 0, 0), 0.01F);
-  add_triangle(scene, vec3(0, -1e9F, 0), 0.01F);
+  add_corner_triangle(scene, vec3(2000, 0, 0), 0.01F);
+  add_corner_triangle(scene, vec3(0, -1e9F, 0), 0.01F);
   const MainPart part = find_main_part(scene);
   EXPECT_EQ(part.stray_count, 2U);
   EXPECT_EQ(part.bounds.lo, box.lo);
@@ -47,12 +47,12 @@ TEST(StrayGeometry, IsLeftOutWhereItIsFarAndSmall) {
 
 TEST(StrayGeometry, IsKeptWhereItIsNearOrLarge) {
   Scene near = make_scene_of_a_box();
-  add_triangle(near, vec3(60, 20, 30), 0.01F);
+  add_corner_triangle(near, vec3(60, 20, 30), 0.01F);
   EXPECT_EQ(find_main_part(near).stray_count, 0U) << "1/50 of the size";
   EXPECT_EQ(find_main_part(near).bounds.hi.x, 60.01F);
 
   Scene large = make_scene_of_a_box();
-  add_triangle(large, vec3(2000, 0, 0), 1.0F);
+  add_corner_triangle(large, vec3(2000, 0, 0), 1.0F);
   EXPECT_EQ(find_main_part(large).stray_count, 0U) << "a half of 6.5 units of surface";
 
   Scene apart = make_scene_of_a_box();
@@ -68,8 +68,8 @@ TEST(StrayGeometry, OfNothingAndOfPointsIsNone) {
   Scene scene;
   EXPECT_TRUE(find_main_part(scene).bounds.is_empty());
   scene.materials.resize(1);
-  add_triangle(scene, vec3(1), 0.0F);
-  add_triangle(scene, vec3(2), 0.0F);
+  add_corner_triangle(scene, vec3(1), 0.0F);
+  add_corner_triangle(scene, vec3(2), 0.0F);
   EXPECT_EQ(find_main_part(scene).stray_count, 0U);
   scene.add("floor", Plane{});
   EXPECT_EQ(find_main_part(scene).stray_count, 0U);

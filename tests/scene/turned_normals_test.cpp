@@ -28,7 +28,7 @@ Mesh rewind(Mesh mesh) {
 }
 
 /// Returns the oracle's colour of a mesh with a texture of normals, from one of its sides.
-oracle::Vector color_of(const Mesh& mesh, float eye_z) {
+oracle::Vector color_from(const Mesh& mesh, float eye_z) {
   Scene scene;
   auto image = std::make_shared<TextureImage>();
   image->size = uvec2(1);
@@ -83,12 +83,13 @@ TEST(TurnedNormals, SplitWhatOtherTrianglesKeep) {
 
 TEST(TurnedNormals, ShadeAsIfTheyWereWoundLikeTheirNormals) {
   for (const float eye_z : {4.0F, -4.0F}) {
-    const oracle::Vector right = color_of(rewind(make_square(-1)), eye_z);
+    const oracle::Vector right = color_from(rewind(make_square(-1)), eye_z);
     EXPECT_GT(right.x, 0.001L) << "lit";
-    EXPECT_LE(glm::distance(color_of(make_square(-1), eye_z), right), 1e-6L) << eye_z;
+    EXPECT_LE(glm::distance(color_from(make_square(-1), eye_z), right), 1e-6L) << eye_z;
     Mesh with_tangents = make_square(-1);
     with_tangents.tangents.assign(4, vec4(1, 0, 0, -1));
-    EXPECT_LE(glm::distance(color_of(with_tangents, eye_z), color_of(rewind(with_tangents), eye_z)), 1e-6L) << eye_z;
+    EXPECT_LE(glm::distance(color_from(with_tangents, eye_z), color_from(rewind(with_tangents), eye_z)), 1e-6L)
+        << eye_z;
   }
 }
 

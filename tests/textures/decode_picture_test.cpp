@@ -68,17 +68,17 @@ TEST(DecodePicture, BrokenFilesAreToldOf) {
   Bytes png = make_png({4, 4}, PNG_COLOR_TYPE_GRAY, 8, std::vector<uint8_t>(16, 1));
   Bytes cut = png;
   cut.resize(png.size() - 20);
-  EXPECT_THROW(decode_picture(cut), PictureError);
+  EXPECT_THROW(decode_picture(cut), DecodeError);
   // The checksum of the header no longer fits.
   Bytes lying = png;
   lying[18] = std::byte{0xFF};
-  EXPECT_THROW(decode_picture(lying), PictureError);
-  EXPECT_THAT(decoding({}), ThrowsMessage<PictureError>(HasSubstr("its format is unknown")));
-  EXPECT_THAT(decoding(Bytes(100, std::byte{'x'})), ThrowsMessage<PictureError>(HasSubstr("its format is unknown")));
+  EXPECT_THROW(decode_picture(lying), DecodeError);
+  EXPECT_THAT(decoding({}), ThrowsMessage<DecodeError>(HasSubstr("its format is unknown")));
+  EXPECT_THAT(decoding(Bytes(100, std::byte{'x'})), ThrowsMessage<DecodeError>(HasSubstr("its format is unknown")));
   Bytes jpeg = make_jpeg({16, 16}, std::vector<uint8_t>(16 * 16 * 3, 100));
   for (const size_t length : {4, 40, 160}) {
     const Bytes part(jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(length));
-    EXPECT_THROW(decode_picture(part), PictureError) << length;
+    EXPECT_THROW(decode_picture(part), DecodeError) << length;
   }
 }
 
@@ -108,7 +108,7 @@ TEST(DecodePicture, JpegsWithWarningsAreDecoded) {
 TEST(DecodePicture, AbsurdSizesAreRefusedBeforeTheyTakeMemory) {
   const uint32_t side = kMaxTextureSide + 1;
   const Bytes wide = make_png({side, 1}, PNG_COLOR_TYPE_GRAY, 1, std::vector<uint8_t>((side + 7) / 8, 0));
-  EXPECT_THROW(read_picture_size(wide), PictureError);
+  EXPECT_THROW(read_picture_size(wide), DecodeError);
   // Each side is allowed, but the number of texels is not; the rest of the file does not matter.
   Bytes large = make_png({kMaxTextureSide, 1}, PNG_COLOR_TYPE_GRAY, 1, std::vector<uint8_t>(kMaxTextureSide / 8, 0));
   Bytes jpeg = make_jpeg({16, 16}, std::vector<uint8_t>(16 * 16 * 3, 0));
@@ -119,7 +119,7 @@ TEST(DecodePicture, AbsurdSizesAreRefusedBeforeTheyTakeMemory) {
     jpeg[i + 6] = jpeg[i + 8] = std::byte{0x00};
     break;
   }
-  EXPECT_THAT([&] { return read_picture_size(jpeg); }, ThrowsMessage<PictureError>(HasSubstr("16384x16384")));
+  EXPECT_THAT([&] { return read_picture_size(jpeg); }, ThrowsMessage<DecodeError>(HasSubstr("16384x16384")));
   EXPECT_EQ(read_picture_size(large), uvec2(kMaxTextureSide, 1));
 }
 
@@ -205,7 +205,7 @@ TEST(DecodePicture, WebP) {
   EXPECT_THAT(decode_picture(bytes_of(kWebpColors)).texels, ElementsAre(0xFF0000FFU, 0xFFFF8000U));
   Bytes cut = bytes_of(kWebpColors);
   cut.resize(cut.size() - 6);
-  EXPECT_THROW(decode_picture(cut), PictureError);
+  EXPECT_THROW(decode_picture(cut), DecodeError);
 }
 
 /// This is how libavif encodes the pixels (200, 100, 50) with alpha 128 and (1, 2, 3) with alpha 0, losslessly.
@@ -223,7 +223,7 @@ TEST(DecodePicture, Avif) {
   EXPECT_EQ(read_picture_size(file), uvec2(2, 1));
   EXPECT_THAT(decode_picture(file).texels, ElementsAre(0x803264C8U, 0x00030201U));
   const Bytes cut(file.begin(), file.end() - 40);
-  EXPECT_THROW(decode_picture(cut), PictureError);
+  EXPECT_THROW(decode_picture(cut), DecodeError);
 }
 
 /// The parts of a KTX 2.0 file.
@@ -302,10 +302,10 @@ TEST(DecodePicture, Ktx2BySupercompression) {
               ElementsAre(0x09090909U, 0x09090909U));
   const auto decoding = [](const Ktx2& ktx2) { return [ktx2] { return decode_picture(make_ktx2(ktx2)).size; }; };
   EXPECT_THAT(decoding({.level = repeat_by_zstd(9, 7), .supercompression = 2}),
-              ThrowsMessage<PictureError>(HasSubstr("Zstandard")));
+              ThrowsMessage<DecodeError>(HasSubstr("Zstandard")));
   EXPECT_THAT(decoding({.supercompression = 3}),
-              ThrowsMessage<PictureError>(HasSubstr("supercompression 3 is not read")));
-  EXPECT_THAT(decoding({.level = {1, 2, 3}}), ThrowsMessage<PictureError>(HasSubstr("does not match its pixels")));
+              ThrowsMessage<DecodeError>(HasSubstr("supercompression 3 is not read")));
+  EXPECT_THAT(decoding({.level = {1, 2, 3}}), ThrowsMessage<DecodeError>(HasSubstr("does not match its pixels")));
 }
 
 /// A picture of 43x38 with alpha that basisu 1.15 encodes with -ktx2.
@@ -379,7 +379,7 @@ TEST(DecodePicture, Ktx2OfUastcInEachMode) {
   // No mode begins with the seven bits of 69.
   ktx2.level[0] = 69;
   EXPECT_THAT([&] { return decode_picture(make_ktx2(ktx2)).size; },
-              ThrowsMessage<PictureError>(HasSubstr("a UASTC block is damaged")));
+              ThrowsMessage<DecodeError>(HasSubstr("a UASTC block is damaged")));
 }
 
 /// For any bits, the result is a picture or an error.
@@ -394,7 +394,7 @@ TEST(DecodePicture, DamagedEtc1sIsToldOf) {
     try {
       const DecodedPicture picture = decode_picture(mutant);
       EXPECT_EQ(picture.texels.size(), 43U * 38U);
-    } catch (const PictureError&) {
+    } catch (const DecodeError&) {
       ++broken;
     }
   }
@@ -403,8 +403,8 @@ TEST(DecodePicture, DamagedEtc1sIsToldOf) {
 
 TEST(DecodePicture, Ktx2OfOtherFormatsNamesWhatConvertsIt) {
   const auto decoding = [](const Ktx2& ktx2) { return [ktx2] { return read_picture_size(make_ktx2(ktx2)); }; };
-  EXPECT_THAT(decoding({.vk_format = 145}), ThrowsMessage<PictureError>(HasSubstr("VkFormat 145 is not read")));
-  EXPECT_THAT(decoding({.vk_format = 0, .color_model = 200}), ThrowsMessage<PictureError>(HasSubstr("ktx extract")));
+  EXPECT_THAT(decoding({.vk_format = 145}), ThrowsMessage<DecodeError>(HasSubstr("VkFormat 145 is not read")));
+  EXPECT_THAT(decoding({.vk_format = 0, .color_model = 200}), ThrowsMessage<DecodeError>(HasSubstr("ktx extract")));
 }
 
 TEST(DecodePicture, ColoursAreNotMultipliedByAlpha) {
@@ -431,12 +431,12 @@ TEST(DecodePicture, AbsurdSizesOfOtherFormatsAreRefusedByTheirHeader) {
     const Bytes file = make_by_plugin(ending, {2, 3}, 3, rgb);
     EXPECT_EQ(read_picture_size(file), size) << ending;
     EXPECT_THAT(size_of(put(file, static_cast<size_t>(place), {0xFF, 0xFF, 0xFF, 0xFF})),
-                ThrowsMessage<PictureError>(HasSubstr("65535x65535 is too large")));
+                ThrowsMessage<DecodeError>(HasSubstr("65535x65535 is too large")));
   }
   EXPECT_THAT(size_of(put(make_by_plugin("bmp", {2, 3}, 3, rgb), 18, {0, 0, 1, 0, 0, 0, 0, 0xFF})),
-              ThrowsMessage<PictureError>(HasSubstr("65536x16777216 is too large")));
-  EXPECT_THAT(size_of(make_dds({100000, 2}, {})), ThrowsMessage<PictureError>(HasSubstr("100000x2 is too large")));
-  EXPECT_THAT(size_of(make_dds({0, 2}, {})), ThrowsMessage<PictureError>(HasSubstr("no pixels")));
+              ThrowsMessage<DecodeError>(HasSubstr("65536x16777216 is too large")));
+  EXPECT_THAT(size_of(make_dds({100000, 2}, {})), ThrowsMessage<DecodeError>(HasSubstr("100000x2 is too large")));
+  EXPECT_THAT(size_of(make_dds({0, 2}, {})), ThrowsMessage<DecodeError>(HasSubstr("no pixels")));
 }
 
 TEST(DecodePicture, RadianceStandsUprightWhateverTheOrderOfItsRows) {
@@ -463,7 +463,7 @@ TEST(DecodePicture, BrokenFilesOfOtherFormatsAreToldOf) {
       try {
         const DecodedPicture picture = decode_picture(mutant);
         EXPECT_EQ(picture.texels.size(), uint64_t{picture.size.x} * picture.size.y);
-      } catch (const PictureError& error) {
+      } catch (const DecodeError& error) {
         ++broken;
         EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos);
       }

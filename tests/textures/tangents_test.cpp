@@ -70,7 +70,7 @@ const vec4& tangent_at(const Mesh& mesh, size_t triangle, int corner) {
   return mesh.tangents.at(mesh.triangles.at(triangle)[corner]);
 }
 
-void expect_near(const vec4& a, const vec4& b, float tolerance) {
+void expect_close(const vec4& a, const vec4& b, float tolerance) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
 
@@ -96,7 +96,7 @@ TEST(Tangents, OfAPlaneGoAlongU) {
   add_tangents(mesh, 0);
   EXPECT_EQ(mesh.positions.size(), before.positions.size()) << "nothing is split";
   expect_same_surface(before, mesh);
-  for (const vec4& tangent : mesh.tangents) expect_near(tangent, {1, 0, 0, 1}, 1e-6F);
+  for (const vec4& tangent : mesh.tangents) expect_close(tangent, {1, 0, 0, 1}, 1e-6F);
 }
 
 TEST(Tangents, OfTheSecondSetAreItsOwn) {
@@ -104,7 +104,7 @@ TEST(Tangents, OfTheSecondSetAreItsOwn) {
   for (vec4& uv : mesh.uvs) uv = {uv.x, uv.y, uv.y, uv.x};
   add_tangents(mesh, 1);
   // u grows downwards, and v to the right. With v upwards this is the opposite handedness.
-  for (const vec4& tangent : mesh.tangents) expect_near(tangent, {0, -1, 0, -1}, 1e-6F);
+  for (const vec4& tangent : mesh.tangents) expect_close(tangent, {0, -1, 0, -1}, 1e-6F);
 }
 
 TEST(Tangents, OfASphereGoAlongItsCircles) {
@@ -138,7 +138,7 @@ TEST(Tangents, MirroredCoordinatesTurnTheHandAndSplitTheSeam) {
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
     const bool is_left = i % 4 < 2;
     for (int corner = 0; corner < 3; ++corner) {
-      expect_near(tangent_at(mesh, i, corner), is_left ? vec4(-1, 0, 0, -1) : vec4(1, 0, 0, 1), 1e-6F);
+      expect_close(tangent_at(mesh, i, corner), is_left ? vec4(-1, 0, 0, -1) : vec4(1, 0, 0, 1), 1e-6F);
     }
   }
 }
@@ -483,7 +483,7 @@ TEST(Tangents, OfMeshesThatAreNoSurfacesAreThoseOfMikkelsensProgram) {
         SCOPED_TRACE(3 * i + corner);
         const vec4& wanted = precedent.tangents[i][corner];
         if (wanted.w == 0.0F) continue;
-        expect_near(tangent_at(mesh, i, static_cast<int>(corner)), wanted, 1e-6F);
+        expect_close(tangent_at(mesh, i, static_cast<int>(corner)), wanted, 1e-6F);
       }
     }
   }
@@ -535,7 +535,7 @@ TEST(Tangents, WithoutNormalsAreOfFlatTriangles) {
   EXPECT_EQ(mesh.positions.size(), 8U) << "the edge is split";
   for (size_t i = 0; i < 4; ++i) {
     for (int corner = 0; corner < 3; ++corner) {
-      expect_near(tangent_at(mesh, i, corner), i < 2 ? vec4(1, 0, 0, 1) : vec4(0, 0, -1, 1), 1e-6F);
+      expect_close(tangent_at(mesh, i, corner), i < 2 ? vec4(1, 0, 0, 1) : vec4(0, 0, -1, 1), 1e-6F);
     }
   }
 }
@@ -560,11 +560,11 @@ TEST(Tangents, WithoutADirectionAreInherited) {
   add_tangents(mesh, 0);
   expect_same_surface(before, mesh);
   for (size_t i = 0; i < 9; ++i) {
-    for (int corner = 0; corner < 3; ++corner) expect_near(tangent_at(mesh, i, corner), {1, 0, 0, 1}, 1e-6F);
+    for (int corner = 0; corner < 3; ++corner) expect_close(tangent_at(mesh, i, corner), {1, 0, 0, 1}, 1e-6F);
   }
-  expect_near(tangent_at(mesh, 9, 1), {1, 0, 0, 1}, 1e-6F);
-  expect_near(tangent_at(mesh, 9, 2), {1, 0, 0, 1}, 1e-6F);
-  for (int corner = 0; corner < 3; ++corner) expect_near(tangent_at(mesh, 10, corner), {0, 0, 0, 1}, 0.0F);
+  expect_close(tangent_at(mesh, 9, 1), {1, 0, 0, 1}, 1e-6F);
+  expect_close(tangent_at(mesh, 9, 2), {1, 0, 0, 1}, 1e-6F);
+  for (int corner = 0; corner < 3; ++corner) expect_close(tangent_at(mesh, 10, corner), {0, 0, 0, 1}, 0.0F);
 }
 
 TEST(Tangents, OfCoordinatesWithoutAreaAreLeftOut) {

@@ -129,7 +129,7 @@ std::vector<dvec3> find_truth(const View& view, const Scene& scene) {
 }
 
 /// Returns how many of the refined pixels, which have more than the first samples, have an error within their claim.
-Share judge(const Refined& refined, const View& view, const std::vector<dvec3>& truth) {
+Share judge_claims(const Refined& refined, const View& view, const std::vector<dvec3>& truth) {
   Share share;
   size_t honest = 0;
   for (size_t i = 0; i < refined.means.size(); ++i) {
@@ -151,7 +151,7 @@ TEST(RefinementTest, ClaimsHoldOf95In100Pixels) {
     for (const auto& [error, least_samples] : test::cases_of<std::pair<float, uint32_t>>(
              {{1.0F / 16.0F, 4U}, {1.0F / 64.0F, 8U}, {1.0F / 16.0F, 8U}, {1.0F / 128.0F, 8U}}, 2)) {
       const View view = make_view(error, least_samples);
-      const Share share = judge(refine(view, scene), view, truth);
+      const Share share = judge_claims(refine(view, scene), view, truth);
       std::printf("%-16s 1/%-3g from %u: %5zu pixels refined, %.2f %% honest\n", name, 1.0 / static_cast<double>(error),
                   least_samples, share.refined, 100.0 * share.honest);
       EXPECT_GE(share.honest, 0.95) << name << " to " << error << " from " << least_samples;

@@ -18,7 +18,7 @@ using test::expect_near;
 
 constexpr double kRight = std::numbers::pi / 2.0;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kTolerance = 1e-14;
+constexpr double kPoseTolerance = 1e-14;
 
 /// Returns |QtQ - I|: the largest element.
 double orthonormality_error(const dmat3& q) {
@@ -45,18 +45,18 @@ bool has_same_bits(const vec3& a, const vec3& b) {
 }
 
 TEST(RotationMatrices, TurnEachAxisTowardsTheNext) {
-  expect_near(make_rotation_x(kRight) * dvec3(0, 1, 0), {0, 0, 1}, kTolerance);
-  expect_near(make_rotation_y(kRight) * dvec3(0, 0, 1), {1, 0, 0}, kTolerance);
-  expect_near(make_rotation_z(kRight) * dvec3(1, 0, 0), {0, 1, 0}, kTolerance);
+  expect_near(make_rotation_x(kRight) * dvec3(0, 1, 0), {0, 0, 1}, kPoseTolerance);
+  expect_near(make_rotation_y(kRight) * dvec3(0, 0, 1), {1, 0, 0}, kPoseTolerance);
+  expect_near(make_rotation_z(kRight) * dvec3(1, 0, 0), {0, 1, 0}, kPoseTolerance);
 }
 
 TEST(RotationMatrices, AreTheFormulas) {
   const double c = std::cos(0.3);
   const double s = std::sin(0.3);
   const dvec3 v(2, 3, 5);
-  expect_near(make_rotation_x(0.3) * v, {2, 3 * c - 5 * s, 3 * s + 5 * c}, kTolerance);
-  expect_near(make_rotation_y(0.3) * v, {2 * c + 5 * s, 3, -2 * s + 5 * c}, kTolerance);
-  expect_near(make_rotation_z(0.3) * v, {2 * c - 3 * s, 2 * s + 3 * c, 5}, kTolerance);
+  expect_near(make_rotation_x(0.3) * v, {2, 3 * c - 5 * s, 3 * s + 5 * c}, kPoseTolerance);
+  expect_near(make_rotation_y(0.3) * v, {2 * c + 5 * s, 3, -2 * s + 5 * c}, kPoseTolerance);
+  expect_near(make_rotation_z(0.3) * v, {2 * c - 3 * s, 2 * s + 3 * c, 5}, kPoseTolerance);
 }
 
 TEST(FreeCamera, StartsAtTheOriginLookingAlongMinusZ) {
@@ -71,25 +71,25 @@ TEST(FreeCamera, StartsAtTheOriginLookingAlongMinusZ) {
 TEST(FreeCamera, PositiveBetaTurnsLeft) {
   FreeCamera camera;
   camera.rotate(0, kRight, 0);
-  expect_near(camera.look(), {-1, 0, 0}, kTolerance);
-  expect_near(camera.up(), {0, 1, 0}, kTolerance);
-  expect_near(camera.right(), {0, 0, -1}, kTolerance);
+  expect_near(camera.look(), {-1, 0, 0}, kPoseTolerance);
+  expect_near(camera.up(), {0, 1, 0}, kPoseTolerance);
+  expect_near(camera.right(), {0, 0, -1}, kPoseTolerance);
 }
 
 TEST(FreeCamera, PositiveGammaLooksUp) {
   FreeCamera camera;
   camera.rotate(0, 0, kRight);
-  expect_near(camera.look(), {0, 1, 0}, kTolerance);
-  expect_near(camera.up(), {0, 0, 1}, kTolerance);
-  expect_near(camera.right(), {1, 0, 0}, kTolerance);
+  expect_near(camera.look(), {0, 1, 0}, kPoseTolerance);
+  expect_near(camera.up(), {0, 0, 1}, kPoseTolerance);
+  expect_near(camera.right(), {1, 0, 0}, kPoseTolerance);
 }
 
 TEST(FreeCamera, PositiveAlphaRollsAnticlockwiseSeenFromBehind) {
   FreeCamera camera;
   camera.rotate(kRight, 0, 0);
-  expect_near(camera.look(), {0, 0, -1}, kTolerance);
-  expect_near(camera.up(), {-1, 0, 0}, kTolerance);
-  expect_near(camera.right(), {0, 1, 0}, kTolerance);
+  expect_near(camera.look(), {0, 0, -1}, kPoseTolerance);
+  expect_near(camera.up(), {-1, 0, 0}, kPoseTolerance);
+  expect_near(camera.right(), {0, 1, 0}, kPoseTolerance);
 }
 
 TEST(FreeCamera, OneRotationIsMzMyMx) {
@@ -100,7 +100,7 @@ TEST(FreeCamera, OneRotationIsMzMyMx) {
   const dvec3 after_y(std::sin(0.3) * after_x.z, after_x.y, std::cos(0.3) * after_x.z);
   const dvec3 after_z(std::cos(0.2) * after_y.x - std::sin(0.2) * after_y.y,
                       std::sin(0.2) * after_y.x + std::cos(0.2) * after_y.y, after_y.z);
-  expect_near(camera.look(), after_z, kTolerance);
+  expect_near(camera.look(), after_z, kPoseTolerance);
 }
 
 TEST(FreeCamera, RotatesAboutItsOwnAxes) {
@@ -109,26 +109,26 @@ TEST(FreeCamera, RotatesAboutItsOwnAxes) {
   FreeCamera camera;
   camera.rotate(0, kRight, 0);
   camera.rotate(0, 0, kRight);
-  expect_near(camera.look(), {0, 1, 0}, kTolerance);
-  expect_near(camera.up(), {1, 0, 0}, kTolerance);
+  expect_near(camera.look(), {0, 1, 0}, kPoseTolerance);
+  expect_near(camera.up(), {1, 0, 0}, kPoseTolerance);
 }
 
 TEST(FreeCamera, FourStepsOfTenDegreesAreForty) {
   FreeCamera camera;
   for (int step = 0; step < 4; ++step) camera.rotate(0, 10 * kDegree, 0);
-  expect_near(camera.look(), {-std::sin(40 * kDegree), 0, -std::cos(40 * kDegree)}, kTolerance);
+  expect_near(camera.look(), {-std::sin(40 * kDegree), 0, -std::cos(40 * kDegree)}, kPoseTolerance);
 }
 
 TEST(FreeCamera, MovesAlongItsOwnAxes) {
   FreeCamera camera;
   camera.rotate(0, kRight, 0);
   camera.move(2, 0, 0);
-  expect_near(camera.position(), {-2, 0, 0}, kTolerance);
+  expect_near(camera.position(), {-2, 0, 0}, kPoseTolerance);
   camera.move(0, 3, 0);
-  expect_near(camera.position(), {-2, 3, 0}, kTolerance);
+  expect_near(camera.position(), {-2, 3, 0}, kPoseTolerance);
   camera.move(0, 0, 5);
-  expect_near(camera.position(), {-2, 3, -5}, kTolerance);
-  expect_near(camera.camera().eye, {-2, 3, -5}, kTolerance);
+  expect_near(camera.position(), {-2, 3, -5}, kPoseTolerance);
+  expect_near(camera.camera().eye, {-2, 3, -5}, kPoseTolerance);
 }
 
 TEST(FreeCamera, DoesNotDriftInAHundredThousandSteps) {
@@ -212,10 +212,10 @@ TEST(FreeCamera, ATakenPoseIsOrthonormalOnceRotated) {
 
 TEST(FreeCamera, DirectionsOfAnyLengthAndAngleMakeAPose) {
   const FreeCamera camera = FreeCamera::from_pose(vec3(0.0F), {0, 0, 3}, {0, 2, 5});
-  expect_near(camera.look(), {0, 0, 1}, kTolerance);
-  expect_near(camera.up(), {0, 1, 0}, kTolerance);
-  expect_near(camera.right(), {-1, 0, 0}, kTolerance);
-  expect_near(FreeCamera::from_pose(vec3(0.0F), {1e30F, 0, 0}, {0, 1e-30F, 0}).right(), {0, 0, 1}, kTolerance);
+  expect_near(camera.look(), {0, 0, 1}, kPoseTolerance);
+  expect_near(camera.up(), {0, 1, 0}, kPoseTolerance);
+  expect_near(camera.right(), {-1, 0, 0}, kPoseTolerance);
+  expect_near(FreeCamera::from_pose(vec3(0.0F), {1e30F, 0, 0}, {0, 1e-30F, 0}).right(), {0, 0, 1}, kPoseTolerance);
 }
 
 TEST(FreeCamera, DirectionsThatGiveNoPoseAreRefused) {
