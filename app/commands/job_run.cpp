@@ -24,13 +24,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws UsageError if the job's pieces were made by another driver, because they have other bits.
+/// Throws UsageError if the job's first piece was made by another driver, because it has other bits.
 void check_driver(const jobs::Job& job, const std::string& driver) {
-  const std::string of_pieces = find_driver(job);
-  if (of_pieces.empty() || of_pieces == driver) return;
-  throw UsageError({"job.device.other",
-                    fmt::format("the job's pieces were made on {}, but the chosen device is {}", of_pieces, driver),
-                    job.folder().string(), "select the first one with --device, or use another folder"});
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    const std::optional<jobs::Maker> maker = job.maker_of(piece);
+    if (!maker || maker->made_on.empty()) continue;
+    if (maker->made_on == driver) return;
+    throw UsageError(
+        {"job.device.other",
+         fmt::format("the job's pieces were made on {}, but the chosen device is {}", maker->made_on, driver),
+         job.folder().string(), "select the first one with --device, or use another folder"});
+  }
 }
 
 /// Throws UsageError if another build, which gives other bits, has made the job's pieces.

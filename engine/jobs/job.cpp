@@ -284,6 +284,19 @@ bool is_same_device(const Maker& a, const Maker& b) {
   return a.made_on == b.made_on && !may_differ;
 }
 
+/// Returns a finished piece that another build has made on this maker's device; nullopt if there is none, or if this
+/// build has made pieces of the job, because it has then passed check_build().
+std::optional<size_t> find_piece_of_other_build(const Job& job, const Maker& maker) {
+  std::optional<size_t> found;
+  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
+    const std::optional<Maker> other = job.maker_of(piece);
+    if (!other || !is_same_device(*other, maker)) continue;
+    if (other->build == maker.build) return {};
+    if (!found && job.state_of(piece) == PieceState::kDone) found = piece;
+  }
+  return found;
+}
+
 }  // namespace
 
 InputFile describe_input(const fs::path& file) {
@@ -464,17 +477,6 @@ size_t run_share(const Job& job, const Share& share, const Maker& maker, const B
     ++made;
   }
   return made;
-}
-
-std::optional<size_t> find_piece_of_other_build(const Job& job, const Maker& maker) {
-  std::optional<size_t> found;
-  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
-    const std::optional<Maker> other = job.maker_of(piece);
-    if (!other || !is_same_device(*other, maker)) continue;
-    if (other->build == maker.build) return {};
-    if (!found && job.state_of(piece) == PieceState::kDone) found = piece;
-  }
-  return found;
 }
 
 std::optional<size_t> check_build(const Job& job, const Maker& maker,

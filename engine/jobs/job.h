@@ -161,12 +161,9 @@ using BeforePiece = std::function<bool(const NextPiece& next)>;
 size_t run_share(const Job& job, const Share& share, const Maker& maker, const BeforePiece& before,
                  const std::function<Content(size_t piece)>& make);
 
-/// Returns a finished piece that this maker must make again before it makes others, because another build has made the
-/// piece on the same device. Returns nullopt if there is no such piece. Also returns nullopt if this build has made
-/// pieces of the job, because it has then passed check_build().
-std::optional<size_t> find_piece_of_other_build(const Job& job, const Maker& maker);
-/// Makes the piece of find_piece_of_other_build() again, if there is one, and writes nothing. Throws UsageError if its
-/// bytes differ, because the pieces of the two builds must not be mixed. Returns the piece.
+/// Checks that this maker's build may make pieces of the job. If another build has made pieces on the same device, and
+/// this build has made none, the function makes one finished piece again, writes nothing, and returns the piece's
+/// number. Throws UsageError if the bytes differ, because the pieces of the two builds must not be mixed.
 std::optional<size_t> check_build(const Job& job, const Maker& maker, const std::function<Content(size_t piece)>& make);
 
 /// Returns the pieces of a share that are not done.

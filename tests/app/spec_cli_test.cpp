@@ -115,6 +115,11 @@ TEST_F(SpecPictureCliTest, AnotherBuildGoesOnIfItGivesTheSameBits) {
       HasSubstr(
           "the job's pieces were made by another build of promin, and this build computes different bits for piece "));
   EXPECT_FALSE(std::filesystem::exists(job.file_of(1)));
+  // Pieces of another device are refused before a piece is made.
+  job.write(0, job.read(0), 1.0, {"another device", "", "another"});
+  const ProcessResult device = run(command);
+  EXPECT_EQ(device.exit_code, 2);
+  EXPECT_THAT(device.err, HasSubstr("the job's pieces were made on another device, but the chosen device is "));
 }
 
 }  // namespace

@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include "core/json_text.h"
 #include "promin/error.h"
 #include "work/jobs/cast_job.h"
 #include "work/jobs/job_manifest.h"
@@ -85,16 +82,6 @@ std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Messages& mes
   job.check_same(planned->manifest());
   planned->remember();
   return planned;
-}
-
-std::string find_driver(const jobs::Job& job) {
-  for (size_t piece = 0; piece < job.piece_count(); ++piece) {
-    if (job.state_of(piece) != jobs::PieceState::kDone) continue;
-    const nlohmann::ordered_json json = read_ordered_json_or_discard(job.read(piece).description);
-    const auto driver = json.is_object() ? json.find("driver") : json.end();
-    return driver != json.end() && driver->is_string() ? driver->get<std::string>() : "";
-  }
-  return "";
 }
 
 }  // namespace promin::work

@@ -44,7 +44,4 @@ jobs::Job create_job(PlannedJob& planned, const std::filesystem::path& folder);
 std::unique_ptr<PlannedJob> plan_again(const jobs::Job& job, const Messages& messages,
                                        std::shared_ptr<RaySource> rays = nullptr);
 
-/// Returns the device and driver (driver_of) of the job's finished pieces; empty if no piece is finished.
-std::string find_driver(const jobs::Job& job);
-
 }  // namespace promin::work
