@@ -12,8 +12,8 @@
 #include "work/spec/render_spec.h"
 
 // Specifications as JSON: an object whose member "promin_render_spec" or "promin_cast_spec" is 1. Its other members
-// have the names of the programs' options, with _ in place of -. One table of fields (spec_json.cpp) gives each member
-// its name, place, type, range and default, and states whether it affects bits and whether it names files.
+// have the names of the programs' options, with _ in place of -. One table of fields (spec_fields.cpp) gives each
+// member its name, place, type, range and default, and states whether it affects bits and whether it names files.
 //
 // The templates exist for RenderSpec and CastSpec.
 namespace promin::work {
