@@ -72,7 +72,7 @@ Scene load(const BvhOptions& options, const Console& console) {
 
 void build(const BvhOptions& options) {
   if (lower_case_ending(options.file) != ".pbvh") {
-    throw UsageError({"output.ending",
+    throw UsageError({"output.extension",
                       "the output's extension \"" + options.file.extension().string() + "\" is unknown",
                       options.file.string(), "use .pbvh"});
   }

@@ -186,7 +186,7 @@ const SceneFormat& find_format(const std::filesystem::path& file) {
                       "use " + name_endings()});
   }
   if (kind.name.empty()) throw InputError({"scene.file.format", what, file.string(), "use " + name_endings()});
-  throw InputError({"scene.file.ending", what + ", and the file is " + kind.name, file.string(), kind.cure});
+  throw InputError({"scene.file.extension", what + ", and the file is " + kind.name, file.string(), kind.cure});
 }
 
 /// Throws InputError if the first bytes of a file that cannot be loaded show that its extension is wrong.
@@ -196,7 +196,7 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
   const auto* const own = std::ranges::find_if(kFormats, has_ending);
   const bool is_right = own != std::end(kFormats) && own->load == format.load;
   if (kind.name.empty() || is_right) return;
-  throw InputError({"scene.file.ending", "the file is " + kind.name, file.string(), kind.cure});
+  throw InputError({"scene.file.extension", "the file is " + kind.name, file.string(), kind.cure});
 }
 
 /// Checks that there is something to draw, because an empty picture could be mistaken for a picture of the scene.

@@ -253,7 +253,7 @@ class PictureWriter::Impl {
 
 PictureWriter::PictureWriter(const fs::path& file, const PictureHeader& header) {
   if (!is_writable_format(file)) {
-    throw UsageError({"output.ending", "the output's extension \"" + file.extension().string() + "\" is unknown",
+    throw UsageError({"output.extension", "the output's extension \"" + file.extension().string() + "\" is unknown",
                       file.string(), kUseKnownEnding});
   }
   check_header(header);

@@ -652,9 +652,9 @@ def test_files_are_checked_before_the_work(scene: Path, rays: Path, tmp_path: Pa
     for job, files, problem in (
         (casts, [rays], "output.input"),
         (casts, ["a.npy", "b.npy"], "job.outputs.count"),
-        (casts, ["a.exr"], "output.ending"),
+        (casts, ["a.exr"], "output.extension"),
         (lists, ["a.npy"], "job.outputs.count"),
-        (pictures, ["a.bmp"], "output.ending"),
+        (pictures, ["a.bmp"], "output.extension"),
     ):
         with fails(promin.UsageError, problem):
             job.check_outputs(files)

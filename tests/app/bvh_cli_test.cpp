@@ -142,7 +142,7 @@ TEST_F(BvhCliTest, WrongUsageIsRefusedInOneLine) {
   expect_bvh_failure({"biuld"}, 2, "there is no command biuld");
   expect_bvh_failure({"build"}, 2, "SCENE is required");
   expect_bvh_failure({"build", "square.gltf"}, 2, "--output is required");
-  expect_bvh_failure({"build", "square.gltf", "-o", "a.bvh"}, 2, "output.ending a.bvh: .pbvh");
+  expect_bvh_failure({"build", "square.gltf", "-o", "a.bvh"}, 2, "output.extension a.bvh: .pbvh");
   expect_bvh_failure({"build", "square.gltf", "-o", "b.pbvh", "--builder", "best"}, 2, "--builder takes ");
   expect_bvh_failure({"build", "square.gltf", "-o", "b.pbvh", "--threads", "0"}, 2, "--threads takes a whole number");
   expect_bvh_failure({"build", "square.gltf", "-o", "b.pbvh", "--quiet", "-v"}, 2, "usage.options.contradict");

@@ -273,7 +273,7 @@ TEST_F(CastTest, StatsHoldWhatThoseOfAPictureHold) {
 TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
   write_rays("rays.npy", kRays);
   expect_failure(run({"cast", "square.gltf", "rays.npy"}), 2, "--output");
-  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.csv"}), 2, "output.ending .npy");
+  expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "hits.csv"}), 2, "output.extension .npy");
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "rays.npy"}), 2, "output.input");
   expect_failure(run({"cast", "square.gltf", "-o", "hits.npy"}), 2, "RAYS.npy");
   expect_failure(run({"cast", "square.gltf", "rays.npy", "-o", "a.npy", "-o", "b.npy"}), 2, "takes only one file");
@@ -293,7 +293,7 @@ TEST_F(CastTest, WrongUseAndBadFilesAreRefused) {
   refused({"--all"}, "--offsets");
   refused({"--offsets", "o.npy"}, "--all");
   refused({"--count", "--offsets", "o.npy"}, "--all");
-  refused({"--all", "--offsets", "o.csv"}, "output.ending .npy");
+  refused({"--all", "--offsets", "o.csv"}, "output.extension .npy");
   refused({"--all", "--offsets", "hits.npy"}, "output.twice");
   refused({"--all", "--offsets", "rays.npy"}, "output.input");
   refused({"--all", "--offsets", "none/o.npy"}, "folder", 1);

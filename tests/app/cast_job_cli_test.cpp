@@ -153,7 +153,7 @@ TEST_F(CastJobCliTest, WrongUseIsRefused) {
     EXPECT_FALSE(std::filesystem::exists(folder() / "job")) << sentence;
   }
   expect_done(run({"render", "square.gltf", "--size", "8", "8", "--job", "job", "--piece", "0/1", "--quiet"}));
-  expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "output.ending \".npy\"");
+  expect_failure(run({"merge", "job", "-o", "a.npy"}), 2, "output.extension \".npy\"");
 }
 
 // The piece that was being written does not exist. The earlier pieces exist.

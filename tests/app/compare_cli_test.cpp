@@ -97,7 +97,7 @@ TEST_F(CompareCliTest, WritesWhereTheyDiffer) {
   EXPECT_GT(shown.at(9, 7).x, 0.05F);
   EXPECT_LT(shown.at(0, 11).x, 0.02F) << "far from both";
   expect_failure(compare({"a.exr", "b.exr", "-o", "a.exr"}), 2, "output.input");
-  expect_failure(compare({"a.exr", "b.exr", "-o", "d.txt"}), 2, "output.ending");
+  expect_failure(compare({"a.exr", "b.exr", "-o", "d.txt"}), 2, "output.extension");
 }
 
 TEST_F(CompareCliTest, WhatCannotBeComparedIsSaid) {

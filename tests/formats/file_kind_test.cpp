@@ -65,12 +65,12 @@ TEST_P(FileKindTest, IsSaidWhereItIsNotWhatTheNameSays) {
     if (is_own) {
       EXPECT_EQ(message, "");
     } else {
-      EXPECT_THAT(message, AllOf(HasProblem("scene.file.ending"), HasSubstr("the file is "s + GetParam().what),
+      EXPECT_THAT(message, AllOf(HasProblem("scene.file.extension"), HasSubstr("the file is "s + GetParam().what),
                                  HasSubstr(name + ": "), HasSubstr(GetParam().cure)));
     }
   }
   EXPECT_THAT(refusal("scene.unknown", GetParam().bytes),
-              AllOf(HasProblem("scene.file.ending \".unknown\""), HasSubstr("the file is "s + GetParam().what),
+              AllOf(HasProblem("scene.file.extension \".unknown\""), HasSubstr("the file is "s + GetParam().what),
                     HasSubstr(GetParam().cure)));
 }
 
@@ -122,11 +122,11 @@ INSTANTIATE_TEST_SUITE_P(Table, FileKindTest, testing::ValuesIn(kKinds),
 class FilesOfScenesTest : public SceneFolder {};
 
 TEST_F(FilesOfScenesTest, ArchivesAreScenesBySomeEndings) {
-  EXPECT_THAT(refusal("a.usdz", "PK\x03\x04"), HasProblem("scene.file.ending USD"));
-  EXPECT_THAT(refusal("a.3MF", "PK\x03\x04"), HasProblem("scene.file.ending 3MF"));
-  EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasProblem("scene.file.ending compressed Blender"));
-  EXPECT_THAT(refusal("a.blend", "\x1F\x8B"), HasProblem("scene.file.ending compressed Blender"));
-  EXPECT_THAT(refusal("a.blend", "BLENDER-v300"), HasProblem("scene.file.ending Blender"));
+  EXPECT_THAT(refusal("a.usdz", "PK\x03\x04"), HasProblem("scene.file.extension USD"));
+  EXPECT_THAT(refusal("a.3MF", "PK\x03\x04"), HasProblem("scene.file.extension 3MF"));
+  EXPECT_THAT(refusal("a.blend", "\x28\xB5\x2F\xFD"), HasProblem("scene.file.extension compressed Blender"));
+  EXPECT_THAT(refusal("a.blend", "\x1F\x8B"), HasProblem("scene.file.extension compressed Blender"));
+  EXPECT_THAT(refusal("a.blend", "BLENDER-v300"), HasProblem("scene.file.extension Blender"));
 }
 
 TEST_F(FilesOfScenesTest, AFolderNamesItsScenes) {

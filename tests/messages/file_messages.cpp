@@ -198,8 +198,8 @@ std::vector<MessageCase> cases_of_any_file() {
        }},
       load("scene.file.format", "a.txt", "hello\n"),
       load("scene.file.picture", "a.png", "hello\n"),
-      load("scene.file.ending", "a.unknown", "BLENDER-v300"),
-      load("scene.file.ending", "a.obj", "BLENDER-v300"),
+      load("scene.file.extension", "a.unknown", "BLENDER-v300"),
+      load("scene.file.extension", "a.obj", "BLENDER-v300"),
       load("scene.geometry.none", "a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n"),
       {"scene.root.folder",
        [] {

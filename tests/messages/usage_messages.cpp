@@ -61,13 +61,13 @@ const WrongUsage kWrongUsages[] = {
      {"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "16", "--max-spp", "8"}},
     {"usage.option.unknown", {"render", "square.gltf", "--spq=3"}},
     {"usage.argument.unexpected", {"render", "square.gltf", "triangle.obj", "-o", "a.exr"}},
-    {"output.ending", {"render", "square.gltf", "-o", "a.gif"}},
+    {"output.extension", {"render", "square.gltf", "-o", "a.gif"}},
     {"output.alpha.none", {"render", "square.gltf", "-o", "a.jpg", "--alpha"}},
     {"output.alpha.none", {"render", "square.gltf", "-o", "a.hdr", "--alpha"}},
     {"output.standard.taken", {"render", "square.gltf", "-o", "-", "-o", "-"}},
     {"output.standard.taken", {"render", "square.gltf", "-o", "-", "--job", "j"}},
     {"usage.option.needs", {"render", "square.gltf", "-o", "a.jpg", "--aov", "depth"}},
-    {"output.ending", {"render", "square.gltf", "-o", "a"}},
+    {"output.extension", {"render", "square.gltf", "-o", "a"}},
     {"output.twice", {"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}},
     {"output.input", {"render", "square.gltf", "-o", "a.exr", "--stats", "square.gltf"}},
     {"output.twice", {"render", "square.gltf", "-o", "a.exr", "--stats", "a.exr"}},
@@ -148,7 +148,7 @@ const WrongUsage kWrongUsages[] = {
     {"usage.options.contradict", {"cast", "square.gltf", "rays.npy", "--job", "j", "--repeat", "2", "-o", "a.npy"}},
     {"usage.options.contradict", {"cast", "square.gltf", "rays.npy", "--job", "j", "--piece", "0/2", "-o", "a.npy"}},
     {"usage.option.value", {"cast", "square.gltf", "rays.npy", "-o", "a.npy", "-o", "b.npy"}},
-    {"output.ending", {"cast", "square.gltf", "rays.npy", "-o", "a.txt"}},
+    {"output.extension", {"cast", "square.gltf", "rays.npy", "-o", "a.txt"}},
     {"output.input", {"cast", "square.gltf", "rays.npy", "-o", "rays.npy"}},
     {"usage.options.contradict", {"render", "square.gltf", "--job", "j", "--exposure", "average"}},
     {"usage.options.contradict", {"render", "square.gltf", "--bvh", "a.pbvh", "--builder", "sah"}},
@@ -188,7 +188,7 @@ const WrongUsage kWrongUsages[] = {
 
 const WrongUsage kWrongUsagesOfTrees[] = {
     {"usage.command.missing", {"--"}},
-    {"output.ending", {"build", "square.gltf", "-o", "a.bin"}},
+    {"output.extension", {"build", "square.gltf", "-o", "a.bin"}},
 };
 
 /// Runs a program in this process.

@@ -179,7 +179,7 @@ std::vector<MessageCase> cases_of_pictures() {
        [] {
          write_image("a.exr", kFlatPicture, {}, CropPlacement{{1, 1}, {2, 2}});
        }},
-      {"output.ending", [] { write_image("a.gif", kFlatPicture); }},
+      {"output.extension", [] { write_image("a.gif", kFlatPicture); }},
       {"picture.pair.sizes",
        [] {
          static_cast<void>(compare_pictures(kFlatPicture, {{1, 2}, std::vector<vec3>(2)}));

@@ -292,7 +292,7 @@ void check_job_options(const CastSpec& options) {
 void check_arrays(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     if (lower_case_ending(file) == ".npy") continue;
-    throw UsageError({"output.ending", "the output's extension \"" + file.extension().string() + "\" is unknown",
+    throw UsageError({"output.extension", "the output's extension \"" + file.extension().string() + "\" is unknown",
                       file.string(), "use .npy"});
   }
 }
@@ -307,8 +307,9 @@ void check_cast_spec(const CastSpec& options) {
 void check_pictures(const std::vector<std::filesystem::path>& pictures) {
   for (const std::filesystem::path& picture : pictures) {
     if (!is_writable_format(picture)) {
-      throw UsageError({"output.ending", "the output's extension \"" + picture.extension().string() + "\" is unknown",
-                        picture.string(), kUseKnownEnding});
+      throw UsageError({"output.extension",
+                        "the output's extension \"" + picture.extension().string() + "\" is unknown", picture.string(),
+                        kUseKnownEnding});
     }
   }
 }
