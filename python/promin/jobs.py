@@ -15,15 +15,14 @@ including the programs, may therefore make any piece at any time. docs/jobs.md d
 
 from __future__ import annotations
 
-import heapq
 import json
 import math
 import os
 import re
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from operator import index
 from pathlib import Path
 from typing import Any, Literal, Protocol, Union
@@ -34,6 +33,7 @@ from numpy.typing import NDArray
 from promin import _promin
 from promin._device import Device, DeviceInfo, DeviceLike, find_device
 from promin._errors import Cancelled, DeviceError, Error, InputError, RunError, UsageError
+from promin._ledger import Ledger, Receipt
 
 PathLike = Union[str, "os.PathLike[str]"]
 Stop = Callable[[], bool]
@@ -72,31 +72,6 @@ class Piece:
     """The file of the piece, which exists when the piece is done."""
     weight: float
     """Amount of work relative to other pieces of the job: pixels or rays."""
-
-
-@dataclass(frozen=True)
-class Receipt:
-    """The record of a piece that was made."""
-
-    number: int
-    name: str
-    sha256: str
-    """SHA-256 of the piece's bytes."""
-    bytes: int
-    ms: float
-    """Time that the piece took, in milliseconds."""
-    made_on: str
-    """Device and driver that made the piece."""
-    fingerprint: str
-    """`Runner.fingerprint` of the maker; empty if a program made the piece, because programs compute no fingerprint."""
-    version: str
-    """Version of promin."""
-    host: str
-    pid: int
-
-    def to_dict(self) -> dict[str, Any]:
-        """Returns a dict for JSON."""
-        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -245,7 +220,7 @@ class Job:
         self._files: list[tuple[str, int, str]] = record["files"]
         names: list[str] = record["pieces"]
         self._pieces = tuple(Piece(i, name, native.file_of(i), _weigh(name)) for i, name in enumerate(names))
-        self._ledger = _Ledger(Path(folder) / "ledger", names)
+        self._ledger = Ledger(Path(folder) / "ledger", names)
 
     @property
     def id(self) -> str:
@@ -310,14 +285,14 @@ class Job:
         if self._kind != "render":
             return None
         description, data = self.read(number)
-        told = json.loads(description)
-        left, top, right, bottom = told["part"]
+        header = json.loads(description)
+        left, top, right, bottom = header["part"]
         rows, columns = bottom - top, right - left
         linear = np.frombuffer(data, "<f4", 3 * rows * columns).reshape(rows, columns, 3)
         step = max(1, -(-max(rows, columns) // most_px))
         first_row, first_column = min(step // 2, rows - 1), min(step // 2, columns - 1)
         picked = np.nan_to_num(linear[first_row::step, first_column::step])
-        light = np.clip(picked * 2.0 ** told["exposure_ev"], 0, 1)
+        light = np.clip(picked * 2.0 ** header["exposure_ev"], 0, 1)
         codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
         return np.ascontiguousarray(np.round(255.0 * codes), np.uint8)
 
@@ -328,9 +303,9 @@ class Job:
         if stored is None:
             return None
         sha256, size = stored
-        told = self._ledger.find(number, sha256)
-        if told is not None:
-            return told
+        recorded = self._ledger.find(number, sha256)
+        if recorded is not None:
+            return recorded
         name = self._pieces[number].name
         return Receipt(number, name, sha256, size, 0.0, "", "", self._options.get("version", ""), "", 0)
 
@@ -503,84 +478,6 @@ class Runner:
         if not isinstance(description, str) or not isinstance(data, bytes):
             raise UsageError(f"make({number}) gives {type(description)} and {type(data)}; return a text and bytes")
         return description, data
-
-
-class _Ledger:
-    """Reads the makers' events. Later reads return only new events. An incomplete line is read after it is complete."""
-
-    def __init__(self, folder: Path, pieces: Sequence[str]) -> None:
-        self._folder = folder
-        self._pieces = pieces
-        self._ends: dict[str, int] = {}
-        self._by_maker: dict[str, list[tuple[float, dict[str, Any]]]] = {}
-        self._receipts: dict[int, list[dict[str, Any]]] = {}
-        self._lock = threading.Lock()
-
-    def events(self, maker: str | None) -> list[dict[str, Any]]:
-        with self._lock:
-            self._read()
-            lists = self._by_maker.values() if maker is None else [self._by_maker.get(maker, [])]
-            return [event for _, event in heapq.merge(*lists, key=lambda timed: timed[0])]
-
-    def find(self, number: int, sha256: str) -> Receipt | None:
-        """Returns the last record of a piece with these bytes."""
-        with self._lock:
-            self._read()
-            for event in reversed(self._receipts.get(number, [])):
-                if event["sha256"] == sha256:
-                    return _receipt_of(event)
-            return None
-
-    def _read(self) -> None:
-        for file in sorted(self._folder.glob("*.jsonl")):
-            begin = self._ends.get(file.name, 0)
-            with file.open("rb") as stream:
-                stream.seek(begin)
-                text = stream.read()
-            whole = text[: text.rfind(b"\n") + 1]
-            self._ends[file.name] = begin + len(whole)
-            told = self._by_maker.setdefault(file.stem, [])
-            for event in _parse(whole, self._pieces):
-                event["maker"] = file.stem
-                # Events of one maker keep their order even if the maker's clock is set back.
-                told.append((max(float(event["time_s"]), told[-1][0] if told else 0.0), event))
-                if event["event"] == "done":
-                    self._receipts.setdefault(event["number"], []).append(event)
-
-
-_OF_ANY = {"event": str, "number": int, "piece": str, "time_s": (int, float), "made_on": str, "fingerprint": str}
-_OF_RECEIPT = {"sha256": str, "size_bytes": int, "ms": (int, float), "version": str, "host": str, "pid": int}
-
-
-def _parse(text: bytes, pieces: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """Returns the events of these pieces. Damaged lines are skipped."""
-    for line in text.splitlines():
-        try:
-            event = json.loads(line)
-        except ValueError:
-            continue
-        if not isinstance(event, dict):
-            continue
-        fields: dict[str, Any] = {**_OF_ANY, **(_OF_RECEIPT if event.get("event") == "done" else {})}
-        if not all(isinstance(event.get(name), kind) for name, kind in fields.items()):
-            continue
-        if 0 <= event["number"] < len(pieces) and event["piece"] == pieces[event["number"]]:
-            yield event
-
-
-def _receipt_of(event: dict[str, Any]) -> Receipt:
-    return Receipt(
-        number=event["number"],
-        name=event["piece"],
-        sha256=event["sha256"],
-        bytes=event["size_bytes"],
-        ms=float(event["ms"]),
-        made_on=event["made_on"],
-        fingerprint=event["fingerprint"],
-        version=event["version"],
-        host=event["host"],
-        pid=event["pid"],
-    )
 
 
 def _words_of(arguments: Sequence[str]) -> list[str]:
