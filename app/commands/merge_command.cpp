@@ -15,7 +15,7 @@
 #include "output/outputs.h"
 #include "promin/error.h"
 #include "work/jobs/merge_job.h"
-#include "work/jobs/picture_job.h"
+#include "work/jobs/planned_job.h"
 
 namespace promin::app {
 namespace {

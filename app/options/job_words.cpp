@@ -11,8 +11,7 @@
 #include "options/render_options.h"
 #include "options/spec_options.h"
 #include "promin/error.h"
-#include "work/jobs/cast_job.h"
-#include "work/jobs/picture_job.h"
+#include "work/jobs/planned_job.h"
 #include "work/jobs/spec_job.h"
 #include "work/spec/spec_json.h"
 

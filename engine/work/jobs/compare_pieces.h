@@ -10,7 +10,7 @@
 #include "promin/ray.h"
 #include "promin/scene.h"
 #include "scene/world_scene.h"
-#include "work/jobs/picture_job.h"
+#include "work/jobs/picture_part.h"
 
 // Compares the results of two devices for the same piece of a job. Devices with the same fingerprint give the same
 // bits. The results of other devices are within the published bounds of the exact result, so two results differ by at

@@ -8,8 +8,10 @@
 #include <string>
 
 #include "promin/error.h"
-#include "work/jobs/cast_job.h"
-#include "work/jobs/picture_job.h"
+#include "work/jobs/merge_hits.h"
+#include "work/jobs/merge_pictures.h"
+#include "work/jobs/picture_pieces.h"
+#include "work/jobs/planned_job.h"
 #include "work/spec/render_spec.h"
 
 namespace promin::work {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "jobs/job.h"
 #include "promin/device.h"
@@ -13,6 +14,10 @@
 #include "work/jobs/compare_pieces.h"
 
 namespace promin::work {
+
+/// The kinds of jobs that specifications describe. Their pieces are parts of pictures, and hits of rays.
+inline constexpr std::string_view kPictureJob = "render";
+inline constexpr std::string_view kRayJob = "cast";
 
 /// Makes the pieces of a planned job. It opens the resources for this once. Only one thread at a time may use it. The
 /// plan and the device must outlive it.

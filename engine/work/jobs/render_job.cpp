@@ -10,7 +10,8 @@
 #include "core/file.h"
 #include "promin/error.h"
 #include "work/jobs/job_manifest.h"
-#include "work/jobs/picture_job.h"
+#include "work/jobs/picture_part.h"
+#include "work/jobs/picture_pieces.h"
 #include "work/spec/spec_json.h"
 
 namespace promin::work {

@@ -7,7 +7,6 @@
 #include "promin/error.h"
 #include "work/jobs/cast_job.h"
 #include "work/jobs/job_manifest.h"
-#include "work/jobs/picture_job.h"
 #include "work/jobs/render_job.h"
 #include "work/pictures/frame_plan.h"
 #include "work/pictures/picture_run.h"

@@ -29,8 +29,8 @@ std::unique_ptr<PlannedJob> plan_job(CastSpec spec, const std::filesystem::path&
 [[noreturn]] void refuse_kind(const std::string& kind);
 
 /// Plans the job of the kind "render" or "cast" from the text of its specification. Messages name `file`, and relative
-/// file names in the text are relative to its folder. Throws UsageError also for another kind, and if rays are given for
-/// a job of pictures.
+/// file names in the text are relative to its folder. Throws UsageError also for another kind, and if rays are given
+/// for a job of pictures.
 std::unique_ptr<PlannedJob> plan_job_of_text(const std::string& kind, const std::string& text,
                                              const std::filesystem::path& file, const std::filesystem::path& folder,
                                              const Messages& messages, std::shared_ptr<RaySource> rays = nullptr);

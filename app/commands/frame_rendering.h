@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "output/work_names.h"
+#include "promin/device.h"
+#include "promin/renderer.h"
+#include "promin/scene.h"
+#include "work/pictures/frame_plan.h"
+#include "work/pictures/run_stats.h"
+#include "work/spec/render_spec.h"
+
+namespace promin::app {
+
+/// Traces a frame and writes its pictures. For a large picture it writes a band while the next one is traced. If the
+/// files begin with the error of the whole picture, it writes them after all is traced. `limit_s` is the remaining time
+/// if there is a time limit. `stats.view` is the frame's view; the function adds the frame's figures to `stats`. Throws
+/// RunError, and Cancelled if a signal came while it wrote; then it leaves no incomplete file.
+void render_frame(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
+                  const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                  const std::function<void(double)>& on_progress);
+
+}  // namespace promin::app
