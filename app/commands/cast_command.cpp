@@ -224,7 +224,7 @@ void cast(const CastSpec& options, bool prints_spec) {
   RayChunks chunks{reader, scene.center};
   std::vector<Ray> rays = chunks.next(0);
   caster.prepare(options.query(), rays);
-  take_setup(caster.setup_stats(), stats, console);
+  take_setup(caster.setup_stats(), *device, stats, console);
   (options.is_any ? stats.rays.shadow : stats.rays.primary) = reader.count();
 
   // Results are written immediately to temporary files, which must not remain after a signal.

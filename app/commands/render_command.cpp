@@ -248,7 +248,7 @@ void render(const RenderSpec& given, bool prints_spec) {
   Renderer renderer = make_renderer(
       *device, scene, make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
   stage.reset();
-  take_setup(renderer.setup_stats(), stats, console);
+  take_setup(renderer.setup_stats(), *device, stats, console);
   if (options.explained_pixel) {
     const Explanation explanation = renderer.explain(*stats.view, *options.explained_pixel);
     check_validation(*device, stats);

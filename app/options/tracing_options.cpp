@@ -35,6 +35,7 @@ void add_device_option(OptionTable& table, std::optional<std::string>& device) {
 
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   add_device_option(table, options.device);
+  table.add_flag("--no-cache", "Neither keep compiled kernels in ~/.cache/promin nor read them", options.has_no_cache);
   table.add("--threads", "N",
             fmt::format("Number of threads of the program and of a CPU device, 1 to {} [one per core]", kMaxThreads),
             [&](const OptionValues& w) { options.threads = w.whole(0, 1, kMaxThreads); });

@@ -169,14 +169,13 @@ uvec2 first_size(const ViewOptions& options) {
 }
 
 /// Opens the device that draws to the window. The window handles events meanwhile.
-std::shared_ptr<const gpu::Device> open_device(Window& window, const std::optional<std::string>& selection) {
+std::shared_ptr<const gpu::Device> open_device(Window& window, const TracingOptions& tracing) {
   constexpr double kWait = 0.005;
   const gpu::Presentation presentation = window.presentation();
+  gpu::DeviceOptions options{.selection = tracing.device, .presentation = &presentation};
+  if (tracing.has_no_cache) options.kernel_folder.reset();
   Background<std::shared_ptr<const gpu::Device>> opening;
-  opening.start([&] {
-    return std::make_shared<const gpu::Device>(
-        gpu::DeviceOptions{.selection = selection, .presentation = &presentation});
-  });
+  opening.start([&] { return std::make_shared<const gpu::Device>(options); });
   while (!opening.is_ready()) window.wait(kWait);
   return *opening.take();
 }
@@ -192,7 +191,7 @@ void view(const WindowOptions& options) {
   std::shared_ptr<const gpu::Device> device;
   try {
     window = std::make_unique<Window>(first_size(options.view), title_of(start.file));
-    device = open_device(*window, options.tracing.device);
+    device = open_device(*window, options.tracing);
   } catch (const Error&) {
     // Waits for the scene, so that its problems are reported first.
     opening.wait();

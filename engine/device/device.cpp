@@ -62,6 +62,11 @@ bool has_device_extension(const vk::raii::PhysicalDevice& device, std::string_vi
                      [&](const auto& e) { return name == e.extensionName.data(); });
 }
 
+bool has_shader_objects(const vk::raii::PhysicalDevice& device) {
+  const auto names = shader_object_extensions();
+  return !names.empty() && std::ranges::all_of(names, [&](const char* n) { return has_device_extension(device, n); });
+}
+
 /// Returns the driver's properties; empty if the driver reports none.
 std::optional<vk::PhysicalDeviceDriverProperties> driver_properties(const vk::raii::PhysicalDevice& device,
                                                                     const vk::PhysicalDeviceProperties& properties) {
@@ -87,6 +92,7 @@ DeviceTraits traits_of(const vk::raii::PhysicalDevice& device, const vk::Physica
           .driver_id = driver ? static_cast<uint32_t>(driver->driverID) : 0,
           .driver_info = driver ? std::string(driver->driverInfo) : std::string(),
           .core_count = core_count(),
+          .has_shader_objects = has_shader_objects(device),
           .texel_buffer_bytes = properties.limits.maxTexelBufferElements * kTexelBytes};
 }
 
@@ -272,7 +278,15 @@ Device::Device(const DeviceOptions& options)
       enabled_extensions_.push_back("VK_KHR_portability_subset");
     }
     if (options.presentation != nullptr) enabled_extensions_.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    device_ = make_device(physical_, vk::DeviceCreateInfo({}, queue_info, {}, enabled_extensions_), info_.name);
+    if (profile_.keeps_kernels) kernel_folder_ = options.kernel_folder;
+    if (kernel_folder_) {
+      const auto names = shader_object_extensions();
+      enabled_extensions_.insert(enabled_extensions_.end(), names.begin(), names.end());
+    }
+    vk::DeviceCreateInfo device_info({}, queue_info, {}, enabled_extensions_);
+    if (kernel_folder_) device_info.pNext = shader_object_features();
+    device_ = make_device(physical_, device_info, info_.name);
+    if (kernel_folder_) compiled_pipelines_.keep_binaries(physical_, *kernel_folder_);
     queue_ = vk::raii::Queue(device_, queue_family_, 0);
     pool_ = vk::raii::CommandPool(
         device_, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_));
@@ -330,8 +344,10 @@ void DeviceDeleter::operator()(Device* device) const {
   delete device;
 }
 
-DeviceHandle open_device(const std::optional<std::string>& selection) {
-  return open_device(DeviceOptions{.selection = selection});
+DeviceHandle open_device(const std::optional<std::string>& selection, bool keeps_kernels) {
+  DeviceOptions options{.selection = selection};
+  if (!keeps_kernels) options.kernel_folder.reset();
+  return open_device(options);
 }
 
 DeviceHandle open_device(const DeviceOptions& options) {
@@ -344,6 +360,9 @@ const DeviceInfo& info_of(const Device& device) {
 }
 const std::string& choice_of(const Device& device) {
   return device.choice();
+}
+KernelStats kernel_stats_of(const Device& device) {
+  return device.compiled_pipelines().stats();
 }
 uint64_t validation_message_count(const Device& device) {
   return device.validation_message_count();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -32,14 +33,16 @@ struct DeviceOptions {
   const Presentation* presentation = nullptr;
   /// Replaces the profile's value. Tests set it to 1, because such kernels compile in two thirds of the time.
   std::optional<uint32_t> pixel_packet_size = std::nullopt;
+  /// The folder in which the device keeps compiled kernels if its profile recommends it; nullopt: none.
+  std::optional<std::filesystem::path> kernel_folder = KernelFolder::usual();
 };
 
 /// Runs `work` and converts Vulkan's exceptions to RunErrors, whose sentences name the call and the result.
 void translate_vulkan_errors(const std::function<void()>& work);
 
 /// A Vulkan instance and one logical device with one compute queue. With a window the queue also draws and presents.
-/// The device needs only the limits that Vulkan 1.1 guarantees, and enables no optional feature. Several threads may
-/// use a device if each has its own buffers and pipelines.
+/// The device needs only the limits that Vulkan 1.1 guarantees. It enables no optional feature, except shader objects
+/// if it keeps compiled kernels. Several threads may use a device if each has its own buffers and pipelines.
 class Device {
  public:
   /// Opens a device. Throws DeviceError.
@@ -51,6 +54,8 @@ class Device {
   const std::string& choice() const { return choice_; }
   /// Returns the settings that suit the device.
   const DeviceProfile& profile() const { return profile_; }
+  /// Returns the folder in which the device keeps compiled kernels; nullopt if it keeps none.
+  const std::optional<std::filesystem::path>& kernel_folder() const { return kernel_folder_; }
   /// Returns the names of the enabled device extensions.
   const std::vector<const char*>& enabled_extensions() const { return enabled_extensions_; }
   uint64_t validation_message_count() const { return *validation_messages_; }
@@ -106,6 +111,7 @@ class Device {
   vk::raii::Fence fence_{nullptr};
   DeviceInfo info_;
   DeviceProfile profile_;
+  std::optional<std::filesystem::path> kernel_folder_;
   std::vector<const char*> enabled_extensions_;
   std::string choice_;
 };

@@ -3,6 +3,7 @@
 #include "device/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <stdexcept>
 #include <string>
@@ -61,6 +62,28 @@ class CompilerSpace {
   uint64_t bytes_ = 0;
 };
 
+vk::raii::Pipeline make_pipeline(const vk::raii::Device& device, std::span<const uint32_t> code,
+                                 std::span<const SpecializationConstant> constants, vk::PipelineLayout layout) {
+  const vk::raii::ShaderModule module(device, vk::ShaderModuleCreateInfo({}, code.size_bytes(), code.data()));
+  std::vector<vk::SpecializationMapEntry> entries;
+  for (const SpecializationConstant& constant : constants) {
+    const auto offset =
+        static_cast<uint32_t>(entries.size() * sizeof constant + offsetof(SpecializationConstant, value));
+    entries.emplace_back(constant.id, offset, sizeof constant.value);
+  }
+  const vk::SpecializationInfo values(static_cast<uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
+                                      constants.data());
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &values);
+  return {device, nullptr, vk::ComputePipelineCreateInfo({}, stage, layout)};
+}
+
+/// Returns true if another form of the code may be accepted.
+bool is_refusal(const vk::SystemError& error) {
+  const std::array fatal{vk::Result::eErrorOutOfHostMemory, vk::Result::eErrorOutOfDeviceMemory,
+                         vk::Result::eErrorDeviceLost};
+  return std::ranges::none_of(fatal, [&](vk::Result result) { return error.code() == vk::make_error_code(result); });
+}
+
 }  // namespace
 
 const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
@@ -84,17 +107,65 @@ const CompiledPipeline& CompiledPipelines::get(const vk::raii::Device& device, s
   }
 
   const CompilerSpace space(code.size() * sizeof(uint32_t));
-  const vk::raii::ShaderModule module(device,
-                                      vk::ShaderModuleCreateInfo({}, code.size() * sizeof(uint32_t), code.data()));
-  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
   CompiledPipeline made;
   made.set_layout = vk::raii::DescriptorSetLayout(
       device, vk::DescriptorSetLayoutCreateInfo({}, static_cast<uint32_t>(bindings.size()), bindings.data()));
   made.layout = vk::raii::PipelineLayout(device, vk::PipelineLayoutCreateInfo({}, *made.set_layout));
-  made.pipeline = vk::raii::Pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *made.layout));
+  try {
+    if (folder_) {
+      made.shader = make_shader_object(device, key, code, *made.set_layout);
+    } else {
+      made.pipeline = make_pipeline(device, code, {}, *made.layout);
+      count_compiled();
+    }
+  } catch (const vk::SystemError& error) {
+    if (!is_refusal(error)) throw;
+    made.pipeline = make_pipeline(device, spirv, constants, *made.layout);
+    count_compiled(std::string("the driver refused a kernel without its dead code (") + error.what() + ")");
+  }
   // If two threads have compiled the same code, only one result is kept.
   const std::lock_guard lock(mutex_);
   return compiled_.emplace(std::move(key), std::move(made)).first->second;
+}
+
+ShaderObject CompiledPipelines::make_shader_object(const vk::raii::Device& device, std::span<const uint32_t> key,
+                                                   std::span<const uint32_t> code, vk::DescriptorSetLayout layout) {
+  std::vector<uint32_t> key_in_folder = binary_format_;
+  key_in_folder.insert(key_in_folder.end(), key.begin(), key.end());
+  if (const auto binary = folder_->find(key_in_folder); !binary.empty()) {
+    ShaderObject shader = make_shader(device, ShaderCode::kBinary, binary, layout);
+    if (*shader) {
+      const std::lock_guard lock(mutex_);
+      ++stats_.read;
+      return shader;
+    }
+  }
+  ShaderObject shader = make_shader(device, ShaderCode::kSpirv, std::as_bytes(code), layout);
+  folder_->store(key_in_folder, binary_of(shader));
+  count_compiled();
+  return shader;
+}
+
+void CompiledPipelines::keep_binaries(const vk::raii::PhysicalDevice& physical, std::filesystem::path folder) {
+  binary_format_ = binary_format_of(physical);
+  folder_.emplace(std::move(folder));
+}
+
+void CompiledPipelines::count_compiled(const std::string& note) {
+  const std::lock_guard lock(mutex_);
+  ++stats_.compiled;
+  if (!note.empty()) stats_.notes.push_back(note);
+}
+
+KernelStats CompiledPipelines::stats() const {
+  const std::lock_guard lock(mutex_);
+  KernelStats stats = stats_;
+  if (!folder_) return stats;
+  stats.folder = folder_->path();
+  if (const std::string problem = folder_->problem(); !problem.empty()) {
+    stats.notes.push_back("compiled kernels are not kept: " + problem);
+  }
+  return stats;
 }
 
 size_t CompiledPipelines::size() const {
@@ -140,7 +211,11 @@ void ComputePipeline::bind(const BoundBuffer& buffer) {
 }
 
 void ComputePipeline::bind_all(const vk::raii::CommandBuffer& commands) const {
-  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *compiled_->pipeline);
+  if (*compiled_->shader) {
+    bind_shader(commands, compiled_->shader);
+  } else {
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *compiled_->pipeline);
+  }
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *compiled_->layout, 0, *set_, {});
 }
 

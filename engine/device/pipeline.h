@@ -6,11 +6,15 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "device/kernel_folder.h"
+#include "device/shader_objects.h"
 #include "device/spirv.h"
+#include "promin/device.h"
 #include "promin/math.h"
 
 namespace promin::gpu {
@@ -33,7 +37,9 @@ struct BoundBuffer {
 struct CompiledPipeline {
   vk::raii::DescriptorSetLayout set_layout{nullptr};
   vk::raii::PipelineLayout layout{nullptr};
+  /// Null if the kernel is a shader object.
   vk::raii::Pipeline pipeline{nullptr};
+  ShaderObject shader{nullptr};
 };
 
 /// The pipelines that a device has compiled. Two requests share a pipeline if specialize() returns the same code for
@@ -42,15 +48,31 @@ struct CompiledPipeline {
 /// one compiles.
 class CompiledPipelines {
  public:
-  /// Returns a pipeline, and compiles it if needed. The pipeline is valid as long as this object exists. Throws
-  /// vk::SystemError, and std::logic_error if the module lacks a constant, which drivers silently ignore.
+  /// Makes kernels as shader objects from now on, and keeps their binaries in the folder. The device must have enabled
+  /// shader_object_features().
+  void keep_binaries(const vk::raii::PhysicalDevice& physical, std::filesystem::path folder);
+
+  /// Returns a pipeline, and compiles it if needed. The pipeline is valid as long as this object exists. If the driver
+  /// refuses the specialized code, it gets the module and the constants. Throws vk::SystemError, and std::logic_error
+  /// if the module lacks a constant, which drivers silently ignore.
   const CompiledPipeline& get(const vk::raii::Device& device, std::span<const uint32_t> spirv,
                               std::span<const SpecializationConstant> constants,
                               std::span<const vk::DescriptorSetLayoutBinding> bindings);
   size_t size() const;
+  /// Returns the counts and notes since the device was opened.
+  KernelStats stats() const;
 
  private:
+  ShaderObject make_shader_object(const vk::raii::Device& device, std::span<const uint32_t> key,
+                                  std::span<const uint32_t> code, vk::DescriptorSetLayout layout);
+  /// Counts a kernel that the driver has compiled, and adds a note unless it is empty.
+  void count_compiled(const std::string& note = {});
+
+  /// The folder of binaries, and the words at the begin of each of its keys.
+  std::optional<KernelFolder> folder_;
+  std::vector<uint32_t> binary_format_;
   mutable std::mutex mutex_;
+  KernelStats stats_;
   /// The key holds the bindings and the specialized code.
   std::map<std::vector<uint32_t>, CompiledPipeline> compiled_;
 };

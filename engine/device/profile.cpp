@@ -48,9 +48,11 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
 
 /// Lets packets test their leaves after each step. With this, pictures take 0.78 to 0.94 of the time with lavapipe
 /// 25.0.7, and 0.96 to 1.4 of the time with 22.3.6 (docs/performance_log.md). The versions in between were not
-/// measured.
-void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& /*traits*/) {
+/// measured. The driver's own cache has only machine code: without binaries, each process translates SPIR-V to Mesa's
+/// NIR again, which takes a quarter to two thirds of the CPU time of small pictures (docs/performance_log.md).
+void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
+  profile.keeps_kernels = traits.has_shader_objects;
 }
 
 /// Returns the first number of Mesa's version in a driver's description; 0 for other drivers. Lavapipe's driverVersion

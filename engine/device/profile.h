@@ -18,6 +18,8 @@ struct DeviceTraits {
   std::string driver_info = {};
   /// Number of cores of the host.
   uint32_t core_count = 1;
+  /// True if the driver has VK_EXT_shader_object, and promin was compiled with headers that have it.
+  bool has_shader_objects = false;
   /// Largest size of a texel buffer.
   uint64_t texel_buffer_bytes = 0;
 };
@@ -56,6 +58,9 @@ struct DeviceProfile {
   /// True if the driver compiles a kernel in one thread at the kernel's first dispatch, keeps the result in a cache on
   /// the disk, and the host has another core. Kernels then compile on two devices at the same time (side_compiler.h).
   bool compiles_on_second_device = false;
+  /// True if kernels are shader objects, and promin keeps their binaries on the disk (kernel_folder.h). Drivers of GPUs
+  /// keep kernels themselves.
+  bool keeps_kernels = false;
   /// Number of seconds after which a device that does not answer counts as lost.
   double most_silence_s = 120.0;
   /// Largest number of rows of workgroups in a dispatch (trace/kernels/group_rows.h).

@@ -60,7 +60,9 @@ class StandIns {
 }  // namespace
 
 void compile_on_second_device(const Device& device, const KernelSource& kernel) {
-  const Device second(DeviceOptions{.selection = "uuid:" + device.info().uuid});
+  // The driver's cache distinguishes kernels with a kept binary from others.
+  const Device second(
+      DeviceOptions{.selection = "uuid:" + device.info().uuid, .kernel_folder = device.kernel_folder()});
   const StandIns buffers(second, kernel.buffers);
   const ComputePipeline pipeline(second, kernel.spirv, kernel.constants, buffers.bound());
   second.run([&](const vk::raii::CommandBuffer& commands) { pipeline.dispatch(commands, uvec2(1)); });

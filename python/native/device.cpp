@@ -31,9 +31,9 @@ nb::dict describe_device(const gpu::DeviceInfo& info) {
   return result;
 }
 
-std::shared_ptr<OpenDevice> open(const std::optional<std::string>& selection) {
+std::shared_ptr<OpenDevice> open(const std::optional<std::string>& selection, bool keeps_kernels) {
   gpu::DeviceHandle handle;
-  run_watched(nb::none(), [&](const ProgressCallback&) { handle = gpu::open_device(selection); });
+  run_watched(nb::none(), [&](const ProgressCallback&) { handle = gpu::open_device(selection, keeps_kernels); });
   return std::make_shared<OpenDevice>(std::move(handle));
 }
 
@@ -41,7 +41,7 @@ std::shared_ptr<OpenDevice> open(const std::optional<std::string>& selection) {
 
 void bind_device(nb::module_& module) {
   nb::class_<OpenDevice>(module, "Device")
-      .def_static("open", &open, nb::arg("selection").none())
+      .def_static("open", &open, nb::arg("selection").none(), nb::arg("keeps_kernels"))
       .def("info", [](const OpenDevice& device) { return describe_device(gpu::info_of(device.get())); })
       .def("choice", [](const OpenDevice& device) { return gpu::choice_of(device.get()); });
   module.def("list_devices", [] {

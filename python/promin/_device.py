@@ -42,13 +42,16 @@ class DeviceInfo:
 class Device:
     """An open Vulkan device. Any number of Casters and Renderers on any threads may share it."""
 
-    def __init__(self, selection: str | int | None = None) -> None:
+    def __init__(self, selection: str | int | None = None, cache: bool = True) -> None:
         """Opens the device that `selection` names: an index of `Device.list()`, "uuid:" with a UUID, or a part of a
         device's name, in upper or lower case. Without a selection it opens a GPU, or a CPU if there is no GPU. Raises
         DeviceError if no device is usable or none matches; without any driver the message names the package with Mesa's
-        drivers."""
+        drivers.
+
+        cache: False neither keeps compiled kernels in `~/.cache/promin` nor reads them. Results have the same bits."""
         self._selection = _name(selection)
-        self._native = _promin.Device.open(self._selection)
+        self._cache = cache
+        self._native = _promin.Device.open(self._selection, cache)
 
     @staticmethod
     def list() -> list[DeviceInfo]:
@@ -76,8 +79,8 @@ class Device:
     def __repr__(self) -> str:
         return f"<promin.Device {self.fingerprint}>"
 
-    def __reduce__(self) -> tuple[type[Device], tuple[str | None]]:
-        return type(self), (self._selection,)
+    def __reduce__(self) -> tuple[type[Device], tuple[str | None, bool]]:
+        return type(self), (self._selection, self._cache)
 
 
 DeviceLike = Union[Device, str, int, None]

@@ -82,6 +82,14 @@ def test_devices_are_named() -> None:
         promin.Caster(promin.Scene(), device=1.5)  # type: ignore[arg-type]
 
 
+def test_a_device_without_a_cache_keeps_no_kernels(tmp_path: Path) -> None:
+    code = "import pickle, promin\nscene = promin.Scene()\nscene.add_sphere()\n"
+    code += "device = pickle.loads(pickle.dumps(promin.Device(cache=False)))\npromin.Caster(scene, device)"
+    done = run(code, XDG_CACHE_HOME=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert not (tmp_path / "promin").exists()
+
+
 ANYTHING: st.SearchStrategy[Any] = st.recursive(
     st.none()
     | st.booleans()

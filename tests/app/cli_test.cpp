@@ -335,6 +335,48 @@ TEST_F(CliTest, AFileSizeLimitIsAFailureWhateverItStops) {
   }
 }
 
+// Only devices whose profile recommends it keep kernels.
+TEST_F(CliTest, CompiledKernelsAreKeptUnlessOneSaysNoCache) {
+  options_.environment["XDG_CACHE_HOME"] = (folder() / "cache").string();
+  const auto render = [&](OptionValues words) {
+    words.insert(words.begin(), {"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "--stats", "s.json"});
+    const ProcessResult result = run(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(read("s.json")).at("kernels");
+  };
+  const nlohmann::json first = render({"--no-cache"});
+  EXPECT_GT(first.at("compiled"), 0);
+  EXPECT_EQ(first.at("read"), 0);
+  EXPECT_FALSE(fs::exists(folder() / "cache"));
+  const std::string picture = read("a.exr");
+  EXPECT_EQ(render({}), first);
+  if (!fs::exists(folder() / "cache")) GTEST_SKIP() << "kernels of this device are not kept";
+  const nlohmann::json again = render({});
+  EXPECT_EQ(again.at("compiled"), 0);
+  EXPECT_EQ(again.at("read"), first.at("compiled"));
+  EXPECT_TRUE(read("a.exr") == picture);
+  EXPECT_EQ(render({"--no-cache"}), first);
+}
+
+TEST_F(CliTest, AKernelThatTheDriverRefusesIsCompiledWhole) {
+  const OptionValues words = {"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "-v", "--no-cache"};
+  ASSERT_EQ(run(words).exit_code, 0);
+  const std::string picture = read("a.exr");
+  // The path of layers contains only this layer and no validation layers.
+  options_.environment["VK_LAYER_PATH"] = PROMIN_FAULT_LAYER_DIR;
+  options_.environment["VK_INSTANCE_LAYERS"] = "VK_LAYER_PROMIN_fault";
+  options_.environment["PROMIN_VALIDATION"] = "";
+  constexpr int kUnknown = -13;
+  options_.environment["PROMIN_TEST_FAULT"] = "vkCreateComputePipelines 1 " + std::to_string(kUnknown);
+  const ProcessResult refused = run(words);
+  EXPECT_EQ(refused.exit_code, 0) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("the driver refused a kernel without its dead code ("));
+  EXPECT_TRUE(read("a.exr") == picture);
+  constexpr int kNoHostMemory = -1;
+  options_.environment["PROMIN_TEST_FAULT"] = "vkCreateComputePipelines 1 " + std::to_string(kNoHostMemory);
+  expect_failure(run(words), 1, "the host has not enough memory (");
+}
+
 // Lavapipe turns uniforms into constants (shaders/shared/bindings.glsl). It then compiles for every scene, and small
 // kernels for every dispatch.
 TEST_F(CliTest, AKernelServesAllScenesOfItsFeatures) {

@@ -23,6 +23,7 @@ DeviceProfile profile_of(bool is_cpu, uint32_t driver_id, uint32_t core_count = 
                        .driver_id = driver_id,
                        .driver_info = driver_info,
                        .core_count = core_count,
+                       .has_shader_objects = true,
                        .texel_buffer_bytes = kTexelBytes});
 }
 
@@ -38,6 +39,7 @@ void expect_gpu(const DeviceProfile& profile) {
   EXPECT_EQ(profile.most_group_rows, 1U);
   EXPECT_FALSE(profile.may_cut_loops);
   EXPECT_FALSE(profile.compiles_on_second_device);
+  EXPECT_FALSE(profile.keeps_kernels);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
   EXPECT_EQ(profile.samples_that_repay_packets, 0U);
   EXPECT_GE(profile.most_stream_paths, 1U << 17);
@@ -69,6 +71,7 @@ void expect_cpu_without_packets(const DeviceProfile& profile) {
   expect_cpu(profile);
   EXPECT_FALSE(profile.may_cut_loops);
   EXPECT_FALSE(profile.compiles_on_second_device);
+  EXPECT_FALSE(profile.keeps_kernels);
   EXPECT_EQ(profile.pixel_packet_size, 1U);
   EXPECT_EQ(profile.ray_packet_size, 1U);
 }
@@ -110,6 +113,14 @@ TEST(ProfileTest, PacketsOfNewerLavapipesLookIntoLeavesAfterEachStep) {
   }
   EXPECT_EQ(profile_of(true, kSwiftShader, 8, "Mesa 25.0.7").ray_traversal.steps_together, 0U);
   expect_gpu(profile_of(false, kNvidia, 8, "550.163.01"));
+}
+
+TEST(ProfileTest, KernelsOfNewerLavapipesAreKeptIfTheyCanBe) {
+  DeviceTraits traits{.is_cpu = true, .driver_id = kLlvmpipe, .driver_info = "Mesa 25.0.7", .has_shader_objects = true};
+  EXPECT_TRUE(make_profile(traits).keeps_kernels);
+  traits.has_shader_objects = false;
+  EXPECT_FALSE(make_profile(traits).keeps_kernels);
+  EXPECT_FALSE(profile_of(true, kLlvmpipe, 8, "Mesa 22.3.6 (LLVM 15.0.6)").keeps_kernels);
 }
 
 TEST(ProfileTest, OtherCpuDevicesTakeNoPackets) {

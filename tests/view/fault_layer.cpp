@@ -88,6 +88,14 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device, const VkMemoryAl
   return next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, info, allocator, memory);
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
+                                                const VkComputePipelineCreateInfo* infos,
+                                                const VkAllocationCallbacks* allocator, VkPipeline* pipelines) {
+  if (const VkResult result = fail("vkCreateComputePipelines"); result != VK_SUCCESS) return result;
+  return next<PFN_vkCreateComputePipelines>("vkCreateComputePipelines")(device, cache, count, infos, allocator,
+                                                                        pipelines);
+}
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc(VkInstance instance, const char* name);
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc(VkDevice device, const char* name);
 
@@ -99,6 +107,7 @@ PFN_vkVoidFunction find_own(const char* name) {
   if (is("vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(create_device);
   if (is("vkQueueSubmit")) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
   if (is("vkAllocateMemory")) return reinterpret_cast<PFN_vkVoidFunction>(allocate_memory);
+  if (is("vkCreateComputePipelines")) return reinterpret_cast<PFN_vkVoidFunction>(create_pipelines);
   return nullptr;
 }
 

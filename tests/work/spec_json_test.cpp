@@ -139,9 +139,9 @@ TEST(SpecJsonTest, EachOptionIsAMemberThatReadsBack) {
 
 // A new option needs a row in the table of fields, or a place among the options that each process chooses.
 TEST(SpecJsonTest, EveryOptionIsKnown) {
-  const std::set<std::string> of_processes = {"explain", "skip-existing", "job",     "piece",  "device",
-                                              "threads", "quiet",         "verbose", "repeat", "stats",
-                                              "help",    "version",       "look",    "framing"};
+  const std::set<std::string> of_processes = {"explain",  "skip-existing", "job",     "piece",  "device",
+                                              "threads",  "quiet",         "verbose", "repeat", "stats",
+                                              "no-cache", "help",          "version", "look",   "framing"};
   CLI::App program("", "promin");
   RenderSpec pictures;
   CastSpec rays;

@@ -39,7 +39,8 @@ FeatureMask without_slow_parts(FeatureMask features) {
 }  // namespace
 
 std::shared_ptr<const gpu::Device> open_same_device(const gpu::Device& device) {
-  return std::make_shared<const gpu::Device>(gpu::DeviceOptions{.selection = std::to_string(device.info().index)});
+  return std::make_shared<const gpu::Device>(
+      gpu::DeviceOptions{.selection = std::to_string(device.info().index), .kernel_folder = device.kernel_folder()});
 }
 
 bool sets_apart(const gpu::Device& device) {

@@ -100,7 +100,7 @@ class RayPieces : public PieceMaker {
     std::vector<Ray> rays(std::min(kChunkRays, job.ranges_.front().count()));
     job.rays_->read(0, rays, job.scene_.center);
     caster_->prepare(job.options_.query(), rays);
-    take_setup(caster_->setup_stats(), stats_, job.console_);
+    take_setup(caster_->setup_stats(), device_, stats_, job.console_);
   }
 
   jobs::Content make(size_t number, const ProgressCallback& progress) override {

@@ -70,7 +70,7 @@ class PicturePieces : public PieceMaker {
     options.shared_bvh = shared_tree_file(job.run_.options.job, options.builder);
     options.progress = progress;
     renderer_.emplace(make_renderer(device, job.run_.scene, options));
-    take_setup(renderer_->setup_stats(), stats_, job.console_);
+    take_setup(renderer_->setup_stats(), device_, stats_, job.console_);
   }
 
   jobs::Content make(size_t piece, const ProgressCallback& progress) override {

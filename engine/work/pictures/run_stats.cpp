@@ -147,6 +147,7 @@ std::string to_json(const RunStats& stats) {
       {"features", stats.setup.features},
       {"bvh", json_of_bvh(stats.setup.bvh)},
       {"device_bytes", stats.setup.device_bytes},
+      {"kernels", {{"compiled", stats.kernels.compiled}, {"read", stats.kernels.read}}},
       {"times_ms",
        {{"load", stats.load_ms},
         {"bvh", stats.setup.bvh_ms},

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "promin/device.h"
 #include "promin/device_info.h"
 #include "promin/image.h"
 #include "promin/renderer.h"
@@ -28,6 +29,7 @@ struct RunStats {
   /// The display transform for 8-bit files.
   DisplayTransform display;
   SetupStats setup;
+  gpu::KernelStats kernels;
   RayCounts rays;
   /// The accuracies of pictures with an error target: one for each frame, or one for the single picture.
   std::vector<PictureError> errors;

@@ -47,21 +47,25 @@ std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sourc
 }
 
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Messages& console) {
-  gpu::DeviceHandle device = gpu::open_device(options.device);
+  gpu::DeviceHandle device = gpu::open_device(options.device, !options.has_no_cache);
   stats.device = gpu::info_of(*device);
   console.detail(gpu::choice_of(*device));
   return device;
 }
 
-void take_setup(const SetupStats& setup, RunStats& stats, const Messages& console) {
+void take_setup(const SetupStats& setup, const gpu::Device& device, RunStats& stats, const Messages& console) {
   give_back_memory();
   stats.setup = setup;
+  stats.kernels = gpu::kernel_stats_of(device);
   for (const Problem& warning : setup.warnings) console.warn(warning);
   console.detail(fmt::format("BVH by {}: {} nodes, depth {}, SAH cost {:.4g}, {:.1f} ms", setup.bvh.builder,
                              setup.bvh.nodes, setup.bvh.depth, setup.bvh.sah_cost, setup.bvh_ms));
   console.detail(fmt::format("features: {}", fmt::join(setup.features, ", ")));
   console.detail(fmt::format("upload {:.1f} ms ({:.1f} MB), pipeline {:.1f} ms, {}", setup.upload_ms,
                              1e-6 * static_cast<double>(setup.device_bytes), setup.pipeline_ms, describe_memory()));
+  const std::string folder = stats.kernels.folder.empty() ? "" : " from " + stats.kernels.folder.string();
+  console.detail(fmt::format("kernels: {} compiled, {} read{}", stats.kernels.compiled, stats.kernels.read, folder));
+  for (const std::string& note : stats.kernels.notes) console.detail(note);
 }
 
 void tell_end(const RunStats& stats, const Messages& console) {

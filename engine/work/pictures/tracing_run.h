@@ -26,8 +26,8 @@ std::vector<std::filesystem::path> files_of(const std::vector<SourceFile>& sourc
 /// Opens the device of the options. Throws DeviceError.
 gpu::DeviceHandle open_device_for(const TracingOptions& options, RunStats& stats, const Messages& console);
 
-/// Stores the cost of setting up the scene.
-void take_setup(const SetupStats& setup, RunStats& stats, const Messages& console);
+/// Stores the cost of setting up the scene, and the counts of the device's kernels.
+void take_setup(const SetupStats& setup, const gpu::Device& device, RunStats& stats, const Messages& console);
 
 /// Reports the times of tracing and writing and the memory use, after stats.total_ms is set.
 void tell_end(const RunStats& stats, const Messages& console);

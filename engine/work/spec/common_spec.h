@@ -27,6 +27,8 @@ struct TracingOptions {
   std::optional<std::filesystem::path> stats;
   /// Name or index of the device.
   std::optional<std::string> device;
+  /// True if no compiled kernels are kept on the disk or read from it.
+  bool has_no_cache = false;
   /// Number of threads of the program and of a CPU device; if empty, each uses one thread per core.
   std::optional<uint32_t> threads;
   uint32_t repeat_count = 1;
