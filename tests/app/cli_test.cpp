@@ -347,10 +347,10 @@ TEST_F(CliTest, CompiledKernelsAreKeptUnlessOneSaysNoCache) {
   const nlohmann::json first = render({"--no-cache"});
   EXPECT_GT(first.at("compiled"), 0);
   EXPECT_EQ(first.at("read"), 0);
-  EXPECT_FALSE(fs::exists(folder() / "cache"));
+  EXPECT_FALSE(fs::exists(folder() / "cache/promin"));
   const std::string picture = read("a.exr");
   EXPECT_EQ(render({}), first);
-  if (!fs::exists(folder() / "cache")) GTEST_SKIP() << "kernels of this device are not kept";
+  if (!fs::exists(folder() / "cache/promin")) GTEST_SKIP() << "kernels of this device are not kept";
   const nlohmann::json again = render({});
   EXPECT_EQ(again.at("compiled"), 0);
   EXPECT_EQ(again.at("read"), first.at("compiled"));
