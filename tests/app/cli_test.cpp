@@ -337,7 +337,7 @@ TEST_F(CliTest, AFileSizeLimitIsAFailureWhateverItStops) {
 
 // Only devices whose profile recommends it keep kernels.
 TEST_F(CliTest, CompiledKernelsAreKeptUnlessOneSaysNoCache) {
-  options_.environment["XDG_CACHE_HOME"] = (folder() / "cache").string();
+  options_.environment["XDG_CACHE_HOME"] = folder() / "cache";
   const auto render = [&](OptionValues words) {
     words.insert(words.begin(), {"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "--stats", "s.json"});
     const ProcessResult result = run(words);
@@ -359,22 +359,30 @@ TEST_F(CliTest, CompiledKernelsAreKeptUnlessOneSaysNoCache) {
 }
 
 TEST_F(CliTest, AKernelThatTheDriverRefusesIsCompiledWhole) {
-  const OptionValues words = {"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "-v", "--no-cache"};
+  options_.environment["XDG_CACHE_HOME"] = folder() / "cache";
+  OptionValues words = {"render", "square.gltf", "--size", "8", "8", "-o", "a.exr", "-v"};
   ASSERT_EQ(run(words).exit_code, 0);
+  const bool keeps_kernels = fs::exists(folder() / "cache/promin");
+  const std::string call = keeps_kernels ? "vkCreateShadersEXT" : "vkCreateComputePipelines";
   const std::string picture = read("a.exr");
   // The path of layers contains only this layer and no validation layers.
   options_.environment["VK_LAYER_PATH"] = PROMIN_FAULT_LAYER_DIR;
   options_.environment["VK_INSTANCE_LAYERS"] = "VK_LAYER_PROMIN_fault";
   options_.environment["PROMIN_VALIDATION"] = "";
-  constexpr int kUnknown = -13;
-  options_.environment["PROMIN_TEST_FAULT"] = "vkCreateComputePipelines 1 " + std::to_string(kUnknown);
-  const ProcessResult refused = run(words);
+  const auto run_with = [&](const std::string& fault) {
+    options_.environment["PROMIN_TEST_FAULT"] = fault;
+    fs::remove_all(folder() / "cache/promin");
+    return run(words);
+  };
+  const ProcessResult refused = run_with(call + " 1 -13");  // VK_ERROR_UNKNOWN
   EXPECT_EQ(refused.exit_code, 0) << refused.err;
   EXPECT_THAT(refused.err, HasSubstr("the driver refused a kernel without its dead code ("));
   EXPECT_TRUE(read("a.exr") == picture);
-  constexpr int kNoHostMemory = -1;
-  options_.environment["PROMIN_TEST_FAULT"] = "vkCreateComputePipelines 1 " + std::to_string(kNoHostMemory);
-  expect_failure(run(words), 1, "the host has not enough memory (");
+  EXPECT_FALSE(fs::exists(folder() / "cache/promin"));
+  // VK_ERROR_OUT_OF_HOST_MEMORY
+  expect_failure(run_with(call + " 1 -1"), 1, "the host has not enough memory (");
+  words.emplace_back("--no-cache");
+  expect_failure(run_with("vkCreateComputePipelines 1 -1"), 1, "the host has not enough memory (");
 }
 
 // Lavapipe turns uniforms into constants (shaders/shared/bindings.glsl). It then compiles for every scene, and small

@@ -96,6 +96,14 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                                         pipelines);
 }
 
+#ifdef VK_EXT_shader_object
+VKAPI_ATTR VkResult VKAPI_CALL create_shaders(VkDevice device, uint32_t count, const VkShaderCreateInfoEXT* infos,
+                                              const VkAllocationCallbacks* allocator, VkShaderEXT* shaders) {
+  if (const VkResult result = fail("vkCreateShadersEXT"); result != VK_SUCCESS) return result;
+  return next<PFN_vkCreateShadersEXT>("vkCreateShadersEXT")(device, count, infos, allocator, shaders);
+}
+#endif
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc(VkInstance instance, const char* name);
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc(VkDevice device, const char* name);
 
@@ -108,6 +116,9 @@ PFN_vkVoidFunction find_own(const char* name) {
   if (is("vkQueueSubmit")) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
   if (is("vkAllocateMemory")) return reinterpret_cast<PFN_vkVoidFunction>(allocate_memory);
   if (is("vkCreateComputePipelines")) return reinterpret_cast<PFN_vkVoidFunction>(create_pipelines);
+#ifdef VK_EXT_shader_object
+  if (is("vkCreateShadersEXT")) return reinterpret_cast<PFN_vkVoidFunction>(create_shaders);
+#endif
   return nullptr;
 }
 
