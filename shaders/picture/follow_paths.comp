@@ -77,16 +77,12 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   end_source_log(contribution);
   uint asked = ASK_NOTHING;
   if (max_abs(contribution) > 0.0) {
-    Ray ray = shadow_ray(point, light, sampled);
+    bool is_behind = has(FEATURE_DIFFUSE_TRANSMISSION) && lies_behind(point, sampled.direction);
     if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
-      bool is_behind = lies_behind(point, sampled.direction);
       pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(is_behind ? 1.0 : 0.0);
-      store_vector(record_of_path(path) + (is_behind ? RECORD_SHADOW_BEHIND : RECORD_SHADOW_ORIGIN), ray.origin);
-    } else {
-      // All shadow rays of the path start at the same point.
-      store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, ray.origin);
     }
-    asked = ask(LIST_OF_SHADOW_RAYS, bin_of(ray.origin, ray.direction));
+    vec3 origin = is_behind ? shadow_origin_behind(point) : shadow_origin(point);
+    asked = ask(LIST_OF_SHADOW_RAYS, bin_of(origin, direction_to_source(origin, light, sampled)));
     ++shadow_ray_count;
   }
   words[ask_of_source(path, source)] = asked;
@@ -94,6 +90,11 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
 
 // Requests the shadow rays of all sources of this turn.
 void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
+  // Shadow rays of a path share their origins.
+  store_vector(record_of_path(path) + RECORD_SHADOW_ORIGIN, shadow_origin(point));
+  if (has(FEATURE_DIFFUSE_TRANSMISSION)) {
+    store_vector(record_of_path(path) + RECORD_SHADOW_BEHIND, shadow_origin_behind(point));
+  }
   uint sources = sources_at(turn);
   uint source = 0u;
   do {

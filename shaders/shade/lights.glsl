@@ -26,12 +26,16 @@ LightSample sample_light(LightRecord light, vec3 position) {
   return LightSample(vec3(0.0), 0.0, 0.0);
 }
 
-// Returns the ray from `origin` to a light source. For a source at infinity the direction is the same for all
-// origins.
+// Returns the direction from `origin` to a light source. For a source at infinity it is the same for all origins.
+vec3 direction_to_source(vec3 origin, LightRecord light, LightSample sampled) {
+  precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
+  return to_source;
+}
+
+// Returns the ray from `origin` to a light source.
 Ray shadow_ray(vec3 origin, LightRecord light) {
   LightSample sampled = sample_light(light, origin);
-  precise vec3 to_source = sampled.tmax < INFINITY ? light.position.xyz - origin : sampled.direction;
-  return make_ray(origin, to_source, 0.0, sampled.tmax);
+  return make_ray(origin, direction_to_source(origin, light, sampled), 0.0, sampled.tmax);
 }
 
 uint source_count() {

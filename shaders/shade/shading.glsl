@@ -441,9 +441,17 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   return contribution;
 }
 
+// Returns the origin of the shadow rays to sources in front of the surface, and to sources behind it.
+vec3 shadow_origin(ShadingPoint point) {
+  return lift_off(point.shadow_position, point.geometric_normal, point.lift);
+}
+vec3 shadow_origin_behind(ShadingPoint point) {
+  return lift_off(point.position, -point.geometric_normal, point.lift);
+}
+
 Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
   if (has(FEATURE_DIFFUSE_TRANSMISSION) && lies_behind(point, sampled.direction)) {
-    return shadow_ray(lift_off(point.position, -point.geometric_normal, point.lift), light);
+    return shadow_ray(shadow_origin_behind(point), light);
   }
-  return shadow_ray(lift_off(point.shadow_position, point.geometric_normal, point.lift), light);
+  return shadow_ray(shadow_origin(point), light);
 }

@@ -6,7 +6,8 @@
 
 // Returns whether loops were cut. Call it at the end of an invocation.
 bool were_loops_cut() {
+  uint most = loop_check_turns();
   uint turns = 0u;
-  while (turns < loop_check_turns()) ++turns;
-  return turns < loop_check_turns();
+  while (turns < most) ++turns;
+  return turns < most;
 }
