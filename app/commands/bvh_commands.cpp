@@ -21,8 +21,11 @@
 #include "output/outputs.h"
 #include "output/progress.h"
 #include "output/rows.h"
+#include "output/work_names.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
+#include "work/pictures/load_posed.h"
+#include "work/spec/check_spec.h"
 
 namespace promin::app {
 namespace {
@@ -33,6 +36,7 @@ constexpr uint32_t kMaxThreads = 1024;
 struct BvhOptions {
   std::filesystem::path scene;
   LoadOptions load;
+  MotionOptions motion;
   std::filesystem::path file;
   std::string builder{builder_names().front()};
   /// Number of threads; 0 uses one thread per core.
@@ -56,6 +60,7 @@ void add_file_row(OptionTable& table, BvhOptions& options) {
 void add_common_rows(OptionTable& table, BvhOptions& options) {
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
+  add_motion_options(table, options.motion);
   table.add("--threads", "N", fmt::format("Number of threads, 1 to {} [one per core]", kMaxThreads),
             [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
   table.add_flag("--quiet", "Print only errors", options.is_quiet);
@@ -64,7 +69,9 @@ void add_common_rows(OptionTable& table, BvhOptions& options) {
 
 Scene load(const BvhOptions& options, const Console& console) {
   const Stopwatch loading;
-  Scene scene = load_scene(options.scene, options.load);
+  check_motion_options(options.motion);
+  std::vector<SourceFile> sources;
+  Scene scene = load_posed(options.scene, options.load, options.motion, sources);
   for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
   console.detail(fmt::format("loaded {}: {:.1f} ms", options.scene.string(), loading.ms()));
   return scene;

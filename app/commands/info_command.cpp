@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/count_of.h"
 #include "device_scene/pack_scene.h"
 #include "device_scene/pack_shading.h"
 #include "environment/pack_sky.h"
@@ -24,10 +25,13 @@
 #include "output/rows.h"
 #include "output/scene_json.h"
 #include "promin/load_scene.h"
+#include "promin/motion.h"
 #include "scene/features.h"
 #include "textures/pack_images.h"
+#include "work/pictures/load_posed.h"
 #include "work/pictures/scene_counts.h"
 #include "work/pictures/view_setup.h"
+#include "work/spec/check_spec.h"
 #include "work/spec/environment_choice.h"
 
 namespace promin::app {
@@ -159,9 +163,44 @@ std::string describe_textures(const Scene& scene, uint64_t image_bytes) {
                      image_bytes > kDefaultTextureBytes ? ", more than --texture-memory leaves them by default" : "");
 }
 
+/// Returns the properties that an animation changes, with the number of channels of each.
+std::string describe_channels(const Animation& animation) {
+  std::map<AnimatedProperty, size_t> counts;
+  for (const AnimationChannel& channel : animation.channels) ++counts[channel.property];
+  std::vector<std::string> properties;
+  for (const auto& [property, count] : counts) properties.push_back(fmt::format("{}: {}", name_of(property), count));
+  return fmt::format("{}{}", count_of(animation.channels.size(), "channel"),
+                     properties.empty() ? "" : fmt::format(" ({})", fmt::join(properties, ", ")));
+}
+
+std::vector<std::string> describe_animations(const Motion& motion) {
+  std::vector<std::string> rows;
+  for (size_t i = 0; i < motion.animations.size(); ++i) {
+    const Animation& animation = motion.animations[i];
+    rows.push_back(fmt::format("{} {}, {:.6g} s, {}{}", i, animation.name.empty() ? "(no name)" : animation.name,
+                               animation.duration_s, describe_channels(animation),
+                               animation.problems.empty() ? "" : ", cannot be shown"));
+  }
+  return rows;
+}
+
+/// Prints the skins, morph targets and animations of a file that has them.
+void print_motion(const Scene& scene) {
+  if (scene.motion == nullptr) return;
+  const Motion& motion = *scene.motion;
+  size_t joint_count = 0;
+  for (const Skin& skin : motion.skins) joint_count += skin.joints.size();
+  if (!motion.skins.empty())
+    print_row("skins", fmt::format("{} ({})", motion.skins.size(), count_of(joint_count, "joint")));
+  const MorphCounts morphs = count_morphs(motion);
+  if (morphs.nodes > 0) print_row("targets", fmt::format("{} (nodes: {})", morphs.targets, morphs.nodes));
+  if (!motion.animations.empty()) print_rows("animations", describe_animations(motion));
+}
+
 struct InfoOptions {
   std::filesystem::path file;
   LoadOptions load;
+  MotionOptions motion;
   EnvironmentOptions environment;
   /// True if images are not decoded.
   bool skips_texels = false;
@@ -243,6 +282,7 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
   print_row("sky", describe_sky(scene.environment));
   print_row("display", describe_display(display_of(scene)));
   print_rows("cameras", describe_cameras(scene));
+  print_motion(scene);
   print_row("bounds", describe_bounds(bounds_of(scene), scene.center));
   if (scene.center != dvec3(0.0)) print_row("center", describe_place(vec3(0.0F), scene.center, 6));
   print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(lit.flat)), ", ")));
@@ -261,7 +301,9 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
 void print_info(const InfoOptions& options) {
   LoadOptions load = options.load;
   load.decodes_images = !options.skips_texels;
-  Scene scene = load_scene(options.file, load);
+  check_motion_options(options.motion);
+  std::vector<SourceFile> sources;
+  Scene scene = load_posed(options.file, load, options.motion, sources);
   const EnvironmentChoice surroundings(options.environment);
   add_warnings_of_pictures(scene, surroundings);
   if (options.is_json) {
@@ -282,6 +324,7 @@ Command add_info_command(CLI::App& program) {
                      [options](const OptionValues& w) { options->file = w.text(); });
   add_strict_option(table, options->load);
   add_root_option(table, options->load);
+  add_motion_options(table, options->motion);
   add_variant_option(table, options->load);
   add_environment_options(table, options->environment);
   table.add_flag("--json", "Print JSON (docs/usage.md, \"Scenes as JSON\")", options->is_json);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "promin/load_scene.h"
+#include "work/spec/common_spec.h"
 
 namespace promin::app {
 
@@ -12,6 +13,8 @@ class OptionTable;
 void add_strict_option(OptionTable& table, LoadOptions& options);
 /// Adds the row of --root.
 void add_root_option(OptionTable& table, LoadOptions& options);
+/// Adds the rows of --time, --animation and --loop.
+void add_motion_options(OptionTable& table, work::MotionOptions& options);
 /// Adds the row of --variant, for commands that show materials.
 void add_variant_option(OptionTable& table, LoadOptions& options);
 

@@ -46,6 +46,7 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
             [&](const OptionValues& w) { options.bvh = w.text(); });
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
+  add_motion_options(table, options.motion);
   table.add_flag("--quiet", "Print only errors", options.is_quiet);
   table.add_flag("-v,--verbose", "Print each step and how long it takes", options.is_verbose);
 }

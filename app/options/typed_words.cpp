@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kRender = "render";
 constexpr std::string_view kSize = "--size";
+constexpr std::string_view kAnimation = "--animation";
 constexpr std::string_view kWidth = "--width";
 constexpr std::string_view kHeight = "--height";
 
@@ -193,6 +194,17 @@ void lower_axes(std::vector<std::string>& words) {
   }
 }
 
+/// Changes --animation 0 1 to --animation 0 --animation 1.
+void repeat_animations(std::vector<std::string>& words) {
+  const auto is_index = [](const std::string& word) {
+    return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+  };
+  for (size_t i = 2; i < words.size(); ++i) {
+    const bool is_further = words[i - 2] == kAnimation && is_index(words[i - 1]) && is_index(words[i]);
+    if (is_further) words.insert(words.begin() + static_cast<std::ptrdiff_t>(i++), std::string(kAnimation));
+  }
+}
+
 /// Returns whether a word must be a file, existing or not. A folder counts as a file here, and is refused later.
 bool names_file(const std::string& word) {
   std::error_code error;
@@ -238,6 +250,7 @@ std::vector<std::string> spell_out(const CLI::App& program, const std::vector<st
   }
   split_numbers(command, spelt);
   lower_axes(spelt);
+  if (has_option(command, kAnimation)) repeat_animations(spelt);
   if (!has_option(command, kSize)) return spelt;
   spell_sides(spelt);
   join_sides(spelt);

@@ -13,6 +13,7 @@
 #include "core/hash.h"
 #include "core/json_text.h"
 #include "output/work_names.h"
+#include "promin/motion.h"
 #include "scene/members.h"
 #include "work/pictures/scene_counts.h"
 
@@ -164,6 +165,29 @@ Json describe(const SceneCounts& counts) {
   return {{"objects", kinds}, {"primitives", counts.primitives}, {"triangles", counts.triangles}};
 }
 
+Json describe(const Animation& animation) {
+  Json channels = Json::object();
+  for (const AnimationChannel& channel : animation.channels) {
+    Json& count = channels[std::string(name_of(channel.property))];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  return {{"name", animation.name},
+          {"duration_s", json_of(animation.duration_s)},
+          {"channels", channels},
+          {"can_be_shown", animation.problems.empty()}};
+}
+
+Json describe(const Motion& motion) {
+  Json animations = Json::array();
+  for (const Animation& animation : motion.animations) animations.push_back(describe(animation));
+  Json skins = Json::array();
+  for (const Skin& skin : motion.skins) skins.push_back({{"name", skin.name}, {"joints", skin.joints.size()}});
+  return {{"nodes", motion.nodes.size()},
+          {"skins", skins},
+          {"morph_targets", count_morphs(motion).targets},
+          {"animations", animations}};
+}
+
 Json describe(const Bounds& bounds) {
   if (bounds.is_empty()) return nullptr;
   return {{"lo", json_value(bounds.lo)}, {"hi", json_value(bounds.hi)}};
@@ -192,6 +216,7 @@ Json json_of(const Scene& scene) {
           {"lights", list_of(scene.lights)},
           {"cameras", list_of(scene.cameras)},
           {"environment", json_of(scene.environment)},
+          {"motion", scene.motion == nullptr ? Json() : describe(*scene.motion)},
           {"variants", scene.variants},
           {"extensions", list_of(scene.extensions)},
           {"warnings", scene.warnings}};

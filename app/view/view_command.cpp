@@ -96,6 +96,7 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   OpenedScene opened;
   opened.file = options.tracing.scene;
   opened.load = options.tracing.load;
+  opened.motion = options.tracing.motion;
   auto scene = std::make_shared<Scene>(load_for(options.tracing, opened.stats, console, opened.sources));
   // The window rotates the light itself.
   EnvironmentOptions environment = options.view.environment;
@@ -127,6 +128,7 @@ WindowOptions options_for(WindowOptions options, const std::filesystem::path& fi
   options.tracing.scene = file;
   options.tracing.load.material_variant.clear();
   options.tracing.load.root.clear();
+  options.tracing.motion = {};
   options.view.camera.reset();
   options.view.pose = {};
   options.view.lights_off.clear();

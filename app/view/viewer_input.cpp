@@ -192,6 +192,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.environment.light_rotation_deg = surroundings.light_rotation_deg;
   described.variant = opened_.load.material_variant;
   described.root = opened_.load.root;
+  described.motion = opened_.motion;
   described.center = scene_->scene->center;
   described.camera_index = find_half_height(*scene_->scene, view.camera);
   described.builder = on.builder;

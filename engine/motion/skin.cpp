@@ -2,43 +2,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/skin.h"
 
-#include "shapes/placement.h"
+#include <algorithm>
 
 namespace promin {
-namespace {
 
-dmat4 blend(std::span<const dmat4> joint_matrices, const SkinInfluences& influences, size_t vertex) {
-  dmat4 sum(0.0);
-  double total = 0.0;
-  for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
-    const auto weight = static_cast<double>(influences.weights[i]);
-    if (weight == 0.0) continue;
-    sum += weight * joint_matrices[influences.joints[i]];
-    total += weight;
-  }
-  return sum / total;
+bool has_no_area(const dmat4& world_from_object) {
+  const dmat3 m(world_from_object);
+  const dvec3 zero(0.0);
+  return glm::cross(m[0], m[1]) == zero && glm::cross(m[1], m[2]) == zero && glm::cross(m[2], m[0]) == zero;
 }
 
-vec3 to_unit(const dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0.0 ? vec3(v / length) : vec3(0.0F);
-}
-
-}  // namespace
-
-void pose_mesh(std::span<const dmat4> joint_matrices, const SkinInfluences& influences, Mesh& mesh) {
-  for (size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
-    const dmat4 matrix = blend(joint_matrices, influences, vertex);
-    // The addition turns -0 into 0, as in meshes that are not posed.
-    mesh.positions[vertex] = vec3(matrix * dvec4(mesh.positions[vertex], 1.0)) + 0.0F;
-    if (mesh.normals.empty()) continue;
-    const Placement placement(matrix);
-    mesh.normals[vertex] = to_unit(placement.normal(dvec3(mesh.normals[vertex])));
-    if (mesh.tangents.empty()) continue;
-    const vec4 tangent = mesh.tangents[vertex];
-    mesh.tangents[vertex] =
-        vec4(to_unit(placement.direction(dvec3(vec3(tangent)))), placement.is_mirroring() ? -tangent.w : tangent.w);
+PosedSkin pose_skin(const Skin& skin, std::span<const dmat4> world_from_node) {
+  PosedSkin posed;
+  for (size_t joint = 0; joint < skin.joints.size(); ++joint) {
+    const dmat4& world = world_from_node[skin.joints[joint]];
+    posed.joint_matrices.push_back(skin.inverse_bind.empty() ? world : world * skin.inverse_bind[joint]);
   }
+  const auto mirrors = [](const dmat4& matrix) { return glm::determinant(dmat3(matrix)) < 0.0; };
+  posed.is_hidden = std::ranges::all_of(posed.joint_matrices, has_no_area);
+  if (!posed.is_hidden && std::ranges::all_of(posed.joint_matrices, mirrors)) {
+    posed.world_from_mesh[0][0] = -1.0;
+    for (dmat4& matrix : posed.joint_matrices) matrix = posed.world_from_mesh * matrix;
+  }
+  return posed;
 }
 
 }  // namespace promin

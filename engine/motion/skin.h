@@ -2,29 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "promin/shapes.h"
+#include "promin/motion.h"
 
 namespace promin {
 
-/// The joints that move the vertices of a mesh, and their weights (glTF 2.0, section 3.7.3).
-struct SkinInfluences {
-  /// The number of joints per vertex.
-  size_t per_vertex = 0;
-  /// Indices of joints: `per_vertex` for each vertex, one vertex after the other. An index is in range if its weight is
-  /// not 0.
-  std::vector<uint32_t> joints = {};
-  /// The weight of each joint, finite. The sum of a vertex's weights is not 0.
-  std::vector<float> weights = {};
+/// A skin in one pose.
+struct PosedSkin {
+  /// For each joint, its transform to the scene times its inverse bind matrix, times the inverse of `world_from_mesh`.
+  std::vector<dmat4> joint_matrices;
+  /// The transform of objects that show posed meshes. It is the identity, or a reflection in x if all joints mirror.
+  /// The reflection reverses the winding of triangles, as a mirroring node does for a mesh without a skin.
+  dmat4 world_from_mesh{1.0};
+  /// True if every joint reduces areas to 0. Such a scale of 0 hides the mesh.
+  bool is_hidden = false;
 };
 
-/// Poses a mesh, in double with one rounding to fp32. The transform of a vertex is the weighted mean of the transforms
-/// of its joints (linear blend skinning). It transforms positions and tangents. Its cofactor matrix transforms normals,
-/// which are then normalised. A normal that vanishes becomes 0. A mirroring transform reverses the handedness of the
-/// vertex's tangent. `joint_matrices` are the transforms of the joints in the world times their inverse bind matrices.
-void pose_mesh(std::span<const dmat4> joint_matrices, const SkinInfluences& influences, Mesh& mesh);
+/// Returns whether a transform reduces every area to 0, because its scale is 0 along at least two axes.
+bool has_no_area(const dmat4& world_from_object);
+
+/// Returns a skin in a pose. `world_from_node` are the transforms of all nodes. The result may not be finite.
+PosedSkin pose_skin(const Skin& skin, std::span<const dmat4> world_from_node);
 
 }  // namespace promin

@@ -21,6 +21,8 @@
 
 namespace promin {
 
+struct Motion;
+
 /// A geometry with a transform and a material. Hits and AOVs identify it by its index in Scene::objects.
 struct Object {
   /// The value of `geometry` for an object without geometry.
@@ -79,6 +81,9 @@ struct Scene {
   /// Phong materials (PROMIN_materials_phong). If a scene has no lights, light_scene() adds a headlight to a classic
   /// scene and a studio to any other scene.
   bool is_classic = false;
+  /// The nodes, skins and animations of the file, by which scene_at() changes the pose of the scene (promin/motion.h);
+  /// null if nothing can move.
+  std::shared_ptr<const Motion> motion;
   /// Names of the file's material variants (LoadOptions::material_variant).
   std::vector<std::string> variants;
   /// The extensions that the file uses, in the file's order; empty for formats without extensions.

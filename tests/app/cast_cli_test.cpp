@@ -12,6 +12,7 @@
 
 #include "cli_fixture.h"
 #include "promin/ray.h"
+#include "support/moving_gltf.h"
 
 namespace promin {
 namespace {
@@ -72,6 +73,32 @@ TEST_F(CastTest, AnswersRays) {
 }
 
 /// The scene has more identical faces than the number of turns after which a driver ends loops.
+TEST_F(CastTest, ThePoseMovesTheHits) {
+  GltfBuilder gltf = triangle_gltf();
+  test::animate(gltf, 0, "/nodes/0/translation", {0, 2}, {0, 0, 0, 0, 0, 2}, "VEC3");
+  test::animate(gltf, 1, "/nodes/0/scale", {0, 2}, {1, 1, 1, 3, 3, 1}, "VEC3");
+  gltf.json["animations"][1]["name"] = "grow";
+  write("move.gltf", gltf.text());
+  write_rays("rays.npy", {{vec3(0.25F, 0.25F, 4), 0, vec3(0, 0, -1), kInfinity},
+                          {vec3(1.5F, 0.25F, 4), 0, vec3(0, 0, -1), kInfinity}});
+  const auto expect_hits = [&](const OptionValues& words, float first, float second) {
+    OptionValues all = {"cast", "move.gltf", "rays.npy", "-o", "hits.npy"};
+    all.insert(all.end(), words.begin(), words.end());
+    const ProcessResult result = run(all);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_FLOAT_EQ(read_hits("hits.npy").at(0).t, first) << testing::PrintToString(words);
+    EXPECT_FLOAT_EQ(read_hits("hits.npy").at(1).t, second) << testing::PrintToString(words);
+  };
+  expect_hits({}, 4.0F, kInfinity);
+  expect_hits({"--time", "1"}, 3.0F, kInfinity);
+  expect_hits({"--time", "5"}, 2.0F, kInfinity);
+  expect_hits({"--time", "5", "--loop"}, 3.0F, kInfinity);
+  expect_hits({"--animation", "grow", "--time", "2"}, 4.0F, 4.0F);
+  expect_hits({"--animation", "0", "1", "--time", "2"}, 2.0F, 2.0F);
+  expect_hits({"--animation", "all", "--time", "2"}, 2.0F, 2.0F);
+  expect_hits({"--animation", "none", "--time", "2"}, 4.0F, kInfinity);
+}
+
 TEST_F(CastTest, AnyNumberOfIdenticalFacesIsTraced) {
   constexpr uint32_t kCount = 70'000;
   std::string text = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nf 4 5 6\n";

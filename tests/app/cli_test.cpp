@@ -24,6 +24,7 @@
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/renderer.h"
+#include "support/moving_gltf.h"
 
 namespace promin {
 namespace {
@@ -454,6 +455,35 @@ std::string square_with(const std::string& part, const std::string& other) {
   std::string text = kSquareGltf;
   text.replace(text.find(part), part.size(), other);
   return text;
+}
+
+TEST_F(CliTest, InfoListsAnimations) {
+  GltfBuilder gltf = triangle_gltf();
+  test::animate(gltf, 0, "/nodes/0/translation", {0, 1.5F}, {0, 0, 0, 2, 0, 0}, "VEC3");
+  test::animate(gltf, 0, "/nodes/0/scale", {0, 1}, {1, 1, 1, 2, 2, 2}, "VEC3");
+  gltf.json["animations"][0]["name"] = "Walk";
+  gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, {{"POSITION", 0}}};
+  gltf.json["skins"] = {{{"joints", {0}}}};
+  test::animate(gltf, 1, "/nodes/0/translation", {0, 1}, {0, 0, 0}, "VEC3");
+  write("walk.gltf", gltf.text());
+  const ProcessResult info = run({"info", "walk.gltf"});
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, ContainsRegex("skins +1 \\(1 joint\\)\n"));
+  EXPECT_THAT(info.out, ContainsRegex("targets +2 \\(nodes: 1\\)\n"));
+  EXPECT_THAT(info.out, ContainsRegex("animations +0 Walk, 1.5 s, 2 channels \\(translation: 1, scale: 1\\)\n"));
+  EXPECT_THAT(info.out, ContainsRegex(" +1 \\(no name\\), 0 s, 0 channels, cannot be shown\n"));
+  EXPECT_THAT(info.out, ContainsRegex("bounds +0 0 0 to 1 1 0"));
+  EXPECT_THAT(run({"info", "walk.gltf", "--time", "1.5"}).out, ContainsRegex("bounds +2 0 0 to 4 2 0"));
+  EXPECT_THAT(run({"info", "walk.gltf", "--time", "2.25", "--loop"}).out,
+              ContainsRegex("bounds +1 0 0 to 2.75 1.75 0"));
+  const json document = json::parse(run({"info", "walk.gltf", "--json"}).out);
+  EXPECT_EQ(document["motion"]["animations"][0]["duration_s"], 1.5);
+  EXPECT_EQ(document["motion"]["animations"][0]["channels"]["scale"], 1);
+  EXPECT_EQ(document["motion"]["skins"][0]["joints"], 1);
+  EXPECT_EQ(document["motion"]["morph_targets"], 2);
+  expect_failure(run({"info", "walk.gltf", "--animation", "1"}), 3, "gltf.animation.count 1 2");
+  EXPECT_THAT(run({"info", "square.gltf", "--time", "1"}).out,
+              HasSubstr("the scene has no animations, so its pose does not depend on the time"));
 }
 
 TEST_F(CliTest, StrictRefusesWhatIsRequiredAndNotKnown) {

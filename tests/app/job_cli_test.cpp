@@ -257,6 +257,8 @@ TEST_F(JobCliTest, AnotherJobIsRefused) {
   expect_done(render({"--job", "fine", "-o", "cut.exr", "--spp", "2"}));
   expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "8"}), 2,
                  "its --spp is \"2\", but now it is not given or has its default value");
+  expect_failure(render({"--job", "fine", "-o", "cut.exr", "--spp", "2", "--time", "0.5"}), 2,
+                 "its --time is not given or has its default value, but now it is \"0.5\"");
   const OptionValues refined = {"--job", "refined", "-o", "cut.exr", "--target-error", "0.25", "--error-in"};
   const auto in = [&](const char* space) {
     OptionValues words = refined;

@@ -88,7 +88,7 @@ TEST_F(ManualCliTest, BashOffersCommandsOptionsAndWords) {
   EXPECT_EQ(complete("promin", "_promin", "promin re"), "render ");
   EXPECT_EQ(complete("promin", "_promin", "promin render --tone-mapping a"), "aces agx ");
   EXPECT_EQ(complete("promin", "_promin", "promin render --exposure ''"), "auto average ");
-  EXPECT_EQ(complete("promin", "_promin", "promin cast --an"), "--any ");
+  EXPECT_EQ(complete("promin", "_promin", "promin cast --any"), "--any ");
   EXPECT_EQ(complete("promin", "_promin", "promin cast --tone"), " ") << "of another command";
   EXPECT_EQ(complete("promin", "_promin", "promin render squ"), "square.gltf ");
   EXPECT_EQ(complete("promin-view", "_promin_view", "promin-view --light h"), "headlight ");

@@ -94,6 +94,13 @@ TEST_F(TypedWordsTest, AxesMayBeCapitals) {
   EXPECT_EQ(pictures_.view.pose.up, dvec3(-1, 0, 0));
 }
 
+TEST_F(TypedWordsTest, AnimationsMayHaveSeveralIndices) {
+  EXPECT_EQ(spell("promin cast a.glb r.npy --animation 0 12 3 --time 4"),
+            "promin cast a.glb r.npy --animation 0 --animation 12 --animation 3 --time 4");
+  EXPECT_EQ(spell("promin cast --animation Walk 7 a.glb"), "promin cast --animation Walk 7 a.glb");
+  EXPECT_EQ(spell("promin cast --animation 7 a.glb 5"), "promin cast --animation 7 a.glb 5");
+}
+
 TEST_F(TypedWordsTest, NormalsHaveOneNameOrTheOther) {
   for (const char* name : {"normal", "normals"}) {
     parse(std::string("promin render a.glb --shading ") + name + " --aov depth," + name);

@@ -610,8 +610,8 @@ TEST_F(GltfRepairTest, BuffersOfImagesMayBeMissing) {
   gltf.json["images"] = {{{"bufferView", 2}, {"mimeType", "image/png"}}};
   const LoadedScene scene = SceneFolder::load("scene.gltf", gltf.json.dump());
   EXPECT_THAT(scene.warnings,
-              ElementsAre("buffers[1]: a buffer of images cannot be read: a referenced file does not exist "
-                          "(\"none.bin\"); promin omits its images"));
+              ElementsAre("buffers[1]: a buffer of images or animations cannot be read: a referenced file does not "
+                          "exist (\"none.bin\"); promin omits them"));
   EXPECT_EQ(corners_of(mesh_of(scene)), kCorners);
 }
 

@@ -4,9 +4,11 @@
 #include <random>
 #include <sstream>
 
+#include "promin/motion.h"
 #include "promin/validate.h"
 #include "support/gltf_builder.h"
 #include "support/make_png.h"
+#include "support/moving_gltf.h"
 #include "support/other_values.h"
 #include "support/ply_builder.h"
 #include "support/scene_folder.h"
@@ -58,6 +60,62 @@ GltfBuilder small_gltf() {
   instances["TRANSLATION"] = gltf.add<float>({0, 0, 0, 1, 1, 1}, "VEC3");
   instances["ROTATION"] = gltf.add<int8_t>({0, 0, 0, 127, 0, 0, 127, 0}, "VEC4", true);
   return gltf;
+}
+
+/// Returns a small document that uses every feature of motion.
+GltfBuilder moving_gltf() {
+  GltfBuilder gltf = triangle_gltf();
+  json& primitive = gltf.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = gltf.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  primitive["attributes"]["TEXCOORD_0"] = gltf.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+  primitive["attributes"]["COLOR_0"] = gltf.add<uint8_t>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, "VEC4", true);
+  primitive["attributes"]["JOINTS_0"] = gltf.add<uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4");
+  primitive["attributes"]["WEIGHTS_0"] = gltf.add<float>({0.5F, 0.5F, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+  primitive["targets"] = {{{"POSITION", 0}, {"NORMAL", 2}, {"TEXCOORD_0", 3}, {"COLOR_0", 4}}};
+  primitive["material"] = 0;
+  gltf.json["meshes"][0]["weights"] = {0.5};
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}}};
+  gltf.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  gltf.json["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}}}}}},
+                             {"KHR_implicit_shapes", {{"shapes", {{{"type", "sphere"}}}}}}};
+  gltf.show(
+      {{"attributes", {{"POSITION", 0}}}, {"extensions", {{"PROMIN_mesh_primitive_implicit_shape", {{"shape", 0}}}}}});
+  gltf.add_node({{"children", {1, 3}}, {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
+  gltf.add_node({{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  gltf.json["nodes"][0]["skin"] = 0;
+  const size_t bind = gltf.add<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,  //
+                                       1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1},
+                                      "MAT4");
+  gltf.json["skins"] = {{{"joints", {2, 3}}, {"inverseBindMatrices", bind}}};
+  using test::animate;
+  animate(gltf, 0, "/nodes/2/rotation", {0, 1}, gltf.add<int16_t>({0, 0, 0, 32767, 0, 19660, 0, 26214}, "VEC4", true));
+  animate(gltf, 0, "/nodes/3/translation", {0, 2}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 0, 0, 0}, "VEC3",
+          "CUBICSPLINE");
+  animate(gltf, 0, "/nodes/1/scale", {0, 2}, {1, 1, 1, -1, 1, 0}, "VEC3");
+  animate(gltf, 0, "/nodes/0/weights", {0, 1, 2}, {0, 1, 0.5F}, "SCALAR", "STEP");
+  animate(gltf, 1, "/nodes/0/weights/0", {0, 1}, {0, 1}, "SCALAR");
+  animate(gltf, 1, "/nodes/2/extensions/KHR_node_visibility/visible", {0, 1}, gltf.add<uint8_t>({0, 1}, "SCALAR"),
+          "STEP");
+  animate(gltf, 1, "/materials/0/pbrMetallicRoughness/baseColorFactor", {0, 1}, {0, 0, 0, 0, 1, 1, 1, 1}, "VEC4");
+  animate(gltf, 1, "/extensions/KHR_lights_punctual/lights/0/spot/outerConeAngle", {0, 1}, {0, 1}, "SCALAR");
+  animate(gltf, 1, "/cameras/0/perspective/yfov", {0, 1}, {0.5F, 1}, "SCALAR");
+  return gltf;
+}
+
+/// Checks that each pose of a scene is valid, or that promin refuses it.
+void check_poses(const Scene& scene) {
+  if (scene.motion == nullptr) return;
+  for (uint32_t animation = 0; animation < scene.motion->animations.size(); ++animation) {
+    for (const double time_s : {0.0, 0.7, 3.0}) {
+      try {
+        const Scene posed = scene_at(scene, {.animations = {animation}, .time_s = time_s});
+        world::flatten(posed);
+        ASSERT_EQ(validate(posed).size(), 0U) << "animation " << animation << " at " << time_s << " is not valid";
+      } catch (const InputError& error) {
+        ASSERT_NE(std::string(error.what()), "");
+      }
+    }
+  }
 }
 
 const std::string kSmallObj =
@@ -177,6 +235,7 @@ class LoadFuzzTest : public SceneFolder {
         const Scene loaded = load_scene(folder_ / scene, options);
         world::flatten(loaded);
         ASSERT_EQ(validate(loaded).size(), 0U) << "mutant " << i << " loads and is not valid";
+        ASSERT_NO_FATAL_FAILURE(check_poses(loaded)) << "mutant " << i;
         if (!loaded.warnings.empty()) ++noticed;
       } catch (const InputError& error) {
         ++refused;
@@ -192,6 +251,11 @@ class LoadFuzzTest : public SceneFolder {
 
 TEST_F(LoadFuzzTest, GltfLoadsOrIsRefused) {
   run("a.gltf", small_gltf().text(), "a.gltf");
+}
+
+TEST_F(LoadFuzzTest, MovingGltfLoadsOrIsRefused) {
+  run("a.gltf", moving_gltf().text(), "a.gltf");
+  run("a.glb", moving_gltf().glb(), "a.glb");
 }
 
 TEST_F(LoadFuzzTest, GlbLoadsOrIsRefused) {
@@ -259,9 +323,11 @@ TEST_F(LoadFuzzTest, NffWithOtherWordsLoadsOrIsRefused) {
   EXPECT_LT(refused, total);
 }
 
-/// This test does not only change bytes. It replaces each value of the document by values of all other kinds.
-TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
-  GltfBuilder gltf = small_gltf();
+/// These tests do not only change bytes. They replace each value of the document by values of all other kinds.
+class OtherValuesTest : public LoadFuzzTest, public testing::WithParamInterface<GltfBuilder (*)()> {};
+
+TEST_P(OtherValuesTest, LoadOrAreRefused) {
+  GltfBuilder gltf = GetParam()();
   gltf.text();
   const json good = gltf.json.flatten();
   int refused = 0;
@@ -280,15 +346,19 @@ TEST_F(LoadFuzzTest, DocumentsWithOtherValuesLoadOrAreRefused) {
           const Scene loaded = load_scene(folder_ / "a.gltf");
           world::flatten(loaded);
           ASSERT_EQ(validate(loaded).size(), 0U) << pointer << " = " << value;
+          ASSERT_NO_FATAL_FAILURE(check_poses(loaded)) << pointer << " = " << value;
         } catch (const InputError&) {
           ++refused;
         }
       }
     }
   }
-  EXPECT_GT(refused, total / 3);
+  EXPECT_GT(refused, total / 5);
   EXPECT_LT(refused, total);
 }
+
+INSTANTIATE_TEST_SUITE_P(Documents, OtherValuesTest, testing::Values(&small_gltf, &moving_gltf),
+                         [](const auto& row) { return row.index == 0 ? "Still" : "Moving"; });
 
 }  // namespace
 }  // namespace promin

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <limits>
 
 #include "messages/message_cases.h"
 #include "promin/load_scene.h"
+#include "promin/motion.h"
+#include "support/moving_gltf.h"
 #include "support/rich_gltf.h"
 
 namespace promin {
@@ -109,6 +112,111 @@ MessageCase compress(std::string_view code, const json& changes) {
             gltf.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = extension;
             load_text(gltf.text());
           }};
+}
+
+/// Loads a triangle that an animation moves, strictly and with a fault.
+MessageCase spoil_animation(std::string_view code, const Spoil& fault) {
+  return {code, [=] {
+            GltfBuilder gltf = triangle_gltf();
+            test::animate(gltf, 0, "/nodes/0/translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "VEC3");
+            fault(gltf);
+            load_text(gltf.text(), true);
+          }};
+}
+
+/// Returns the first channel of the first animation.
+json& channel(GltfBuilder& gltf) {
+  return gltf.json["animations"][0]["channels"][0];
+}
+
+/// Returns the first sampler of the first animation.
+json& sampler(GltfBuilder& gltf) {
+  return gltf.json["animations"][0]["samplers"][0];
+}
+
+void point_to(GltfBuilder& gltf, const std::string& pointer) {
+  channel(gltf)["target"] = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+}
+
+std::vector<MessageCase> cases_of_animations() {
+  constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
+  return {
+      spoil_animation("gltf.animation.times",
+                      [](auto& g) {
+                        sampler(g)["input"] = g.template add<float>({0, kNotANumber}, "SCALAR");
+                      }),
+      spoil_animation("gltf.animation.order",
+                      [](auto& g) {
+                        sampler(g)["input"] = g.template add<float>({1, 1}, "SCALAR");
+                      }),
+      spoil_animation("gltf.animation.format",
+                      [](auto& g) {
+                        sampler(g)["input"] = g.template add<uint8_t>({0, 1}, "SCALAR");
+                      }),
+      spoil_animation("gltf.animation.format",
+                      [](auto& g) {
+                        sampler(g)["output"] = g.template add<float>({0, 1, 2, 3}, "VEC2");
+                      }),
+      spoil_animation("gltf.animation.values",
+                      [](auto& g) {
+                        sampler(g)["output"] = g.template add<float>({0, 0, 0, kNotANumber, 0, 0}, "VEC3");
+                      }),
+      spoil_animation("gltf.animation.count",
+                      [](auto& g) {
+                        sampler(g)["output"] = g.template add<float>({0, 0, 0}, "VEC3");
+                      }),
+      {"gltf.animation.count",
+       [] {
+         GltfBuilder gltf = triangle_gltf();
+         test::animate(gltf, 0, "/nodes/0/translation", {0, 1}, {0, 0, 0}, "VEC3");
+         write_case("a.gltf", gltf.text());
+         static_cast<void>(scene_at(load_scene("a.gltf"), {.animations = {0}}));
+       }},
+      spoil_animation("gltf.rotation.zero",
+                      [](auto& g) {
+                        channel(g)["target"]["path"] = "rotation";
+                        sampler(g)["output"] = g.template add<float>({0, 0, 0, 1, 0, 0, 0, 0}, "VEC4");
+                      }),
+      spoil_animation("gltf.animation.target", [](auto& g) { channel(g)["target"]["path"] = "colour"; }),
+      spoil_animation("gltf.animation.target", [](auto& g) { channel(g)["target"]["path"] = "weights"; }),
+      spoil_animation("gltf.animation.target", [](auto& g) { point_to(g, "/materials/3/emissiveFactor"); }),
+      spoil_animation("gltf.animation.sampler", [](auto& g) { channel(g)["sampler"] = 3; }),
+      spoil_animation("gltf.animation.matrix",
+                      [](auto& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }),
+      spoil_animation("gltf.animation.twice",
+                      [](auto& g) {
+                        test::animate(g, 0, "/nodes/0/translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "VEC3");
+                      }),
+      spoil_animation("gltf.animation.step",
+                      [](auto& g) {
+                        point_to(g, "/nodes/0/extensions/KHR_node_visibility/visible");
+                        sampler(g)["output"] = g.template add<uint8_t>({0, 1}, "SCALAR");
+                      }),
+      {"gltf.animation.missing",
+       [] {
+         GltfBuilder gltf = triangle_gltf();
+         test::animate(gltf, 0, "/nodes/0/translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "VEC3");
+         gltf.text();
+         gltf.json["buffers"].push_back({{"byteLength", 24}, {"uri", "none.bin"}});
+         gltf.json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 24}});
+         gltf.json["accessors"].back()["bufferView"] = gltf.json["bufferViews"].size() - 1;
+         write_case("a.gltf", gltf.json.dump());
+         throw Warned{load_scene("a.gltf").warnings};
+       }},
+      {"gltf.animation.pointer",
+       [] {
+         GltfBuilder gltf = triangle_gltf();
+         test::animate(gltf, 0, "/extras/age", {0, 1}, {0, 0}, "SCALAR");
+         write_case("a.gltf", gltf.text());
+         throw Warned{load_scene("a.gltf").warnings};
+       }},
+      spoil_strictly("gltf.morph.range",
+                     [](auto& g) {
+                       primitive(g)["targets"] = {
+                           {{"POSITION", g.template add<float>({0, 0, kNotANumber, 0, 0, 0, 0, 0, 0}, "VEC3")}}};
+                       g.json["meshes"][0]["weights"] = {1};
+                     }),
+  };
 }
 
 std::vector<MessageCase> cases_of_documents() {
@@ -494,7 +602,9 @@ std::vector<MessageCase> cases_of_geometry() {
 
 std::vector<MessageCase> cases_of_gltf() {
   std::vector<MessageCase> all = cases_of_documents();
-  for (const auto& cases : {cases_of_bytes(), cases_of_geometry()}) all.insert(all.end(), cases.begin(), cases.end());
+  for (const auto& cases : {cases_of_bytes(), cases_of_geometry(), cases_of_animations()}) {
+    all.insert(all.end(), cases.begin(), cases.end());
+  }
   return all;
 }
 

@@ -13,6 +13,7 @@
 #include "commands/sheet_commands.h"
 #include "messages/message_cases.h"
 #include "output/run_program.h"
+#include "support/moving_gltf.h"
 
 namespace promin {
 namespace {
@@ -93,6 +94,14 @@ const WrongUsage kWrongUsages[] = {
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--repeat", "0"}},
     {"usage.option.value", {"render", "square.gltf", "-o", "a.exr", "--crop", "5", "0", "5", "9"}},
     {"view.crop.outside", {"render", "square.gltf", "-o", "a.exr", "--crop", "0", "0", "1281", "9"}},
+    {"animation.unknown", {"render", "walk.gltf", "-o", "a.exr", "--time", "1", "--animation", "run"}},
+    {"animation.unknown", {"render", "walk.gltf", "-o", "a.exr", "--animation", "7"}},
+    {"animation.missing", {"render", "square.gltf", "-o", "a.exr", "--animation", "run"}},
+    {"usage.option.needs", {"render", "walk.gltf", "-o", "a.exr", "--loop"}},
+    {"usage.option.value", {"render", "walk.gltf", "-o", "a.exr", "--time", "-1"}},
+    {"usage.option.value", {"render", "walk.gltf", "-o", "a.exr", "--time", "nan"}},
+    {"usage.option.value", {"info", "walk.gltf", "--animation", ""}},
+    {"usage.options.contradict", {"info", "walk.gltf", "--animation", "all", "--animation", "walk"}},
     {"camera.unknown", {"render", "square.gltf", "-o", "a.exr", "--camera", "back"}},
     {"camera.unknown", {"render", "square.gltf", "-o", "a.exr", "--camera", "2"}},
     {"camera.missing", {"render", "triangle.obj", "-o", "a.exr", "--camera", "0"}},
@@ -213,6 +222,11 @@ void write_scenes() {
   write_case("triangle.obj", kTriangleObj);
   write_case("square.gltf", kSquareGltf);
   write_case("square.png", "a file of somebody");
+  GltfBuilder walk = triangle_gltf();
+  test::animate(walk, 0, "/nodes/0/translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "VEC3");
+  test::animate(walk, 1, "/nodes/0/scale", {0, 1}, {1, 1, 1, 2, 2, 2}, "VEC3");
+  walk.json["animations"][0]["name"] = "walk";
+  write_case("walk.gltf", walk.text());
   std::string narrow = kSquareGltf;
   const std::string yfov = "\"yfov\"";
   write_case("narrow.gltf", narrow.replace(narrow.find(yfov), yfov.size(), "\"aspectRatio\": 1e-6, " + yfov));

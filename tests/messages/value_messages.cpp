@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "bvh/builder.h"
 #include "bvh/bvh_file.h"
@@ -14,6 +15,7 @@
 #include "promin/compare.h"
 #include "promin/framing.h"
 #include "promin/image.h"
+#include "promin/motion.h"
 #include "promin/validate.h"
 #include "rays/npy.h"
 #include "scene/world_scene.h"
@@ -33,6 +35,59 @@ MessageCase spoil(std::string_view code, const std::function<void(Scene& scene)>
             fault(scene);
             throw_if_invalid(scene);
           }};
+}
+
+/// Poses a scene of one node, which an animation moves, with a fault of its motion or of the choice of the pose.
+MessageCase spoil_motion(std::string_view code, const std::function<void(Motion& motion, PoseChoice& choice)>& fault) {
+  return {code, [=] {
+            Scene scene;
+            Mesh board;
+            board.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+            board.triangles = {{0, 1, 2}};
+            scene.add("board", std::move(board));
+            scene.materials.resize(1);
+            Motion motion;
+            motion.nodes.resize(1);
+            motion.objects.push_back({.node = 0, .geometry = 0});
+            Animation& animation = motion.animations.emplace_back();
+            animation.samplers.push_back({Interpolation::kLinear, {0.0, 1.0}, {0, 0, 0, 1, 1, 1}});
+            animation.channels.emplace_back();
+            PoseChoice choice{.animations = {0}, .time_s = 0.5};
+            fault(motion, choice);
+            scene.motion = std::make_shared<const Motion>(std::move(motion));
+            static_cast<void>(scene_at(std::move(scene), choice));
+          }};
+}
+
+std::vector<MessageCase> cases_of_motion() {
+  return {
+      {"motion.scene.none", [] { static_cast<void>(pose_of(Scene{})); }},
+      spoil_motion("motion.reference.range", [](auto& motion, auto&) { motion.objects[0].node = 7; }),
+      spoil_motion("motion.reference.range", [](auto& motion, auto&) { motion.nodes[0].same_as = 0; }),
+      spoil_motion("motion.reference.range", [](auto& motion, auto&) { motion.meshes.resize(1); }),
+      spoil_motion("motion.count.wrong",
+                   [](auto& motion, auto&) { motion.animations[0].samplers[0].values.pop_back(); }),
+      spoil_motion("motion.keys.order",
+                   [](auto& motion, auto&) {
+                     motion.animations[0].samplers[0].times = {1, 1};
+                   }),
+      spoil_motion("motion.node.cycle", [](auto& motion, auto&) { motion.nodes[0].parent = 0; }),
+      spoil_motion("motion.animation.missing", [](auto&, auto& choice) { choice.animations = {3}; }),
+      spoil_motion("motion.time.range", [](auto&, auto& choice) { choice.time_s = static_cast<double>(kNan); }),
+      spoil_motion("motion.position.far", [](auto& motion, auto&) { motion.nodes[0].trs.scale = dvec3(1e20); }),
+      spoil_motion(
+          "motion.node.far",
+          [](auto& motion, auto&) { motion.nodes[0].matrix = dmat4(std::numeric_limits<double>::infinity()); }),
+      spoil_motion("motion.reference.range",
+                   [](auto& motion, auto&) {
+                     auto mesh = std::make_shared<DeformingMesh>();
+                     mesh->base.positions.resize(1);
+                     mesh->influences = {.per_vertex = 1, .joints = {4}, .weights = {1.0F}};
+                     motion.meshes = {mesh};
+                     motion.skins.push_back({.name = {}, .joints = {0}, .inverse_bind = {}});
+                     motion.objects[0].mesh = motion.objects[0].skin = 0;
+                   }),
+  };
 }
 
 MessageCase spoil_view(std::string_view code, const std::function<void(View& view)>& fault) {
@@ -291,7 +346,8 @@ std::vector<MessageCase> cases_of_trees() {
 
 std::vector<MessageCase> cases_of_values() {
   std::vector<MessageCase> all = cases_of_scenes();
-  for (const auto& cases : {cases_of_views(), cases_of_pictures(), cases_of_rays(), cases_of_trees()}) {
+  for (const auto& cases :
+       {cases_of_views(), cases_of_pictures(), cases_of_rays(), cases_of_trees(), cases_of_motion()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

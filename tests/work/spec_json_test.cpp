@@ -124,7 +124,12 @@ const std::pair<std::vector<std::string>, std::pair<const char*, json>> kOptions
     {{"--builder", "median"}, {"builder", "median"}},
     {{"--bvh", "a.pbvh"}, {"bvh", kHere + "a.pbvh"}},
     {{"--strict"}, {"strict", true}},
-    {{"--root", "dir"}, {"root", kHere + "dir"}}};
+    {{"--root", "dir"}, {"root", kHere + "dir"}},
+    {{"--time", "0"}, {"time", 0}},
+    {{"--time", "0.1"}, {"time", 0.1}},
+    {{"--animation", "Walk"}, {"animation", "Walk"}},
+    {{"--animation", "0", "2", "--animation", "Run"}, {"animation", {"0", "2", "Run"}}},
+    {{"--loop"}, {"loop", true}}};
 
 TEST(SpecJsonTest, EachOptionIsAMemberThatReadsBack) {
   for (const auto& [words, member] : kOptions) {
@@ -251,6 +256,8 @@ TEST(SpecJsonTest, BitsHaveTheWordsOfOptions) {
   EXPECT_EQ(
       list_bits(of_render({"--max-depth", "3", "--half", "--eye", "1", "2.5", "3", "--environment", "dir/a.hdr"})),
       (Bits{{"--max-depth", "3"}, {"--eye", "1 2.5 3"}, {"--environment", "a.hdr"}, {"--half", "given"}}));
+  EXPECT_EQ(list_bits(of_render({"--time", "0.5", "--animation", "3", "1", "--loop"})),
+            (Bits{{"--animation", "3 1"}, {"--time", "0.5"}, {"--loop", "given"}}));
   // These options change no bit.
   EXPECT_TRUE(list_bits(of_render({"-o", "a.exr", "--pieces", "3", "--builder", "median", "--root", "a"})).empty());
 }

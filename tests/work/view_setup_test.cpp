@@ -474,5 +474,14 @@ TEST(ViewSetupTest, APictureInWhichNothingIsSeenIsAWarning) {
       HasSubstr("the picture shows nothing of the scene; --look-at 1 2 3 instead of a direction looks at its middle"));
 }
 
+TEST(SwitchLightsTest, LightsThatAPoseHidesStayOff) {
+  std::vector<Light> lights(3);
+  lights[1].is_on = false;
+  switch_lights(lights, {0});
+  EXPECT_FALSE(lights[0].is_on);
+  EXPECT_FALSE(lights[1].is_on);
+  EXPECT_TRUE(lights[2].is_on);
+}
+
 }  // namespace
 }  // namespace promin::app

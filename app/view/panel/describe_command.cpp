@@ -95,6 +95,9 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
   if (!scene.has_shadows) command += " --no-shadows";
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
   command += options_of(scene.look) + options_of(scene.environment);
+  if (scene.motion.time_s) command += fmt::format(" --time {}", *scene.motion.time_s);
+  for (const std::string& animation : scene.motion.animations) command += " --animation " + quote(animation);
+  if (scene.motion.loops) command += " --loop";
   if (!scene.variant.empty()) command += " --variant " + quote(scene.variant);
   if (!scene.root.empty()) command += " --root " + quote(scene.root.string());
   if (scene.camera_index) command += fmt::format(" --camera {}", *scene.camera_index);

@@ -25,6 +25,7 @@ struct DescribedScene {
   EnvironmentOptions environment = {};
   std::string variant = {};
   std::filesystem::path root = {};
+  MotionOptions motion = {};
   /// The center of the scene, Scene::center.
   dvec3 center = dvec3(0.0);
   /// Index of the scene's camera that has the same half height as the view.

@@ -22,6 +22,7 @@ namespace promin::app {
 struct OpenedScene {
   std::filesystem::path file;
   LoadOptions load;
+  MotionOptions motion;
   EnvironmentChoice environment;
   std::shared_ptr<const Scene> scene;
   Bounds bounds;

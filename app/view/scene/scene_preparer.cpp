@@ -11,6 +11,7 @@
 #include "promin/error.h"
 #include "promin/validate.h"
 #include "scene/features.h"
+#include "work/pictures/load_posed.h"
 #include "work/pictures/view_setup.h"
 
 namespace promin::app {
@@ -114,12 +115,13 @@ void ReadyPicture::take_lights() {
 }
 
 ScenePreparer::ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
-                             LoadOptions load, std::vector<SourceFile> sources, LookOptions look,
+                             LoadOptions load, MotionOptions motion, std::vector<SourceFile> sources, LookOptions look,
                              EnvironmentChoice environment, View first_view)
     : device_(std::move(device)),
       budget_ms_(budget_ms),
       file_(std::move(file)),
       load_(std::move(load)),
+      motion_(std::move(motion)),
       look_(look),
       environment_(std::move(environment)),
       first_view_(std::move(first_view)),
@@ -162,7 +164,7 @@ std::optional<ReadyPicture> ScenePreparer::take() {
 void ScenePreparer::read() {
   step_ = Step::kReading;
   work_.start([this, request = asked_] {
-    const auto scene = std::make_shared<Scene>(load_scene(file_, load_, sources_));
+    const auto scene = std::make_shared<Scene>(load_posed(file_, load_, motion_, sources_));
     light_up(*scene, look_, environment_);
     return make_first(scene, request);
   });

@@ -17,6 +17,7 @@
 #include "view/display/background.h"
 #include "view/display/traced_picture.h"
 #include "view/scene/scene_watch.h"
+#include "work/spec/common_spec.h"
 #include "work/spec/environment_choice.h"
 
 namespace promin::app {
@@ -132,12 +133,12 @@ struct PictureRequest {
 /// picture.
 class ScenePreparer {
  public:
-  /// Creates a preparer. The arguments are: a device, which is opened again; a scene's file and the options for reading
-  /// it; the files from which it was read; the options for lighting and showing it; the changes of its environment; and
-  /// the view from which an average exposure is computed.
+  /// Creates a preparer. The arguments are: a device, which is opened again; a scene's file, the options for reading it
+  /// and its pose; the files from which it was read; the options for lighting and showing it; the changes of its
+  /// environment; and the view from which an average exposure is computed.
   ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
-                LoadOptions load, std::vector<SourceFile> sources, LookOptions look, EnvironmentChoice environment,
-                View first_view);
+                LoadOptions load, MotionOptions motion, std::vector<SourceFile> sources, LookOptions look,
+                EnvironmentChoice environment, View first_view);
   /// Abandons the current work. It does not wait for a tree that is being built.
   ~ScenePreparer();
 
@@ -180,6 +181,7 @@ class ScenePreparer {
   double budget_ms_;
   std::filesystem::path file_;
   LoadOptions load_;
+  MotionOptions motion_;
   LookOptions look_;
   EnvironmentChoice environment_;
   View first_view_;

@@ -104,6 +104,10 @@ std::vector<float> read_floats(const GltfDocument& document, int accessor, LoadR
   return read_accessor<float>(document, accessor, report);
 }
 
+std::vector<double> read_doubles(const GltfDocument& document, int accessor, LoadReport& report) {
+  return read_accessor<double>(document, accessor, report);
+}
+
 std::vector<uint32_t> read_indices(const GltfDocument& document, int accessor, LoadReport& report) {
   return read_accessor<uint32_t>(document, accessor, report);
 }

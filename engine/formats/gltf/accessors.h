@@ -14,6 +14,9 @@ namespace promin {
 /// zeros. Adds a problem for a sparse index out of range.
 std::vector<float> read_floats(const GltfDocument& document, int accessor, LoadReport& report);
 
+/// Returns the same numbers in double, in which integers are converted.
+std::vector<double> read_doubles(const GltfDocument& document, int accessor, LoadReport& report);
+
 /// Returns the elements of an accessor of unsigned integers.
 std::vector<uint32_t> read_indices(const GltfDocument& document, int accessor, LoadReport& report);
 

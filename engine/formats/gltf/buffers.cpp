@@ -114,9 +114,9 @@ Extent extent_of(const GltfDocument& document, size_t index) {
 }
 
 /// Returns for each buffer the number of bytes that the needed views cover.
-std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_images) {
+std::vector<uint64_t> find_needed_bytes(const GltfDocument& document, bool with_extras) {
   std::vector<uint64_t> needed(elements_of(document.json, "buffers").size(), 0);
-  const std::vector<bool> is_needed_view = find_needed_views(document, with_images);
+  const std::vector<bool> is_needed_view = find_needed_views(document, with_extras);
   for (size_t i = 0; i < is_needed_view.size(); ++i) {
     if (!is_needed_view[i]) continue;
     const Extent extent = extent_of(document, i);
@@ -136,7 +136,7 @@ bool is_fallback(const json& buffer) {
 /// Finds the views whose bytes the readers of a document need.
 class NeededViews {
  public:
-  NeededViews(const GltfDocument& document, bool with_images)
+  NeededViews(const GltfDocument& document, bool with_extras)
       : document_(document), is_needed_(document.views.size(), false) {
     for (size_t m = 0; m < document.meshes.size(); ++m) {
       const std::vector<GltfPrimitive>& primitives = document.meshes[m].primitives;
@@ -157,7 +157,9 @@ class NeededViews {
       if (is_morphed) need_targets(document.meshes[static_cast<size_t>(node.mesh)]);
     }
     for (const json& skin : elements_of(document.json, "skins")) need_accessor(skin.value("inverseBindMatrices", -1));
-    if (!with_images) return;
+    if (!with_extras) return;
+    for (const GltfMesh& mesh : document.meshes) need_targets(mesh);
+    for (const json& animation : elements_of(document.json, "animations")) need_animation(animation);
     for (const json& image : elements_of(document.json, "images")) need_view(image.value("bufferView", -1));
   }
 
@@ -175,6 +177,16 @@ class NeededViews {
     if (!accessor.sparse) return;
     need_view(accessor.sparse->index_view);
     need_view(accessor.sparse->value_view);
+  }
+
+  void need_animation(const json& animation) {
+    // An animation or sampler that cannot be used is null (JsonCheck).
+    if (animation.is_null()) return;
+    for (const json& sampler : elements_of(animation, "samplers")) {
+      if (sampler.is_null()) continue;
+      need_accessor(sampler.value("input", -1));
+      need_accessor(sampler.value("output", -1));
+    }
   }
 
   void need_targets(const GltfMesh& mesh) {
@@ -284,7 +296,8 @@ class BufferReader {
     bytes = own;
   }
 
-  /// Reads a buffer that contains only images. If it cannot be read, its images are left out.
+  /// Reads a buffer that contains only images, animations or unused morph targets. If it cannot be read, these are left
+  /// out.
   void try_buffer(const json& source, size_t index) {
     LoadReport attempt = report_.make_attempt();
     try {
@@ -292,8 +305,9 @@ class BufferReader {
       attempt.throw_if_refused();
     } catch (const InputError& error) {
       buffers_.bytes[index] = {};
-      report_.repair({"gltf.buffer.unreadable", "a buffer of images cannot be read: " + error.problems().front().what,
-                      "", place_of(index), "export the file again", "promin omits its images"});
+      report_.repair({"gltf.buffer.unreadable",
+                      "a buffer of images or animations cannot be read: " + error.problems().front().what, "",
+                      place_of(index), "export the file again", "promin omits them"});
     }
     for (const SourceFile& file : attempt.sources()) report_.add_source(file.file);
   }
@@ -351,13 +365,20 @@ std::optional<std::string> decode_percent(std::string_view text) {
   return decoded;
 }
 
-std::vector<bool> find_needed_views(const GltfDocument& document, bool with_images) {
-  return NeededViews(document, with_images).take();
+std::vector<bool> find_needed_views(const GltfDocument& document, bool with_extras) {
+  return NeededViews(document, with_extras).take();
 }
 
 bool has_bytes(const GltfDocument& document, size_t view) {
   const Extent extent = extent_of(document, view);
   return extent.end <= document.buffers.bytes[extent.buffer].size();
+}
+
+bool has_accessor_bytes(const GltfDocument& document, int accessor) {
+  const GltfAccessor& source = document.accessors[static_cast<size_t>(accessor)];
+  const auto has_view = [&](int view) { return view < 0 || has_bytes(document, static_cast<size_t>(view)); };
+  return has_view(source.view) &&
+         (!source.sparse || (has_view(source.sparse->index_view) && has_view(source.sparse->value_view)));
 }
 
 GltfBuffers read_gltf_buffers(const GltfDocument& document, std::optional<std::span<const std::byte>> glb_binary,

@@ -23,11 +23,13 @@ std::optional<std::vector<std::byte>> read_gltf_uri(const std::string& uri, cons
                                                     uint64_t most_bytes = std::numeric_limits<uint64_t>::max());
 
 /// Returns for each buffer view whether it is needed: whether it contains instances, attributes or indices of meshes
-/// that are read, or, with `with_images`, images.
-std::vector<bool> find_needed_views(const GltfDocument& document, bool with_images);
+/// that are read, or, with `with_extras`, images, animations or any morph targets.
+std::vector<bool> find_needed_views(const GltfDocument& document, bool with_extras);
 
 /// Returns whether the bytes of a view, or the bytes of its compressed data, are available.
 bool has_bytes(const GltfDocument& document, size_t view);
+/// Returns whether the bytes of all views of an accessor are available.
+bool has_accessor_bytes(const GltfDocument& document, int accessor);
 
 /// Returns the bytes of every buffer of a document. They come from data: URIs, from files beside the scene (see
 /// find_beside_scene) or from the GLB's binary chunk. A buffer with needed views, or with their compressed data, has

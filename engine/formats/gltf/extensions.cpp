@@ -23,6 +23,7 @@ constexpr std::string_view kKnown[] = {
     "EXT_meshopt_compression",
     "EXT_texture_avif",
     "EXT_texture_webp",
+    "KHR_animation_pointer",
     "KHR_draco_mesh_compression",
     "KHR_implicit_shapes",
     "KHR_lights",

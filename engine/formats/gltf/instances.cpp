@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/gltf/instances.h"
 
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "core/rounding.h"
 #include "formats/gltf/accessors.h"
 #include "formats/gltf/json_lookup.h"
 
@@ -89,14 +89,7 @@ std::vector<dmat4> place_gltf_instances(const GltfDocument& document, const Plac
   if (!count) return places;
   InstanceReader reader(document, *attributes_of(document, placed), placed.node, report);
   places.reserve(*count);
-  for (size_t i = 0; i < *count; ++i) {
-    places.push_back(placed.world_from_object * reader.transform(i));
-    if (is_finite(places.back())) continue;
-    report.refuse("gltf.node.far", "an instance's place in the world overflows",
-                  "nodes[" + std::to_string(placed.node) + "], instance " + std::to_string(i),
-                  "use smaller translations and scales");
-    break;
-  }
+  for (size_t i = 0; i < *count; ++i) places.push_back(reader.transform(i));
   return places;
 }
 

@@ -14,9 +14,8 @@ namespace promin {
 /// extension.
 std::optional<uint64_t> count_gltf_instances(const GltfDocument& document, const PlacedNode& placed);
 
-/// Returns the transforms from a node's instances to the world, in the order of the instances: the node's transform
-/// times the instance's transform. Reports numbers that are not finite. A rotation of length 0 is ignored with a
-/// warning.
+/// Returns the transforms from a node's instances to the node, in their order. Reports numbers that are not finite. A
+/// rotation of length 0 is ignored with a warning.
 std::vector<dmat4> place_gltf_instances(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
 }  // namespace promin

@@ -10,15 +10,13 @@
 #include "environment/read_panorama.h"
 #include "formats/gltf/image_bytes.h"
 #include "formats/gltf/json_lookup.h"
+#include "motion/attach.h"
 #include "promin/validate.h"
 
 namespace promin {
 namespace {
 
 using nlohmann::json;
-
-/// The smallest angle of a cone. The area of a narrower cone on the unit sphere is too small for fp32.
-constexpr float kLeastConeAngle = 1e-3F;
 
 /// Returns the kind of light for a type that the schema accepts. Throws std::logic_error for any other type.
 LightKind light_kind_of(const std::string& type) {
@@ -32,25 +30,25 @@ void read_cone(const json& source, const std::string& place, Light& light, LoadR
   const json spot = source.value("spot", json::object());
   const double inner = spot.value("innerConeAngle", 0.0);
   const double outer = spot.value("outerConeAngle", std::numbers::pi / 4.0);
-  light.inner_cone_angle = static_cast<float>(inner);
-  light.outer_cone_angle = static_cast<float>(std::min(outer, std::numbers::pi / 2.0));
-  // Compares the angles both as the file gives them and after their conversion to fp32.
-  if (inner < outer && light.inner_cone_angle < light.outer_cone_angle) return;
+  if (set_cone(inner, outer, light)) return;
   report.repair({"gltf.light.cone", "a spot's inner cone angle is not less than its outer cone angle", "",
                  place + ".spot", "make innerConeAngle less than outerConeAngle", "its edge is sharp"});
-  light.outer_cone_angle = std::max(light.outer_cone_angle, kLeastConeAngle);
-  light.inner_cone_angle = std::nextafter(light.outer_cone_angle, 0.0F);
 }
 
 /// Reads the power. Candela and lux are used without conversion; a directional light has no attenuation, because it has
 /// no distance.
-void read_power(const json& source, const std::string& title, Light& light, LoadReport& report) {
-  const dvec3 power = source.value("intensity", 1.0) * vec3_of(source, "color", dvec3(1.0));
+void read_power(const json& source, const std::string& title, LightLink& link, LoadReport& report) {
+  Light& light = link.rest;
+  link.intensity = source.value("intensity", 1.0);
+  link.color = vec3_of(source, "color", dvec3(1.0));
+  const dvec3 power = link.intensity * link.color;
   light.diffuse = light.specular = vec3(power);
   light.attenuation = Attenuation::kInverseSquare;
   if (const json* classic = find_extension(source, "PROMIN_lights_phong")) {
     light.diffuse = vec3(vec3_of(*classic, "diffuseColor", power));
     light.specular = vec3(vec3_of(*classic, "specularColor", power));
+    link.has_diffuse_power = !classic->contains("diffuseColor");
+    link.has_specular_power = !classic->contains("specularColor");
     if (classic->value("attenuation", "none") == "none") {
       light.attenuation = Attenuation::kNone;
     } else if (light.kind == LightKind::kDirectional) {
@@ -63,16 +61,6 @@ void read_power(const json& source, const std::string& title, Light& light, Load
   if (light.attenuation == Attenuation::kInverseSquare && range <= kMaxCoordinate) {
     light.range = static_cast<float>(range);
   }
-}
-
-/// Returns the unit direction of a light: along -Z of its node. If that vector has no length, only the node's rotations
-/// determine the direction.
-std::optional<dvec3> direction_of(const PlacedNode& placed) {
-  const dvec3 direction(-placed.world_from_object[2]);
-  const double length = glm::length(direction);
-  if (length > 0.0 && std::isfinite(length)) return direction / length;
-  if (!placed.rotation) return std::nullopt;
-  return glm::normalize(-(*placed.rotation)[2]);
 }
 
 GradientSky gradient_of(const json& source) {
@@ -141,7 +129,7 @@ void warn_about_sky(const json& sky, LoadReport& report) {
 
 }  // namespace
 
-std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report) {
+std::optional<LightLink> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report) {
   const auto& node = document.json["nodes"][static_cast<size_t>(placed.node)];
   const json* link = find_extension(node, "KHR_lights_punctual");
   if (link == nullptr) return std::nullopt;
@@ -153,27 +141,23 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedN
   const std::string place = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "]";
   const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
 
-  Light light;
+  LightLink result{.node = placed.index, .definition = static_cast<uint32_t>(index)};
+  Light& light = result.rest;
   const std::string name = node.value("name", "");
   light.name = name.empty() ? source.value("name", "") : name;
   light.kind = light_kind_of(source["type"]);
-  const dvec3 position(placed.world_from_object[3]);
-  if (!(std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kMaxCoordinate)) {
+  const Attached attached = attach(placed.world_from_object, placed.rotation, light);
+  if (attached == Attached::kFar) {
     report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "promin omits it"});
     return std::nullopt;
   }
-  if (light.kind != LightKind::kPoint) {
-    const std::optional<dvec3> direction = direction_of(placed);
-    if (!direction) {
-      report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
-      return std::nullopt;
-    }
-    light.direction = vec3(*direction);
+  if (attached == Attached::kWithoutDirection) {
+    report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
+    return std::nullopt;
   }
-  light.position = vec3(position);
   if (light.kind == LightKind::kSpot) read_cone(source, place, light, report);
-  read_power(source, title_of(extension, "lights", index), light, report);
-  return light;
+  read_power(source, title_of(extension, "lights", index), result, report);
+  return result;
 }
 
 void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& report) {

@@ -6,14 +6,15 @@
 
 #include "formats/gltf/document.h"
 #include "formats/gltf/nodes.h"
+#include "promin/motion.h"
 #include "promin/scene.h"
 
 namespace promin {
 
-/// Returns the light of a node, if it has one (KHR_lights_punctual). The extension PROMIN_lights_phong makes it a
-/// classic light. The node's scale is ignored, and the light travels along the node's -Z. A light without a direction,
-/// or too far away, is left out with a warning.
-std::optional<Light> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
+/// Returns the light of a node with its link, if it has one (KHR_lights_punctual). The extension PROMIN_lights_phong
+/// makes it a classic light. The node's scale is ignored, and the light travels along the node's -Z. A light without a
+/// direction, or too far away, is left out with a warning.
+std::optional<LightLink> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report);
 
 /// Sets the scene's environment from OMI_environment_sky: background and ambient light for a plain sky, or the sky for
 /// a gradient or an equirectangular panorama. Without the extension only a black background is set. A panorama that

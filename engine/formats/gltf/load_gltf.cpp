@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <variant>
 
+#include "core/rounding.h"
+#include "formats/gltf/animations.h"
 #include "formats/gltf/cameras.h"
 #include "formats/gltf/document.h"
 #include "formats/gltf/instances.h"
@@ -20,6 +24,11 @@
 #include "formats/gltf/shapes.h"
 #include "formats/gltf/skins.h"
 #include "formats/gltf/variants.h"
+#include "motion/deform.h"
+#include "motion/node_state.h"
+#include "motion/skin.h"
+#include "promin/motion.h"
+#include "scene/limits.h"
 
 namespace promin {
 namespace {
@@ -45,25 +54,40 @@ class SceneReader {
     GltfTextures textures(document_, decodes_images_, report_);
     scene_.materials = read_gltf_materials(document_, textures, report_);
     read_gltf_sky(document_, scene_, report_);
-    const std::vector<PlacedNode> placed_nodes = place_gltf_nodes(document_, report_);
-    skins_.emplace(document_, placed_nodes, report_);
+    const std::vector<PlacedNode> placed_nodes = place_gltf_nodes(document_, motion_.nodes, report_);
+    motion_.animations = read_gltf_animations(document_, motion_.nodes, report_);
+    animated_ = find_gltf_animated(motion_.animations, motion_.nodes, scene_.materials.size());
+    skins_.emplace(document_, report_);
+    if (!elements_of(document_.json, "skins").empty()) {
+      world_from_node_ = promin::place_nodes(motion_.nodes, report_.center());
+    }
     for (const PlacedNode& placed : placed_nodes) read_node(placed);
     const auto is_phong = [](const Material& material) { return std::holds_alternative<Phong>(material.model); };
     scene_.is_classic = !scene_.materials.empty() && std::ranges::all_of(scene_.materials, is_phong);
     if (scene_.materials.empty()) scene_.materials.push_back(default_gltf_material());
-    warn_about_motion();
+    link_materials();
     report_.throw_if_refused();
     textures.finish(scene_);
     report_.throw_if_refused();
     scene_.warnings = report_.warnings();
+    motion_.skins = skins_->take();
+    scene_.motion = std::make_shared<const Motion>(std::move(motion_));
     return std::move(scene_);
   }
 
  private:
   void read_node(const PlacedNode& placed) {
-    if (const auto camera = read_gltf_camera(document_, placed, report_)) scene_.cameras.push_back(*camera);
-    if (placed.is_visible) {
-      if (const auto light = read_gltf_light(document_, placed, report_)) scene_.lights.push_back(*light);
+    if (auto camera = read_gltf_camera(document_, placed, report_)) {
+      scene_.cameras.push_back(camera->rest);
+      motion_.cameras.push_back(std::move(*camera));
+    }
+    // A light that an animation may show keeps its number while it is hidden.
+    if (placed.is_visible || animated_.is_hidden[placed.index]) {
+      if (auto light = read_gltf_light(document_, placed, report_)) {
+        light->rest.is_on = placed.is_visible;
+        scene_.lights.push_back(light->rest);
+        motion_.lights.push_back(std::move(*light));
+      }
     }
     const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
     if (node.mesh < 0) return;
@@ -71,8 +95,19 @@ class SceneReader {
     const std::optional<uint64_t> instance_count = count_gltf_instances(document_, placed);
     if (!instance_count) return read_mesh(placed);
     if (*instance_count == 0 || !has_room_for(*instance_count, placed)) return;
+    size_t number = 0;
     for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
-      read_mesh({placed.node, place, placed.rotation, placed.is_visible});
+      PlacedNode instance = placed;
+      instance.world_from_object = placed.world_from_object * place;
+      if (!is_finite(instance.world_from_object)) {
+        report_.refuse("gltf.node.far", "an instance's place in the world overflows",
+                       "nodes[" + std::to_string(placed.node) + "], instance " + std::to_string(number),
+                       "use smaller translations and scales");
+        return;
+      }
+      ++number;
+      motion_.places.push_back(place);
+      read_mesh(instance, static_cast<uint32_t>(motion_.places.size() - 1));
     }
   }
 
@@ -85,11 +120,15 @@ class SceneReader {
                     "nodes[" + std::to_string(placed.node) + "]", "",
                     "promin draws it once, in the pose of its joints"});
     }
-    const GltfPose& pose = skins_->find(document_.nodes[static_cast<size_t>(placed.node)].skin);
+    const PosedSkin& pose = pose_of_skin(placed);
     PlacedNode posed = placed;
     posed.world_from_object = pose.world_from_mesh;
     posed.is_visible = placed.is_visible && !pose.is_hidden;
     read_mesh(posed);
+  }
+
+  const PosedSkin& pose_of_skin(const PlacedNode& placed) {
+    return skins_->find(document_.nodes[static_cast<size_t>(placed.node)].skin, world_from_node_);
   }
 
   /// Returns whether there is space for a node's instances, before any of them is added.
@@ -111,42 +150,87 @@ class SceneReader {
     return false;
   }
 
-  void read_mesh(const PlacedNode& placed) {
+  /// `place` is the index of an instance's transform in Motion::places.
+  void read_mesh(const PlacedNode& placed, uint32_t place = kNoIndex) {
     const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
     const auto mesh = static_cast<size_t>(node.mesh);
     const GltfMesh& source = document_.meshes[mesh];
     for (size_t primitive = 0; primitive < source.primitives.size(); ++primitive) {
       Object object;
       object.name = node.name.empty() ? source.name : node.name;
+      ObjectLink link{.node = placed.index, .place = place};
+      if (is_skinned(node)) link.skin = static_cast<uint32_t>(node.skin);
       // Some files hide a node with a scale of 0.
       const bool is_shown = placed.is_visible && !has_no_area(placed.world_from_object);
-      if (is_shown) read_geometry(placed, mesh, primitive, object);
-      if (object.geometry == Object::kNoGeometry) {
-        if (is_shown) report_.lose_geometry();
-      } else {
-        object.material = read_material(source.primitives[primitive].material, scene_.geometries[object.geometry]);
+      if (is_shown) {
+        read_geometry(placed, mesh, primitive, object, link);
+      } else if (may_be_shown(placed)) {
+        read_hidden_geometry(placed, mesh, primitive, link);
+      }
+      const uint32_t geometry = object.geometry != Object::kNoGeometry ? object.geometry : link.geometry;
+      if (object.geometry == Object::kNoGeometry && is_shown) report_.lose_geometry();
+      if (geometry != kNoIndex) {
+        object.material = read_material(source.primitives[primitive].material, scene_.geometries[geometry]);
+      } else if (link.mesh != kNoIndex) {
+        object.material = read_material(source.primitives[primitive].material, motion_.meshes[link.mesh]->base);
       }
       scene_.objects.push_back(std::move(object));
+      motion_.objects.push_back(link);
     }
   }
 
-  void read_geometry(const PlacedNode& placed, size_t mesh, size_t primitive, Object& object) {
+  /// Returns whether an animation may show a hidden node.
+  bool may_be_shown(const PlacedNode& placed) const {
+    if (animated_.is_moved[placed.index]) return true;
+    const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
+    if (!is_skinned(node) || !placed.is_visible) return false;
+    const json& joints = document_.json["skins"][static_cast<size_t>(node.skin)]["joints"];
+    return std::ranges::any_of(joints, [&](const json& joint) { return animated_.is_moved[joint.get<size_t>()]; });
+  }
+
+  void read_geometry(const PlacedNode& placed, size_t mesh, size_t primitive, Object& object, ObjectLink& link) {
     if (std::optional<Geometry> shape = read_gltf_shape(document_, mesh, primitive, placed, report_)) {
-      object.geometry = add(std::move(*shape));
+      object.geometry = link.geometry = add(std::move(*shape));
       object.world_from_object = placed.world_from_object;
+      const bool has_mesh = document_.meshes[mesh].primitives[primitive].attributes.contains("POSITION");
+      // Another pose may distort the shape.
+      if (animated_.is_moved[placed.index] && has_mesh) link.fallback = find_mesh(placed, primitive).posed;
       return;
     }
     if (triangle_count_ > kMaxTriangles) return;
-    const uint32_t geometry = find_mesh(placed.node, primitive);
-    if (geometry == Object::kNoGeometry) return;
-    triangle_count_ += primitive_count(scene_.geometries[geometry]);
-    if (triangle_count_ > kMaxTriangles) {
-      report_.refuse("scene.size.limit", "the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
-                     "nodes[" + std::to_string(placed.node) + "]", "use the mesh in fewer nodes, or simplify it");
+    const KnownMesh known = find_mesh(placed, primitive);
+    if (known.posed == Object::kNoGeometry) return;
+    connect(known, link);
+    count_triangles(known.posed, placed);
+    place_gltf_mesh(placed, known.posed, place_of(mesh, primitive), scene_, object, report_);
+  }
+
+  /// Reads the geometry of an object that is hidden in the nodes' own pose.
+  void read_hidden_geometry(const PlacedNode& placed, size_t mesh, size_t primitive, ObjectLink& link) {
+    PlacedNode unscaled = placed;
+    if (has_no_area(placed.world_from_object)) unscaled.world_from_object = dmat4(1.0);
+    if (std::optional<Geometry> shape = read_gltf_shape(document_, mesh, primitive, unscaled, report_)) {
+      link.geometry = add(std::move(*shape));
+      const bool has_mesh = document_.meshes[mesh].primitives[primitive].attributes.contains("POSITION");
+      if (has_mesh) link.fallback = find_mesh(placed, primitive).posed;
+      return;
     }
-    place_gltf_mesh(placed, geometry,
-                    "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]", scene_,
-                    object, report_);
+    if (triangle_count_ > kMaxTriangles) return;
+    const KnownMesh known = find_mesh(placed, primitive);
+    if (known.posed == Object::kNoGeometry) return;
+    connect(known, link);
+    count_triangles(known.posed, placed);
+  }
+
+  static std::string place_of(size_t mesh, size_t primitive) {
+    return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
+  }
+
+  void count_triangles(uint32_t geometry, const PlacedNode& placed) {
+    triangle_count_ += primitive_count(scene_.geometries[geometry]);
+    if (triangle_count_ <= kMaxTriangles) return;
+    report_.refuse("scene.size.limit", "the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
+                   "nodes[" + std::to_string(placed.node) + "]", "use the mesh in fewer nodes, or simplify it");
   }
 
   uint32_t add(Geometry geometry) {
@@ -154,20 +238,55 @@ class SceneReader {
     return static_cast<uint32_t>(scene_.geometries.size() - 1);
   }
 
-  /// Returns the geometry of a primitive of a node's mesh; kNoGeometry if nothing is drawn. The geometry is read once
-  /// for all nodes with the same morph weights and the same skin.
-  uint32_t find_mesh(int node, size_t primitive) {
-    const GltfNode& shown = document_.nodes[static_cast<size_t>(node)];
+  /// A mesh that was read.
+  struct KnownMesh {
+    /// Index of the geometry in the nodes' own pose; kNoGeometry if nothing is drawn.
+    uint32_t posed = Object::kNoGeometry;
+    /// Index into Motion::meshes; kNoIndex for a mesh that keeps its form.
+    uint32_t source = kNoIndex;
+  };
+
+  static void connect(const KnownMesh& known, ObjectLink& link) {
+    (known.source == kNoIndex ? link.geometry : link.mesh) = known.source == kNoIndex ? known.posed : known.source;
+  }
+
+  /// Returns a primitive of a node's mesh. The mesh is read once for all nodes that need the same parts of it, and
+  /// deformed once for all nodes with the same morph weights and the same skin.
+  KnownMesh find_mesh(const PlacedNode& placed, size_t primitive) {
+    const GltfNode& shown = document_.nodes[static_cast<size_t>(placed.node)];
     const auto mesh = static_cast<size_t>(shown.mesh);
-    const std::vector<double>& weights = shown.weights ? *shown.weights : document_.meshes[mesh].weights;
+    const std::vector<double>& weights = motion_.nodes[static_cast<size_t>(placed.node)].weights;
     const int skin = is_skinned(shown) ? shown.skin : -1;
-    const auto [known, is_new] = mesh_geometries_.try_emplace({mesh, primitive, weights, skin}, Object::kNoGeometry);
-    if (is_new) {
-      const GltfPose* pose = skin < 0 ? nullptr : &skins_->find(skin);
-      Mesh triangles = read_gltf_mesh(document_, mesh, primitive, weights, pose, report_);
-      if (!triangles.triangles.empty()) known->second = add(std::move(triangles));
+    GltfMeshNeeds needs;
+    needs.targets = has_morph(weights) || animated_.is_morphed[placed.index];
+    if (skin >= 0) needs.joint_count = elements_of(document_.json["skins"][static_cast<size_t>(skin)], "joints").size();
+    const auto [known, is_new] = posed_meshes_.try_emplace({mesh, primitive, needs, weights, skin});
+    if (!is_new) return known->second;
+    const auto [read, is_unread] = read_meshes_.try_emplace({mesh, primitive, needs});
+    if (is_unread) read->second = read_source(mesh, primitive, needs);
+    known->second = read->second;
+    if (known->second.source == kNoIndex) return known->second;
+    const DeformingMesh& source = *motion_.meshes[known->second.source];
+    known->second.posed = Object::kNoGeometry;
+    Mesh posed = deform(source, weights, skin < 0 ? std::span<const dmat4>{} : pose_of_skin(placed).joint_matrices);
+    if (std::ranges::all_of(posed.positions, [](const vec3& p) { return is_in_range(dvec3(p)); })) {
+      if (drop_vanished_normals(posed)) warn_of_normals(place_of(mesh, primitive), report_);
+      known->second.posed = add(std::move(posed));
+    } else {
+      report_.refuse("gltf.position.far", "a vertex lies beyond 1e15 in the world",
+                     "nodes[" + std::to_string(placed.node) + "]",
+                     "use smaller weights of morph targets, or a smaller translation or scale of joints");
     }
     return known->second;
+  }
+
+  /// Reads a mesh. A mesh that keeps its form becomes a geometry of the scene.
+  KnownMesh read_source(size_t mesh, size_t primitive, const GltfMeshNeeds& needs) {
+    DeformingMesh source = read_gltf_mesh(document_, mesh, primitive, needs, report_);
+    if (source.base.triangles.empty()) return {};
+    if (source.targets.empty() && source.influences.per_vertex == 0) return {.posed = add(std::move(source.base))};
+    motion_.meshes.push_back(std::make_shared<const DeformingMesh>(std::move(source)));
+    return {.source = static_cast<uint32_t>(motion_.meshes.size() - 1)};
   }
 
   uint32_t read_material(int material, const Geometry& geometry) {
@@ -188,14 +307,17 @@ class SceneReader {
     return default_material_;
   }
 
-  void warn_about_motion() {
-    const auto has_targets = [](const GltfPrimitive& primitive) { return !primitive.targets.empty(); };
-    const auto is_morphed = [&](const GltfMesh& mesh) { return std::ranges::any_of(mesh.primitives, has_targets); };
-    std::string parts;
-    const auto say = [&](const char* part) { parts += (parts.empty() ? ": " : ", ") + std::string(part); };
-    if (!elements_of(document_.json, "animations").empty()) say("animations are ignored");
-    if (std::ranges::any_of(document_.meshes, is_morphed)) say("morph targets have their default weights");
-    if (!parts.empty()) report_.warn("the scene does not move" + parts);
+  void link_materials() {
+    for (uint32_t i = 0; i < animated_.is_material_changed.size(); ++i) {
+      if (!animated_.is_material_changed[i]) continue;
+      const json& source = document_.json["materials"][i];
+      MaterialLink link{.material = i, .rest = scene_.materials[i]};
+      link.emissive = vec3_of(source, "emissiveFactor", dvec3(0.0));
+      if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
+        link.emissive_strength = extension->value("emissiveStrength", 1.0);
+      }
+      motion_.materials.push_back(std::move(link));
+    }
   }
 
   static constexpr uint32_t kNoMaterial = std::numeric_limits<uint32_t>::max();
@@ -204,8 +326,13 @@ class SceneReader {
   bool decodes_images_;
   LoadReport& report_;
   Scene scene_;
+  Motion motion_;
+  GltfAnimated animated_;
   std::optional<GltfSkins> skins_;
-  std::map<std::tuple<size_t, size_t, std::vector<double>, int>, uint32_t> mesh_geometries_;
+  /// The transforms of all nodes, if the file has skins.
+  std::vector<dmat4> world_from_node_;
+  std::map<std::tuple<size_t, size_t, GltfMeshNeeds>, KnownMesh> read_meshes_;
+  std::map<std::tuple<size_t, size_t, GltfMeshNeeds, std::vector<double>, int>, KnownMesh> posed_meshes_;
   uint64_t triangle_count_ = 0;
   uint32_t default_material_ = kNoMaterial;
 };

@@ -6,52 +6,22 @@
 #include <array>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <span>
+#include <utility>
 
 #include "core/rounding.h"
 #include "formats/gltf/accessors.h"
+#include "formats/gltf/buffers.h"
 #include "formats/gltf/json_rule.h"
-#include "motion/skin.h"
+#include "motion/deform.h"
+#include "motion/place_mesh.h"
 #include "promin/validate.h"
 #include "scene/limits.h"
-#include "scene/world_scene.h"
-#include "shapes/placement.h"
 
 namespace promin {
 namespace {
 
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
-/// The smallest determinant of a transform. With a smaller one, the transform is almost singular or overflows, and
-/// normals may vanish.
-constexpr double kLeastDeterminant = 1e-100;
-
-/// Returns whether all vertices are in range in the world. Usually the corners of their box decide; otherwise each
-/// vertex is tested.
-bool is_mesh_in_range(const Mesh& mesh, const dmat4& world_from_object) {
-  Bounds box;
-  for (const vec3& position : mesh.positions) box.extend(position);
-  bool are_corners_in_range = true;
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
-                  (corner & 4) != 0 ? box.hi.z : box.lo.z);
-    are_corners_in_range = are_corners_in_range && is_in_range(dvec3(world_from_object * dvec4(p, 1.0)));
-  }
-  return are_corners_in_range || std::ranges::all_of(mesh.positions, [&](const vec3& p) {
-           return is_in_range(dvec3(world_from_object * dvec4(p, 1.0)));
-         });
-}
-
-bool has_length(const dvec3& normal) {
-  const double length = glm::length(normal);
-  return length > 0.0 && std::isfinite(length);
-}
-
-void warn_of_normals(const std::string& place, LoadReport& report) {
-  report.warn({"gltf.normals.zero", "a mesh primitive has normals of length 0", "", place, "",
-               "promin uses flat shading for it"});
-}
-
 /// Returns a valid component of a vertex colour: a negative value becomes 0, and a NaN becomes 1, which has no effect.
 float drawable(float component) {
   return std::isfinite(component) ? std::max(component, 0.0F) : 1.0F;
@@ -65,16 +35,13 @@ bool is_coordinate(float uv) {
 /// Reads one mesh primitive.
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                  const GltfPose* pose, LoadReport& report)
+  PrimitiveReader(const GltfDocument& document, size_t mesh, size_t primitive, LoadReport& report)
       : document_(document),
         primitive_(document.meshes[mesh].primitives[primitive]),
         place_("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]"),
-        weights_(weights),
-        pose_(pose),
         report_(report) {}
 
-  Mesh read() {
+  DeformingMesh read(const GltfMeshNeeds& needs) {
     const int positions = accessor_of("POSITION");
     if (primitive_.mode < kGltfTriangles) {
       report_.warn({"gltf.primitive.lines", "a mesh primitive contains points or lines", "", place_, "",
@@ -88,7 +55,8 @@ class PrimitiveReader {
     }
     vertex_count_ = document_.accessors[static_cast<size_t>(positions)].count;
 
-    Mesh mesh;
+    DeformingMesh result;
+    Mesh& mesh = result.base;
     mesh.triangles = assemble(read_corners());
     if (mesh.triangles.empty()) {
       report_.warn({"gltf.primitive.short", "a mesh primitive has too few corners for a triangle", "", place_, "",
@@ -104,8 +72,10 @@ class PrimitiveReader {
     if (const int tangents = accessor_of("TANGENT"); tangents >= 0 && !mesh.normals.empty() && !mesh.uvs.empty()) {
       read_tangents(tangents, mesh);
     }
-    if (pose_ != nullptr && mesh.positions.size() == used_vertices_.size()) pose(mesh);
-    return mesh;
+    if (mesh.positions.size() != used_vertices_.size()) return result;
+    if (needs.targets) read_targets(result);
+    if (needs.joint_count > 0) result.influences = read_influences(needs.joint_count);
+    return result;
   }
 
  private:
@@ -172,28 +142,65 @@ class PrimitiveReader {
     return place_ + ".attributes." + attribute + ", element " + std::to_string(vertex);
   }
 
-  /// Adds the weighted values of the morph targets to an attribute of three components.
-  void add_targets(const char* attribute, std::vector<float>& values) {
-    for (size_t target = 0; target < std::min(weights_.size(), primitive_.targets.size()); ++target) {
-      const auto found = primitive_.targets[target].find(attribute);
-      if (weights_[target] == 0.0 || found == primitive_.targets[target].end()) continue;
-      const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(found->second)];
-      if (3 * accessor.count != values.size() || accessor.component_count != 3) {
-        report_.warn({"gltf.morph.count", "a morph target has a different number of vertices than its mesh", "",
-                      place_ + ".targets[" + std::to_string(target) + "]", "", "promin ignores it"});
-        continue;
-      }
-      const std::vector<float> moves = read_floats(document_, found->second, report_);
-      for (size_t i = 0; i < values.size(); ++i) {
-        values[i] =
-            static_cast<float>(static_cast<double>(values[i]) + weights_[target] * static_cast<double>(moves[i]));
+  void read_targets(DeformingMesh& mesh) {
+    for (size_t i = 0; i < primitive_.targets.size(); ++i) {
+      MorphTarget& target = mesh.targets.emplace_back();
+      const bool has_frame = !mesh.base.normals.empty();
+      read_displacements(i, "POSITION", 3, target.positions);
+      if (has_frame) read_displacements(i, "NORMAL", 3, target.normals);
+      if (has_frame && !mesh.base.tangents.empty()) read_displacements(i, "TANGENT", 3, target.tangents);
+      if (!mesh.base.uvs.empty()) read_uv_displacements(i, target.uvs);
+      if (mesh.base.colors.empty()) continue;
+      const size_t components = accessor_at(accessor_of("COLOR_0")).component_count;
+      if (components == 4) return read_displacements(i, "COLOR_0", 4, target.colors);
+      std::vector<vec3> colors;
+      read_displacements(i, "COLOR_0", 3, colors);
+      for (const vec3& color : colors) target.colors.emplace_back(color, 0.0F);
+    }
+  }
+
+  void read_uv_displacements(size_t target, std::vector<vec4>& displacements) {
+    std::vector<vec2> sets[2];
+    read_displacements(target, "TEXCOORD_0", 2, sets[0]);
+    read_displacements(target, "TEXCOORD_1", 2, sets[1]);
+    if (sets[0].empty() && sets[1].empty()) return;
+    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+      const auto move = [&](const std::vector<vec2>& set) { return set.empty() ? vec2(0.0F) : set[i]; };
+      displacements.emplace_back(move(sets[0]), move(sets[1]));
+    }
+  }
+
+  /// Reads the displacements of an attribute for the vertices that are used. If there are none, or they do not fit, the
+  /// list stays empty.
+  template <class Vector>
+  void read_displacements(size_t target, const char* attribute, size_t components, std::vector<Vector>& displacements) {
+    const auto found = primitive_.targets[target].find(attribute);
+    if (found == primitive_.targets[target].end()) return;
+    const std::string place = place_ + ".targets[" + std::to_string(target) + "]";
+    const GltfAccessor& accessor = accessor_at(found->second);
+    if (accessor.count != vertex_count_ || accessor.component_count != components) {
+      return report_.warn({"gltf.morph.count", "a morph target has a different number of vertices than its mesh", "",
+                           place, "", "promin ignores it"});
+    }
+    const bool has_bytes = has_accessor_bytes(document_, found->second);
+    const std::vector<float> values = has_bytes ? read_floats(document_, found->second, report_) : std::vector<float>{};
+    const bool is_right = has_bytes && std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+    if (!is_right) {
+      return report_.repair({"gltf.morph.range", "a morph target has numbers that are missing or not finite", "", place,
+                             "export the file again", "promin ignores it"});
+    }
+    displacements.resize(used_vertices_.size());
+    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+      for (size_t c = 0; c < components; ++c) {
+        displacements[i][static_cast<int>(c)] = values[components * used_vertices_[i] + c];
       }
     }
   }
 
+  const GltfAccessor& accessor_at(int index) const { return document_.accessors[static_cast<size_t>(index)]; }
+
   void read_positions(int accessor, Mesh& mesh) {
-    std::vector<float> values = read_floats(document_, accessor, report_);
-    add_targets("POSITION", values);
+    const std::vector<float> values = read_floats(document_, accessor, report_);
     mesh.positions.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
       const float* p = &values[3 * size_t{vertex}];
@@ -209,8 +216,7 @@ class PrimitiveReader {
   }
 
   void read_normals(int accessor, Mesh& mesh) {
-    std::vector<float> values = read_floats(document_, accessor, report_);
-    add_targets("NORMAL", values);
+    const std::vector<float> values = read_floats(document_, accessor, report_);
     std::vector<vec3> normals;
     normals.reserve(used_vertices_.size());
     for (const uint32_t vertex : used_vertices_) {
@@ -290,30 +296,18 @@ class PrimitiveReader {
     mesh.tangents = std::move(tangents);
   }
 
-  /// Moves the mesh with its joints.
-  void pose(Mesh& mesh) {
-    std::optional<SkinInfluences> influences = read_influences();
-    if (!influences) return;
-    pose_mesh(pose_->joint_matrices, *influences, mesh);
-    if (std::ranges::all_of(mesh.normals, [](const vec3& normal) { return has_length(dvec3(normal)); })) return;
-    warn_of_normals(place_, report_);
-    mesh.normals.clear();
-    mesh.tangents.clear();
-  }
-
-  /// Returns nullopt if there is nothing to pose, or if the data is wrong; the report then has the reason.
-  std::optional<SkinInfluences> read_influences() {
+  /// Returns no influences if the primitive has none.
+  SkinInfluences read_influences(size_t joint_count) {
     SkinInfluences influences;
     for (int set = 0; accessor_of(("JOINTS_" + std::to_string(set)).c_str()) >= 0; ++set)
       add_influences(set, influences);
     if (influences.per_vertex == 0) {
       report_.repair({"gltf.skin.weights", "a primitive of a skinned mesh has no joints and weights", "", place_,
                       "export the mesh again", "it is drawn without its skin"});
-      return std::nullopt;
     }
-    for (size_t i = 0; i < used_vertices_.size(); ++i) {
+    for (size_t i = 0; influences.per_vertex > 0 && i < used_vertices_.size(); ++i) {
       repair_weights(i, influences);
-      if (!has_valid_joints(i, influences)) return std::nullopt;
+      if (!has_valid_joints(i, joint_count, influences)) return {};
     }
     return influences;
   }
@@ -356,13 +350,13 @@ class PrimitiveReader {
   }
 
   /// Returns whether the joints of a vertex exist. A joint with weight 0 may have any index.
-  bool has_valid_joints(size_t vertex, const SkinInfluences& influences) {
+  bool has_valid_joints(size_t vertex, size_t joint_count, const SkinInfluences& influences) {
     for (size_t i = vertex * influences.per_vertex; i < (vertex + 1) * influences.per_vertex; ++i) {
-      if (influences.weights[i] == 0.0F || influences.joints[i] < pose_->joint_matrices.size()) continue;
+      if (influences.weights[i] == 0.0F || influences.joints[i] < joint_count) continue;
       report_.refuse(
           "gltf.skin.joint",
           "joint " + std::to_string(influences.joints[i]) + " is out of range, because the skin has only " +
-              std::to_string(pose_->joint_matrices.size()) + " joints",
+              std::to_string(joint_count) + " joints",
           element_place(("JOINTS_" + std::to_string(i % influences.per_vertex / 4)).c_str(), used_vertices_[vertex]),
           "export the file again");
       return false;
@@ -373,8 +367,6 @@ class PrimitiveReader {
   const GltfDocument& document_;
   const GltfPrimitive& primitive_;
   std::string place_;
-  const std::vector<double>& weights_;
-  const GltfPose* pose_;
   LoadReport& report_;
   size_t vertex_count_ = 0;
   std::vector<uint32_t> used_vertices_;
@@ -382,9 +374,14 @@ class PrimitiveReader {
 
 }  // namespace
 
-Mesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const std::vector<double>& weights,
-                    const GltfPose* pose, LoadReport& report) {
-  return PrimitiveReader(document, mesh, primitive, weights, pose, report).read();
+DeformingMesh read_gltf_mesh(const GltfDocument& document, size_t mesh, size_t primitive, const GltfMeshNeeds& needs,
+                             LoadReport& report) {
+  return PrimitiveReader(document, mesh, primitive, report).read(needs);
+}
+
+void warn_of_normals(const std::string& place, LoadReport& report) {
+  report.warn({"gltf.normals.zero", "a mesh primitive has normals of length 0", "", place, "",
+               "promin uses flat shading for it"});
 }
 
 uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t primitive) {
@@ -408,19 +405,13 @@ void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::str
                   "use a smaller translation or scale in it and its parents");
     return;
   }
-  const double determinant = std::abs(glm::determinant(dmat3(placed.world_from_object)));
-  if (determinant >= kLeastDeterminant && determinant <= 1.0 / kLeastDeterminant) return;
-  Mesh source = mesh;
-  const Placement placement(placed.world_from_object);
-  const bool has_normals = std::ranges::all_of(
-      source.normals, [&](const vec3& normal) { return has_length(placement.normal(dvec3(normal))); });
-  if (!has_normals) {
-    warn_of_normals(place, report);
-    source.normals.clear();
-  }
+  if (!is_singular(placed.world_from_object)) return;
+  bool has_lost_normals = false;
+  Mesh flat = apply_transform(mesh, placed.world_from_object, has_lost_normals);
+  if (has_lost_normals) warn_of_normals(place, report);
   object.geometry = static_cast<uint32_t>(scene.geometries.size());
   object.world_from_object = dmat4(1.0);
-  scene.geometries.emplace_back(world::place(source, placed.world_from_object));
+  scene.geometries.emplace_back(std::move(flat));
 }
 
 }  // namespace promin

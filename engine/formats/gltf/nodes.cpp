@@ -3,51 +3,40 @@
 #include "formats/gltf/nodes.h"
 
 #include <algorithm>
-#include <utility>
-
-#include <glm/gtc/quaternion.hpp>
+#include <optional>
 
 #include "core/rounding.h"
+#include "core/utf8.h"
 #include "formats/gltf/json_lookup.h"
+#include "motion/node_state.h"
 
 namespace promin {
 namespace {
 
-dmat4 local_transform(const nlohmann::json& node) {
-  dmat4 matrix(1.0);
-  if (const auto given = node.find("matrix"); given != node.end()) {
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = (*given)[static_cast<size_t>(i)].get<double>();
-    return matrix;
+Node read_node(const GltfDocument& document, size_t index) {
+  const nlohmann::json& source = document.json["nodes"][index];
+  const GltfNode& typed = document.nodes[index];
+  Node node;
+  node.name = to_utf8(typed.name);
+  if (const auto given = source.find("matrix"); given != source.end()) {
+    node.matrix.emplace();
+    for (int i = 0; i < 16; ++i) (*node.matrix)[i / 4][i % 4] = (*given)[static_cast<size_t>(i)].get<double>();
   }
-  if (node.contains("rotation")) {
-    const dvec4 q = vec4_of(node, "rotation", {});
-    matrix = glm::mat4_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
+  node.trs.translation = vec3_of(source, "translation", node.trs.translation);
+  node.trs.rotation = vec4_of(source, "rotation", node.trs.rotation);
+  node.trs.scale = vec3_of(source, "scale", node.trs.scale);
+  const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
+  if (visibility != nullptr) node.is_visible = visibility->value("visible", true);
+  if (typed.mesh >= 0) {
+    const GltfMesh& mesh = document.meshes[static_cast<size_t>(typed.mesh)];
+    node.weights = typed.weights ? *typed.weights : mesh.weights;
+    size_t target_count = 0;
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      target_count = std::max(target_count, primitive.targets.size());
+    }
+    node.weights.resize(target_count);
   }
-  const dvec3 scale = vec3_of(node, "scale", dvec3(1.0));
-  for (int i = 0; i < 3; ++i) matrix[i] *= scale[i];
-  matrix[3] = dvec4(vec3_of(node, "translation", dvec3(0.0)), 1.0);
-  return matrix;
-}
-
-/// Returns the rotation of a node without its ancestors; nullopt if its matrix has no rotation.
-std::optional<dmat3> local_rotation(const nlohmann::json& node) {
-  if (!node.contains("matrix")) {
-    const dvec4 q = vec4_of(node, "rotation", dvec4(0.0, 0.0, 0.0, 1.0));
-    return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
-  }
-  const dmat3 matrix(local_transform(node));
-  const dvec3 z = glm::normalize(matrix[2]);
-  const dvec3 x = glm::normalize(glm::cross(matrix[1], z));
-  const dmat3 rotation(x, glm::cross(z, x), z);
-  if (!is_finite(dmat4(rotation))) return std::nullopt;
-  return rotation;
-}
-
-/// Returns the transform from the file's world to the scene's world, whose origin is the center.
-dmat4 world_around(const dvec3& center) {
-  dmat4 place(1.0);
-  place[3] = dvec4(dvec3(0.0) - center, 1.0);
-  return place;
+  return node;
 }
 
 /// Returns the nodes without parents.
@@ -73,18 +62,33 @@ std::vector<int> root_nodes(const GltfDocument& document) {
 /// file does not limit the number of places.
 constexpr size_t kMostFurtherPlaces = size_t{1} << 18;
 
-}  // namespace
-
-bool has_no_area(const dmat4& world_from_object) {
-  const dmat3 m(world_from_object);
-  const dvec3 zero(0.0);
-  return glm::cross(m[0], m[1]) == zero && glm::cross(m[1], m[2]) == zero && glm::cross(m[2], m[0]) == zero;
+/// Sets the parents of nodes that are not placed. Each gets the parent below which it is found first.
+void find_other_parents(const GltfDocument& document, std::vector<bool> is_placed, std::vector<Node>& nodes) {
+  std::vector<int> pending = find_roots(document);
+  while (!pending.empty()) {
+    const auto node = static_cast<size_t>(pending.back());
+    pending.pop_back();
+    // A node below a node of the scene already has its parent.
+    if (is_placed[node]) continue;
+    is_placed[node] = true;
+    for (const int child : document.nodes[node].children) {
+      if (is_placed[static_cast<size_t>(child)]) continue;
+      nodes[static_cast<size_t>(child)].parent = static_cast<uint32_t>(node);
+      pending.push_back(child);
+    }
+  }
 }
 
-std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report) {
+}  // namespace
+
+std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, std::vector<Node>& nodes, LoadReport& report) {
+  const size_t count = document.nodes.size();
+  nodes.reserve(count);
+  for (size_t i = 0; i < count; ++i) nodes.push_back(read_node(document, i));
+  std::vector<bool> is_placed(count, false);
   std::vector<PlacedNode> placed;
   // The code has its own stack, with the last node first, because files may have deeper nesting than the machine's
-  // stack allows.
+  // stack allows. PlacedNode::index is that of the parent until the node is placed.
   std::vector<PlacedNode> pending;
   const std::vector<int> roots = root_nodes(document);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
@@ -93,56 +97,38 @@ std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadRepor
   while (!pending.empty()) {
     PlacedNode next = pending.back();
     pending.pop_back();
-    const GltfNode& node = document.nodes[static_cast<size_t>(next.node)];
-    const nlohmann::json& source = document.json["nodes"][static_cast<size_t>(next.node)];
-    next.world_from_object = next.world_from_object * local_transform(source);
-    const std::optional<dmat3> rotation = local_rotation(source);
+    const auto own = static_cast<size_t>(next.node);
+    const std::optional<dmat3> rotation = local_rotation(nodes[own]);
+    next.world_from_object = next.world_from_object * local_matrix(nodes[own]);
     if (next.rotation) next.rotation = rotation ? std::optional(*next.rotation * *rotation) : std::nullopt;
-    const nlohmann::json* visibility = find_extension(source, "KHR_node_visibility");
-    if (visibility != nullptr) next.is_visible = next.is_visible && visibility->value("visible", true);
+    next.is_visible = next.is_visible && nodes[own].is_visible;
     if (!is_finite(next.world_from_object)) {
       report.refuse("gltf.node.far", "the node's position in the world is too large for floating-point numbers",
                     "nodes[" + std::to_string(next.node) + "]",
                     "use smaller translations and scales in it and its parents");
       continue;
     }
+    const uint32_t parent = next.index;
+    next.index = static_cast<uint32_t>(own);
+    if (is_placed[own]) {
+      next.index = static_cast<uint32_t>(nodes.size());
+      nodes.push_back({.name = nodes[own].name, .same_as = static_cast<uint32_t>(own)});
+    }
+    is_placed[own] = true;
+    nodes[next.index].parent = parent;
     placed.push_back(next);
-    if (placed.size() > document.nodes.size() + kMostFurtherPlaces) {
+    if (placed.size() > count + kMostFurtherPlaces) {
       report.refuse("gltf.node.parents", "the nodes with several parents appear in too many places", "nodes",
                     "give each node one parent");
       return {};
     }
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      pending.push_back({*child, next.world_from_object, next.rotation, next.is_visible});
+    const std::vector<int>& children = document.nodes[own].children;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      pending.push_back({*child, next.world_from_object, next.rotation, next.is_visible, next.index});
     }
   }
+  find_other_parents(document, is_placed, nodes);
   return placed;
-}
-
-std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed,
-                                        const dvec3& center) {
-  const size_t count = document.nodes.size();
-  std::vector<dmat4> worlds(count, dmat4(1.0));
-  std::vector<bool> is_placed(count, false);
-  for (const PlacedNode& place : placed) {
-    const auto node = static_cast<size_t>(place.node);
-    if (is_placed[node]) continue;
-    worlds[node] = place.world_from_object;
-    is_placed[node] = true;
-  }
-  std::vector<std::pair<int, dmat4>> pending;
-  for (const int root : find_roots(document)) pending.emplace_back(root, world_around(center));
-  while (!pending.empty()) {
-    const auto [next, world_from_parent] = pending.back();
-    pending.pop_back();
-    const auto node = static_cast<size_t>(next);
-    // A node below a node of the scene already has its transform.
-    if (is_placed[node]) continue;
-    is_placed[node] = true;
-    worlds[node] = world_from_parent * local_transform(document.json["nodes"][node]);
-    for (const int child : document.nodes[node].children) pending.emplace_back(child, worlds[node]);
-  }
-  return worlds;
 }
 
 }  // namespace promin

@@ -7,6 +7,7 @@
 
 #include "formats/gltf/document.h"
 #include "promin/math.h"
+#include "promin/motion.h"
 
 namespace promin {
 
@@ -20,20 +21,16 @@ struct PlacedNode {
   std::optional<dmat3> rotation{dmat3(1.0)};
   /// True if the node is visible, according to KHR_node_visibility of the node and its ancestors.
   bool is_visible = true;
+  /// The node's index in Motion::nodes. It differs from `node` if the node appears again below another parent.
+  uint32_t index = kNoIndex;
 };
-
-/// Returns whether a transform reduces every area to 0, because its scale is 0 along at least two axes.
-bool has_no_area(const dmat4& world_from_object);
 
 /// Returns the nodes of the default scene, depth first and parents before children, which is the order of objects and
 /// cameras. A node with several parents appears below each parent. Reports transforms that overflow. Also reports if
 /// the result has more than 2^18 nodes more than the file.
-std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, LoadReport& report);
-
-/// Returns the transform to the world of each node of the file, by its index. The transform of a node in the scene is
-/// its first transform in `placed`. The transform of any other node is computed from its parents, which need not be in
-/// a scene, relative to the `center` of the scene. Transforms may overflow.
-std::vector<dmat4> place_all_gltf_nodes(const GltfDocument& document, const std::vector<PlacedNode>& placed,
-                                        const dvec3& center);
+///
+/// `nodes` receives all nodes of the file, in its order, and then those that appear again. A node in the scene has its
+/// parent in the scene. Any other node has one of its parents, because joints of skins need not be in a scene.
+std::vector<PlacedNode> place_gltf_nodes(const GltfDocument& document, std::vector<Node>& nodes, LoadReport& report);
 
 }  // namespace promin

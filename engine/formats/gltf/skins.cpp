@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/rounding.h"
+#include "core/utf8.h"
 #include "formats/gltf/accessors.h"
 #include "formats/gltf/json_lookup.h"
 #include "formats/gltf/json_rule.h"
@@ -56,49 +57,34 @@ std::vector<dmat4> read_inverse_bind_matrices(const GltfDocument& document, cons
 
 }  // namespace
 
-GltfSkins::GltfSkins(const GltfDocument& document, const std::vector<PlacedNode>& placed, LoadReport& report)
-    : document_(document), report_(report) {
-  const size_t count = elements_of(document.json, "skins").size();
-  if (count > 0) world_from_node_ = place_all_gltf_nodes(document, placed, report.center());
-  for (size_t skin = 0; skin < count; ++skin) {
-    if (has_joints(static_cast<int>(skin))) continue;
-    report.repair({"gltf.skin.empty", "a skin has no joints", "", "skins[" + std::to_string(skin) + "]",
+GltfSkins::GltfSkins(const GltfDocument& document, LoadReport& report) : document_(document), report_(report) {
+  for (const json& source : elements_of(document.json, "skins")) {
+    Skin& skin = skins_.emplace_back();
+    skin.name = to_utf8(source.value("name", ""));
+    skin.joints = elements_of(source, "joints").get<std::vector<uint32_t>>();
+    if (!skin.joints.empty()) continue;
+    report.repair({"gltf.skin.empty", "a skin has no joints", "", "skins[" + std::to_string(skins_.size() - 1) + "]",
                    "export the file again", "its meshes are placed by their nodes"});
   }
 }
 
-bool GltfSkins::has_joints(int skin) const {
-  return !elements_of(document_.json["skins"][static_cast<size_t>(skin)], "joints").empty();
-}
-
-const GltfPose& GltfSkins::find(int skin) {
-  const auto [known, is_new] = poses_.try_emplace(skin);
-  if (is_new) known->second = make_pose(skin);
+const PosedSkin& GltfSkins::find(int index, std::span<const dmat4> world_from_node) {
+  const auto [known, is_new] = poses_.try_emplace(index);
+  if (!is_new) return known->second;
+  const std::string place = "skins[" + std::to_string(index) + "]";
+  Skin& skin = skins_[static_cast<size_t>(index)];
+  skin.inverse_bind = read_inverse_bind_matrices(document_, document_.json["skins"][static_cast<size_t>(index)],
+                                                 place + ".inverseBindMatrices", report_);
+  known->second = pose_skin(skin, world_from_node);
+  const std::vector<dmat4>& matrices = known->second.joint_matrices;
+  const auto wrong = std::ranges::find_if_not(matrices, [](const dmat4& matrix) { return is_finite(matrix); });
+  if (wrong != matrices.end()) {
+    report_.refuse("gltf.node.far", "a joint's place in the world overflows",
+                   place + ".joints[" + std::to_string(wrong - matrices.begin()) + "]",
+                   "use smaller translations and scales in it and its parents");
+    known->second = {};
+  }
   return known->second;
-}
-
-GltfPose GltfSkins::make_pose(int skin) const {
-  const json& source = document_.json["skins"][static_cast<size_t>(skin)];
-  const std::string place = "skins[" + std::to_string(skin) + "]";
-  GltfPose pose;
-  pose.joint_matrices = read_inverse_bind_matrices(document_, source, place + ".inverseBindMatrices", report_);
-  for (size_t joint = 0; joint < pose.joint_matrices.size(); ++joint) {
-    dmat4& matrix = pose.joint_matrices[joint];
-    matrix = world_from_node_[source["joints"][joint].get<size_t>()] * matrix;
-    if (!is_finite(matrix)) {
-      report_.refuse("gltf.node.far", "a joint's place in the world overflows",
-                     place + ".joints[" + std::to_string(joint) + "]",
-                     "use smaller translations and scales in it and its parents");
-      return {};
-    }
-  }
-  const auto mirrors = [](const dmat4& matrix) { return glm::determinant(dmat3(matrix)) < 0.0; };
-  pose.is_hidden = std::ranges::all_of(pose.joint_matrices, has_no_area);
-  if (!pose.is_hidden && std::ranges::all_of(pose.joint_matrices, mirrors)) {
-    pose.world_from_mesh[0][0] = -1.0;
-    for (dmat4& matrix : pose.joint_matrices) matrix = pose.world_from_mesh * matrix;
-  }
-  return pose;
 }
 
 }  // namespace promin

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "work/pictures/run_stats.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -128,6 +128,12 @@ Metadata describe_picture(const RunStats& stats) {
                        {"promin:max_depth", std::to_string(stats.view->max_depth)},
                        {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
                        {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
+  if (stats.motion.any()) {
+    metadata.emplace_back("promin:time_s", fmt::format("{}", stats.motion.time_s.value_or(0.0)));
+    metadata.emplace_back("promin:animation", stats.motion.animations.empty()
+                                                  ? "0"
+                                                  : fmt::format("{}", fmt::join(stats.motion.animations, ", ")));
+  }
   if (stats.errors.empty()) return metadata;
   const ErrorTarget& target = *stats.view->error_target;
   metadata.emplace_back("promin:min_spp", std::to_string(target.min_samples));

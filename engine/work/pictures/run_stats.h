@@ -13,6 +13,7 @@
 #include "promin/renderer.h"
 #include "work/pictures/quantiles.h"
 #include "work/pictures/scene_counts.h"
+#include "work/spec/common_spec.h"
 
 namespace promin::work {
 
@@ -20,6 +21,8 @@ namespace promin::work {
 struct RunStats {
   gpu::DeviceInfo device;
   std::string scene_file;
+  /// The pose of the scene.
+  MotionOptions motion = {};
   SceneCounts scene;
   size_t object_count = 0;
   size_t material_count = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "work/pictures/scene_counts.h"
 
+#include "promin/motion.h"
+
 namespace promin::work {
 namespace {
 
@@ -31,6 +33,16 @@ SceneCounts count_scene(const Scene& scene) {
     ++counts.objects[1 + geometry.index()];
     counts.primitives += primitive_count(geometry);
     if (std::holds_alternative<Mesh>(geometry)) counts.triangles += primitive_count(geometry);
+  }
+  return counts;
+}
+
+MorphCounts count_morphs(const Motion& motion) {
+  MorphCounts counts;
+  for (const Node& node : motion.nodes) {
+    if (node.weights.empty()) continue;
+    ++counts.nodes;
+    counts.targets += node.weights.size();
   }
   return counts;
 }

@@ -31,4 +31,12 @@ struct SceneCounts {
 
 SceneCounts count_scene(const Scene& scene);
 
+/// The number of nodes with morph targets, and the number of their targets.
+struct MorphCounts {
+  size_t nodes = 0;
+  size_t targets = 0;
+};
+
+MorphCounts count_morphs(const Motion& motion);
+
 }  // namespace promin::work

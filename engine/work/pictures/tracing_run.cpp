@@ -11,7 +11,7 @@
 #include "core/limit_threads.h"
 #include "core/stopwatch.h"
 #include "promin/error.h"
-#include "promin/load_scene.h"
+#include "work/pictures/load_posed.h"
 #include "work/pictures/memory_use.h"
 
 namespace promin::work {
@@ -27,10 +27,11 @@ Scene load_for(const TracingOptions& options, RunStats& stats, const Messages& c
                std::vector<SourceFile>& sources) {
   choose_threads(options);
   const Stopwatch load;
-  Scene scene = load_scene(options.scene, options.load, sources);
+  Scene scene = load_posed(options.scene, options.load, options.motion, sources);
   stats.load_ms = load.ms();
   for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
   stats.scene_file = options.scene.filename().string();
+  stats.motion = options.motion;
   stats.scene = count_scene(scene);
   stats.object_count = scene.objects.size();
   stats.material_count = scene.materials.size();

@@ -174,7 +174,7 @@ void check_lights(const Scene& scene, const std::vector<uint32_t>& indices) {
 
 void switch_lights(std::vector<Light>& lights, const std::vector<uint32_t>& off) {
   for (uint32_t i = 0; i < lights.size(); ++i) {
-    lights[i].is_on = std::find(off.begin(), off.end(), i) == off.end();
+    if (std::find(off.begin(), off.end(), i) != off.end()) lights[i].is_on = false;
   }
 }
 

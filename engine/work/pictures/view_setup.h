@@ -59,7 +59,7 @@ std::string describe_light(const AssumedLight& light);
 /// Throws UsageError if the scene, including its default lights, has no light with one of these indices.
 void check_lights(const Scene& scene, const std::vector<uint32_t>& indices);
 
-/// Switches the lights with these indices off and all other lights on.
+/// Switches the lights with these indices off. Other lights stay as they are: a pose may hide them.
 void switch_lights(std::vector<Light>& lights, const std::vector<uint32_t>& off);
 
 }  // namespace promin::work

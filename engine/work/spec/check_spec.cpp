@@ -36,7 +36,18 @@ void refuse_beside(std::string_view name, std::initializer_list<Given> others,
 
 }  // namespace
 
+void check_motion_options(const MotionOptions& motion) {
+  refuse_if("usage.option.needs", motion.loops && !motion.time_s, "--loop needs a time", "give --time as well");
+  if (motion.animations.size() < 2) return;
+  for (const char* word : {MotionOptions::kAll, MotionOptions::kNone}) {
+    refuse_if("usage.options.contradict", std::ranges::count(motion.animations, word) > 0,
+              fmt::format("--animation {} and the name of an animation contradict each other", word),
+              "remove one of them");
+  }
+}
+
 void check_tracing_options(const TracingOptions& options) {
+  check_motion_options(options.motion);
   if (options.bvh) refuse_beside("--bvh", {{options.builder.has_value(), "--builder"}});
 }
 

@@ -22,6 +22,9 @@ void check_cast_spec(const CastSpec& spec);
 
 // Parts of these checks, for commands that have only some of the options.
 
+/// Checks the choice of a pose. Throws UsageError.
+void check_motion_options(const MotionOptions& motion);
+
 void check_tracing_options(const TracingOptions& options);
 /// Throws UsageError if two options contradict each other, or if an option contradicts the choice of a camera by name.
 void check_pose_options(const PoseOptions& pose, bool names_camera);

@@ -15,10 +15,35 @@
 // Parts that the specifications of pictures (render_spec.h) and of rays (cast_spec.h) have in common.
 namespace promin::work {
 
-/// The scene, its tree, and the options for tracing it.
+/// The largest time of a pose in seconds.
+inline constexpr double kMaxTime = 1e9;
+
+/// The user's choice of the scene's pose.
+struct MotionOptions {
+  /// Words that replace the names of animations: all of them, or none, for the pose of the nodes.
+  static constexpr const char* kAll = "all";
+  static constexpr const char* kNone = "none";
+
+  /// Names or numbers of animations, or one of the words above; if empty, the first animation.
+  std::vector<std::string> animations = {};
+  /// The time in seconds; if empty, 0.
+  std::optional<double> time_s = std::nullopt;
+  /// True if animations start again after their end.
+  bool loops = false;
+
+  /// Returns whether the user chose a pose. Otherwise the scene has the pose of its nodes.
+  bool any() const { return !animations.empty() || time_s; }
+  bool chooses_all() const { return animations == std::vector<std::string>{kAll}; }
+  bool chooses_none() const { return animations == std::vector<std::string>{kNone}; }
+
+  bool operator==(const MotionOptions&) const = default;
+};
+
+/// The scene, its pose, its tree, and the options for tracing it.
 struct TracingOptions {
   std::filesystem::path scene;
   LoadOptions load;
+  MotionOptions motion;
   std::optional<std::string> builder;
   std::optional<std::filesystem::path> bvh;
 

@@ -100,6 +100,9 @@ void add_loading(Table<Spec>& table) {
   table.add_file("bvh", PROMIN_AT(tracing.bvh), {.affects_bits = false, .replaces = {"builder"}});
   table.add_flag("strict", PROMIN_AT(tracing.load.is_strict));
   table.add_file("root", PROMIN_AT(tracing.load.root), kNoBits);
+  table.add("animation", PROMIN_AT(tracing.motion.animations), Animations());
+  table.add_number("time", PROMIN_AT(tracing.motion.time_s), 0.0, kMaxTime);
+  table.add_flag("loop", PROMIN_AT(tracing.motion.loops));
 }
 
 void add_samples(Table<RenderSpec>& table) {

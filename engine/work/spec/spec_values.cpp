@@ -107,6 +107,18 @@ uvec2 Size::read(const Json& json) const {
   return size;
 }
 
+std::vector<std::string> Animations::read(const Json& json) const {
+  const auto read_one = [](const Json& one) {
+    if (one.is_number_unsigned()) return std::to_string(one.get<uint64_t>());
+    if (!one.is_string() || one.get<std::string>().empty()) refuse_value("the name or number of an animation", one);
+    return one.get<std::string>();
+  };
+  if (!json.is_array()) return {read_one(json)};
+  std::vector<std::string> words;
+  for (const Json& part : json) words.push_back(read_one(part));
+  return words;
+}
+
 PixelWindow Window::read(const Json& json) const {
   const std::string takes = "X0, Y0, X1, Y1 with X0 < X1 and Y0 < Y1";
   const Json& parts = read_array(json, 4, takes);

@@ -123,6 +123,12 @@ struct Size {
   uvec2 read(const Json& json) const;
 };
 
+/// The name or number of an animation, or a list of them.
+struct Animations {
+  Json write(const std::vector<std::string>& value) const { return value.size() == 1 ? Json(value[0]) : Json(value); }
+  std::vector<std::string> read(const Json& json) const;
+};
+
 struct Window {
   Json write(const PixelWindow& value) const { return {value.lo.x, value.lo.y, value.hi.x, value.hi.y}; }
   PixelWindow read(const Json& json) const;

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/place_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "motion/deform.h"
+#include "scene/limits.h"
+#include "scene/world_scene.h"
+#include "shapes/placement.h"
+#include "shapes/shapes.h"
+
+namespace promin {
+namespace {
+
+/// The smallest determinant of a transform. With a smaller one, the transform is almost singular or overflows.
+constexpr double kLeastDeterminant = 1e-100;
+
+struct KeepsForm {
+  const Placement& placement;
+
+  bool operator()(const Mesh&) const { return true; }
+  template <class Described>
+  bool operator()(const Described& shape) const {
+    return place(shape, placement) && is_in_range(center_of(shape, placement)) &&
+           std::ranges::all_of(sizes_of(shape, placement), is_valid);
+  }
+};
+
+}  // namespace
+
+bool is_mesh_in_range(const Mesh& mesh, const dmat4& world_from_object) {
+  const auto is_placed_in_range = [&](const dvec3& p) { return is_in_range(dvec3(world_from_object * dvec4(p, 1.0))); };
+  // Usually the corners of the mesh's box decide; otherwise each vertex is tested.
+  Bounds box;
+  for (const vec3& position : mesh.positions) box.extend(position);
+  bool are_corners_in_range = true;
+  for (int corner = 0; corner < 8; ++corner) {
+    const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
+                  (corner & 4) != 0 ? box.hi.z : box.lo.z);
+    are_corners_in_range = are_corners_in_range && is_placed_in_range(p);
+  }
+  return are_corners_in_range ||
+         std::ranges::all_of(mesh.positions, [&](const vec3& p) { return is_placed_in_range(dvec3(p)); });
+}
+
+bool is_singular(const dmat4& world_from_object) {
+  const double determinant = std::abs(glm::determinant(dmat3(world_from_object)));
+  return !(determinant >= kLeastDeterminant && determinant <= 1.0 / kLeastDeterminant);
+}
+
+Mesh apply_transform(Mesh mesh, const dmat4& world_from_object, bool& has_lost_normals) {
+  const Placement placement(world_from_object);
+  const bool has_normals = std::ranges::all_of(
+      mesh.normals, [&](const vec3& normal) { return has_length(placement.normal(dvec3(normal))); });
+  has_lost_normals = !has_normals;
+  if (!has_normals) mesh.normals.clear();
+  return world::place(std::move(mesh), world_from_object);
+}
+
+bool keeps_form(const Geometry& geometry, const dmat4& world_from_object) {
+  return std::visit(KeepsForm{Placement(world_from_object)}, geometry);
+}
+
+}  // namespace promin

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/pictures/load_posed.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "promin/error.h"
+
+namespace promin::work {
+namespace {
+
+std::string list_animations(const std::vector<Animation>& animations) {
+  std::string text;
+  for (size_t i = 0; i < animations.size(); ++i) {
+    text += fmt::format("{}{}", i == 0 ? "" : ", ", i);
+    if (!animations[i].name.empty()) text += fmt::format(" ({})", animations[i].name);
+  }
+  return text;
+}
+
+/// Finds an animation by name or number. The name is tried first, because an animation may be called "2".
+uint32_t find_animation(const Scene& scene, const std::string& selection) {
+  const std::vector<Animation>& animations = scene.motion->animations;
+  for (uint32_t i = 0; i < animations.size(); ++i) {
+    if (animations[i].name == selection) return i;
+  }
+  uint32_t index = 0;
+  const char* end = selection.data() + selection.size();
+  const auto [rest, error] = std::from_chars(selection.data(), end, index);
+  if (error == std::errc() && rest == end && index < animations.size()) return index;
+  throw UsageError({"animation.unknown", "the scene has no animation \"" + selection + "\"", scene.file.string(),
+                    "choose one of: " + list_animations(animations)});
+}
+
+}  // namespace
+
+PoseChoice choose_pose(const Scene& scene, const MotionOptions& options) {
+  PoseChoice choice{.animations = {}, .time_s = options.time_s.value_or(0.0), .loops = options.loops};
+  if (!options.any() || options.chooses_none()) return choice;
+  const bool has_animations = scene.motion != nullptr && !scene.motion->animations.empty();
+  if (options.animations.empty() || options.chooses_all()) {
+    const size_t count = !has_animations ? 0 : options.chooses_all() ? scene.motion->animations.size() : 1;
+    choice.animations.resize(count);
+    std::iota(choice.animations.begin(), choice.animations.end(), 0U);
+    return choice;
+  }
+  if (!has_animations) {
+    throw UsageError({"animation.missing", "the scene has no animations", scene.file.string(), "remove --animation"});
+  }
+  for (const std::string& selection : options.animations) choice.animations.push_back(find_animation(scene, selection));
+  return choice;
+}
+
+Scene load_posed(const std::filesystem::path& file, const LoadOptions& load, const MotionOptions& motion,
+                 std::vector<SourceFile>& sources) {
+  Scene scene = load_scene(file, load, sources);
+  const PoseChoice choice = choose_pose(scene, motion);
+  if (!choice.animations.empty()) return scene_at(std::move(scene), choice);
+  if (motion.any() && !motion.chooses_none()) {
+    scene.warnings.emplace_back("the scene has no animations, so its pose does not depend on the time");
+  }
+  return scene;
+}
+
+}  // namespace promin::work
