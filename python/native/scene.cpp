@@ -10,6 +10,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <cstring>
+#include <map>
 #include <utility>
 
 #include "bind.h"
@@ -18,10 +19,12 @@
 #include "promin/framing.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
+#include "promin/motion.h"
 #include "promin/validate.h"
 #include "records.h"
 #include "watched.h"
 #include "work/pictures/camera_choice.h"
+#include "work/pictures/load_posed.h"
 #include "work/pictures/view_setup.h"
 #include "work/spec/check_spec.h"
 #include "work/spec/environment_choice.h"
@@ -61,6 +64,33 @@ Scene load_model(const std::filesystem::path& file, bool is_strict, const std::s
     scene = load_scene(file, {.is_strict = is_strict, .root = root, .material_variant = variant});
   });
   return scene;
+}
+
+/// Returns the scene in the pose of these animations, by name or number.
+Scene pose(const Scene& scene, double time_s, const std::vector<std::string>& animations, bool loops) {
+  Scene posed;
+  run_watched(nb::none(), [&](const ProgressCallback&) {
+    PoseChoice choice = with_keywords([&] {
+      const work::MotionOptions options{.animations = animations, .time_s = time_s, .loops = loops};
+      work::check_motion_options(options);
+      return work::choose_pose(scene, options);
+    });
+    posed = scene_at(scene, choice);
+  });
+  return posed;
+}
+
+nb::list describe_animations(const Scene& scene) {
+  nb::list animations;
+  if (scene.motion == nullptr) return animations;
+  for (const Animation& animation : scene.motion->animations) {
+    std::map<std::string, size_t> channels;
+    for (const AnimationChannel& channel : animation.channels) ++channels[std::string(name_of(channel.property))];
+    nb::dict counts;
+    for (const auto& [property, count] : channels) counts[property.c_str()] = count;
+    animations.append(nb::make_tuple(animation.name, animation.duration_s, counts));
+  }
+  return animations;
 }
 
 void add_mesh(Scene& scene, const std::string& name, const std::optional<Rows<float, 3>>& positions,
@@ -187,6 +217,8 @@ void bind_scene(nb::module_& module) {
       .def("variants", [](const Scene& s) { return s.variants; })
       .def("center", [](const Scene& s) { return nb::make_tuple(s.center.x, s.center.y, s.center.z); })
       .def("bounds", &bounds)
+      .def("animations", &describe_animations)
+      .def("at", &pose, nb::arg("time"), nb::arg("animations"), nb::arg("loops"))
       .def("validate", &check)
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("set_center", [](Scene& s, double x, double y, double z) { s.center = dvec3(x, y, z); })

@@ -31,11 +31,12 @@ from promin._records import (
     Unlit,
 )
 from promin._renderer import Background, Renderer, render
-from promin._scene import ObjectInfo, Scene, SceneLike
+from promin._scene import AnimationInfo, ObjectInfo, Scene, SceneLike
 from promin._view import CameraLike, Size, View
 
 __all__ = [
     "HIT_DTYPE",
+    "AnimationInfo",
     "Backdrop",
     "Background",
     "Camera",

@@ -8,7 +8,7 @@ import dataclasses
 import hashlib
 import os
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, Union
@@ -35,15 +35,36 @@ class ObjectInfo(NamedTuple):
     """Index of the object's material in the scene."""
 
 
+class AnimationInfo(NamedTuple):
+    """A description of an animation."""
+
+    name: str
+    """The display name; may be empty."""
+    duration: float
+    """The time of the last key in seconds."""
+    channels: dict[str, int]
+    """The properties that the animation changes, such as "rotation", and for each the number of its channels."""
+
+
+@dataclass(frozen=True)
+class _Pose:
+    """The arguments of Scene.at, with animations as names or numbers in text."""
+
+    time: float
+    animations: tuple[str, ...]
+    loop: bool
+
+
 @dataclass(frozen=True)
 class _File:
-    """A scene file and its content at the time of reading."""
+    """A scene file, its content at the time of reading, and the pose of the scene."""
 
     path: str
     sha256: str
     is_strict: bool
     variant: str
     root: str
+    pose: _Pose | None = None
 
 
 @dataclass(frozen=True)
@@ -144,6 +165,28 @@ class Scene:
         scene._file = _File(os.path.abspath(file), _hash(file), bool(strict), str(variant), folder)
         scene._base = base
         return scene
+
+    def at(
+        self, time: float, animation: str | int | Sequence[str | int] | None = 0, *, loop: bool = False
+    ) -> Scene:
+        """Returns a copy of the scene as an animation of its file has it after `time` seconds. Objects keep their
+        numbers.
+
+        animation: the name or number of an animation, a list of them, "all", or None for the pose of the file's nodes.
+        If several animations change the same property, the one that comes first in the file counts. loop: start each
+        animation again after its end. Otherwise nothing moves before its first key and after its last one. Objects,
+        materials and lights that the caller has added or replaced do not move.
+
+        Raises UsageError if the animation does not exist, and InputError if it cannot be shown."""
+        if self._file is None:
+            raise UsageError("the scene has no file, so it has no animations; load it with Scene.load")
+        pose = _Pose(_real(time), _animation_words(animation), bool(loop))
+        posed = self._load_base().at(pose.time, list(pose.animations), pose.loop)
+        twin = self.snapshot()
+        twin._file = dataclasses.replace(self._file, pose=pose)
+        twin._base = posed
+        twin._native = None
+        return twin
 
     # Methods that add to the scene.
 
@@ -379,6 +422,11 @@ class Scene:
         """Material variants of the scene's file."""
         return list(self.native().variants())
 
+    @property
+    def animations(self) -> list[AnimationInfo]:
+        """The animations of the scene's file, which `at` shows."""
+        return [AnimationInfo(*row) for row in self.native().animations()]
+
     def validate(self) -> None:
         """Raises InputError with all problems of the scene and their places; does nothing if there are none. Caster and
         Renderer check the scene in the same way."""
@@ -481,7 +529,11 @@ class Scene:
                 file = Path(self._file.path)
                 if _hash(file) != self._file.sha256:
                     raise InputError(f"{file}: the file has changed since the scene was pickled; load it again")
-                self._base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
+                base = _promin.Scene.load(str(file), self._file.is_strict, self._file.variant, self._file.root)
+                if self._file.pose is not None:
+                    pose = self._file.pose
+                    base = base.at(pose.time, list(pose.animations), pose.loop)
+                self._base = base
             return self._base
 
     def _material_count(self) -> int:
@@ -552,6 +604,17 @@ def replace_one(
     place = _find_one(records, chosen, what)
     records[place] = change(records[place] if new is None else new, fields)
     return records
+
+
+def _animation_words(animation: object) -> tuple[str, ...]:
+    """Returns names and numbers of animations as text."""
+    if animation is None:
+        return ("none",)
+    listed = list(animation) if isinstance(animation, (list, tuple)) else [animation]
+    for each in listed:
+        if isinstance(each, bool) or not isinstance(each, (str, int, np.integer)):
+            raise UsageError(f"animation is {each!r:.80}; give the name or number of an animation")
+    return tuple(str(each) for each in listed)
 
 
 def _find_one(records: list[Named], chosen: str | int, what: str) -> int:
