@@ -488,6 +488,40 @@ Words operands_of(Words instruction) {
   return instruction.subspan(first, std::min(count, instruction.size() - first));
 }
 
+/// Marks the ids that an instruction reads. Some literals are taken for ids.
+void mark_used(Words instruction, std::vector<bool>& is_used) {
+  const Words operands = result_of(instruction) ? operands_of(instruction) : instruction.subspan(1);
+  for (const uint32_t operand : operands) {
+    if (operand < is_used.size()) is_used[operand] = true;
+  }
+}
+
+/// Returns whether an instruction defines a variable that only functions of this module can use.
+bool is_own_variable(Words instruction) {
+  if (op_of(instruction) != Op::OpVariable) return false;
+  const auto storage = static_cast<spv::StorageClass>(instruction[3]);
+  return storage == spv::StorageClass::Function || storage == spv::StorageClass::Private;
+}
+
+/// Returns the functions without the variables that no instruction uses: those of inlined functions whose blocks are
+/// never reached.
+std::vector<uint32_t> without_unused_variables(Words functions, uint32_t id_bound) {
+  std::vector<bool> is_used(id_bound);
+  const auto visit = [&](const auto& visitor) {
+    for (size_t i = 0; i < functions.size(); i += functions[i] >> spv::WordCountShift) {
+      visitor(functions.subspan(i, functions[i] >> spv::WordCountShift));
+    }
+  };
+  visit([&](Words instruction) { mark_used(instruction, is_used); });
+  std::vector<uint32_t> written;
+  written.reserve(functions.size());
+  visit([&](Words instruction) {
+    if (is_own_variable(instruction) && !is_used.at(instruction[2])) return;
+    written.insert(written.end(), instruction.begin(), instruction.end());
+  });
+  return written;
+}
+
 /// Writes the instructions before the functions. Constants have their known values, and unused definitions are left
 /// out.
 class HeadWriter {
@@ -503,7 +537,11 @@ class HeadWriter {
       if (const auto id = result_of(instruction)) is_defined_.at(*id) = true;
       // Only constants are composed of other constants here: the other operands are literals, types and variables.
       const Op op = op_of(instruction);
-      if (op == Op::OpTypeArray || op == Op::OpVariable || op == Op::OpExecutionModeId) use(instruction);
+      if (is_own_variable(instruction) && !is_used_.at(instruction[2])) {
+        is_defined_.at(instruction[2]) = false;
+      } else if (op == Op::OpTypeArray || op == Op::OpVariable || op == Op::OpExecutionModeId) {
+        use(instruction);
+      }
     }
     // A constant comes after its components, so the loop runs backwards.
     for (const Words instruction : std::views::reverse(head_)) {
@@ -519,6 +557,7 @@ class HeadWriter {
       const Op op = op_of(instruction);
       if (is_about_id(instruction) && !is_defined_.at(instruction[1])) continue;
       if (op == Op::OpDecorate && instruction[2] == static_cast<uint32_t>(spv::Decoration::SpecId)) continue;
+      if (is_own_variable(instruction) && !is_defined_.at(instruction[2])) continue;
       if (!is_constant(op)) {
         out.insert(out.end(), instruction.begin(), instruction.end());
       } else if (is_defined_.at(instruction[2])) {
@@ -532,12 +571,7 @@ class HeadWriter {
     return op_of(instruction) == Op::OpName || op_of(instruction) == Op::OpDecorate;
   }
 
-  void use(Words instruction) {
-    const Words operands = result_of(instruction) ? operands_of(instruction) : instruction.subspan(1);
-    for (const uint32_t operand : operands) {
-      if (operand < is_used_.size()) is_used_[operand] = true;
-    }
-  }
+  void use(Words instruction) { mark_used(instruction, is_used_); }
 
   void write_constant(Words instruction, std::vector<uint32_t>& out) const {
     const auto value = values_.of(instruction[2]);
@@ -576,7 +610,7 @@ std::vector<uint32_t> specialize(std::span<const uint32_t> spirv, std::span<cons
   const uint32_t id_bound = spirv[kIdBoundWord];
   KnownValues values(id_bound, constants);
   for (const Words instruction : module.head) values.learn_constant(instruction);
-  const std::vector<uint32_t> functions = prune_functions(module, values);
+  const std::vector<uint32_t> functions = without_unused_variables(prune_functions(module, values), id_bound);
   std::vector<uint32_t> written(spirv.begin(), spirv.begin() + kHeaderWords);
   HeadWriter(module, values, functions, id_bound).write(written);
   written.insert(written.end(), functions.begin(), functions.end());
