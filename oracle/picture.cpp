@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "oracle/distance.h"
 #include "oracle/normal_error.h"
+#include "oracle/samples.h"
 #include "oracle/surface.h"
 #include "oracle/verdict.h"
 #include "scene/light_kinds.h"
@@ -66,6 +67,52 @@ struct Illumination {
   Real distance = kInfinity;
 };
 
+/// Returns the distance along a ray to a ball's surface: to the nearer point from outside, to the only one from inside.
+Real distance_to_ball(const Vector& to_center, Real radius, const Vector& direction) {
+  const Real along = glm::dot(to_center, direction);
+  const Real aside = glm::length(glm::cross(to_center, direction));
+  const Real half_chord = std::sqrt(std::max((radius - aside) * (radius + aside), Real(0)));
+  return glm::length(to_center) <= radius ? along + half_chord : along - half_chord;
+}
+
+/// Returns the factor of a spot light (KHR_lights_punctual, "Inner and Outer Cone Angles").
+Real spot_share(const Light& light, const Vector& to_light) {
+  const Real outer = std::cos(Real(light.outer_cone_angle));
+  const Real width = std::max(1e-5L, std::cos(Real(light.inner_cone_angle)) - outer);
+  const Vector axis = glm::normalize(Vector(light.direction));
+  const Real ramp = std::clamp((-glm::dot(to_light, axis) - outer) / width, Real(0), Real(1));
+  return ramp * ramp;
+}
+
+/// Returns the light of one point of a ball or of a disc in the sky. The strength is the radiance divided by the
+/// density, for a light whose irradiance is the power of the light without size.
+Illumination illuminate_sized(const Light& light, const Vector& position, const std::array<Real, 2>& u) {
+  constexpr Real kPi = std::numbers::pi_v<Real>;
+  if (!has_place(light.kind)) {
+    const Real half_angle = Real(light.angle) / 2;
+    const Vector direction = place_in_cone(glm::normalize(-Vector(light.direction)), half_angle, u);
+    const Real radiance = 1 / (kPi * std::sin(half_angle) * std::sin(half_angle));
+    const Real solid_angle = 4 * kPi * std::sin(half_angle / 2) * std::sin(half_angle / 2);
+    return {direction, radiance * solid_angle};
+  }
+  const Vector to_center = Vector(light.position) - position;
+  const Real distance = glm::length(to_center);
+  const Real radius = light.radius;
+  const bool is_inside = distance <= radius;
+  const Real half_angle = is_inside ? kPi : std::asin(radius / distance);
+  const Vector axis = distance > 0 ? to_center / distance : Vector(0, 0, 1);
+  Illumination result{place_in_cone(axis, half_angle, u)};
+  result.distance = distance_to_ball(to_center, radius, result.to_light);
+  // A ball whose power does not fall off has the radiance for which its power at each place is 1.
+  const bool does_fall = light.attenuation == Attenuation::kInverseSquare;
+  const Real apart = std::max(distance, radius);
+  const Real radiance = (does_fall ? 1 : apart * apart) / (kPi * radius * radius);
+  result.strength = radiance * 4 * kPi * std::sin(half_angle / 2) * std::sin(half_angle / 2);
+  if (does_fall) result.strength *= std::clamp(1 - std::pow(apart / light.range, Real(4)), Real(0), Real(1));
+  if (light.kind == LightKind::kSpot) result.strength *= spot_share(light, result.to_light);
+  return result;
+}
+
 Illumination illuminate(const Light& light, const Vector& position) {
   const Vector axis = glm::normalize(Vector(light.direction));
   if (!has_place(light.kind)) return {-axis};
@@ -77,13 +124,7 @@ Illumination illuminate(const Light& light, const Vector& position) {
     const Real window = 1 - std::pow(distance / light.range, Real(4));
     result.strength = std::clamp(window, Real(0), Real(1)) / (distance * distance);
   }
-  if (light.kind == LightKind::kSpot) {
-    // The formula of KHR_lights_punctual, "Inner and Outer Cone Angles".
-    const Real outer = std::cos(Real(light.outer_cone_angle));
-    const Real width = std::max(1e-5L, std::cos(Real(light.inner_cone_angle)) - outer);
-    const Real ramp = std::clamp((-glm::dot(result.to_light, axis) - outer) / width, Real(0), Real(1));
-    result.strength *= ramp * ramp;
-  }
+  if (light.kind == LightKind::kSpot) result.strength *= spot_share(light, result.to_light);
   return result;
 }
 
@@ -209,12 +250,19 @@ struct Way {
   /// With glass: the media that contain the ray, and the number of rays that its sample has followed.
   Media media;
   uint32_t* rays = nullptr;
+  /// The sample whose points lights with a size show, the number of this ray in the sample, and the number of rays so
+  /// far.
+  SampleId sample;
+  uint32_t step = 0;
+  uint32_t* steps = nullptr;
 };
 
 class Tracer {
  public:
-  explicit Tracer(const world::Scene& scene)
+  /// `has_lens` is true if the first pair of dimensions of each sample belongs to the camera's lens.
+  Tracer(const world::Scene& scene, bool has_lens)
       : scene_(scene),
+        has_lens_(has_lens),
         textures_(scene),
         surroundings_(scene.environment),
         has_glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -240,7 +288,9 @@ class Tracer {
   /// contributes alpha * (its light, with the environment in place of a mirror ray) + (1 - alpha) * (the radiance from
   /// behind).
   Radiance trace(const Ray& ray, const Seen& seen, const Way& way) const {
-    Radiance sum = trace_hit(ray, seen.hit, way);
+    Way here = way;
+    here.step = (*way.steps)++;
+    Radiance sum = trace_hit(ray, seen.hit, here);
     if (seen.is_at_cutoff) sum.error += kUnknown;
     return sum;
   }
@@ -375,13 +425,15 @@ class Tracer {
   }
 
   /// Returns the fraction of the source's light that reaches the point, and the error that a device may have.
-  ArrivingShare arriving_share(const SurfacePoint& point, const Light& light, const Vector& to_light,
+  ArrivingShare arriving_share(const SurfacePoint& point, const Light& light, const Illumination& illumination,
                                const PointError& error, const Media& media) const {
+    const Vector& to_light = illumination.to_light;
     // If the surface scatters light to its other side, the shadow ray starts on the side of the light.
     const bool begins_behind = scatters_through(*point.material) && glm::dot(point.geometric_normal, to_light) < 0;
     const Vector origin = begins_behind ? point.position - point.lift * point.geometric_normal
                                         : point.shadow_position + point.lift * point.geometric_normal;
-    const Ray ray = has_place(light.kind) ? Ray{origin, Vector(light.position) - origin, 0, 1} : Ray{origin, to_light};
+    const Vector source = has_size(light) ? point.position + illumination.distance * to_light : Vector(light.position);
+    const Ray ray = has_place(light.kind) ? Ray{origin, source - origin, 0, 1} : Ray{origin, to_light};
     const RayError of_ray{error.position, 4 * kRoundoff};
     if (has_glass_) return share_through_glass(ray, of_ray, media);
     Coverage share;
@@ -399,17 +451,21 @@ class Tracer {
     return {Vector(share.value), share.error};
   }
 
-  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error,
-                                             const Media& media) const {
+  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error, const Way& way) const {
     // With a normal texture, a light slightly behind the geometric surface can light the front.
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
+    // Each light has its own pair of dimensions for each ray of the sample.
+    auto pair = static_cast<uint32_t>(way.step * scene_.lights.size() + (has_lens_ ? 1 : 0));
     for (const Light& light : scene_.lights) {
-      const Illumination illumination = illuminate(light, point.position);
+      const Illumination illumination = has_size(light)
+                                            ? illuminate_sized(light, point.position, sample_pair(way.sample, pair))
+                                            : illuminate(light, point.position);
+      ++pair;
       const bool is_behind =
           !has_normals && !scatters_through(*point.material) && !(glm::dot(point.normal, illumination.to_light) > 0);
       if (is_behind || !(illumination.strength > 0)) continue;
-      const ArrivingShare share = arriving_share(point, light, illumination.to_light, error, media);
+      const ArrivingShare share = arriving_share(point, light, illumination, error, way.media);
       if (share.value == Vector(0) && share.error == 0) continue;
       arriving.push_back({&light, illumination.to_light, illumination.distance, share.value * illumination.strength,
                           share.error * illumination.strength});
@@ -426,8 +482,8 @@ class Tracer {
     Real direction_error = 0;
   };
   BoundedResponse respond_with_textures(const SurfacePoint& point, const Vector& direction, const PointError& error,
-                                        const Media& media) const {
-    const std::vector<ArrivingLight> lights = arriving_lights(point, error, media);
+                                        const Way& way) const {
+    const std::vector<ArrivingLight> lights = arriving_lights(point, error, way);
     SlotTexels texels;
     SlotTexels errors;
     for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -519,7 +575,7 @@ class Tracer {
   Radiance trace_surface(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
                          const Way& way, uint32_t bounces) const {
     const Vector direction = glm::normalize(ray.direction);
-    const BoundedResponse response = respond_with_textures(point, direction, error, way.media);
+    const BoundedResponse response = respond_with_textures(point, direction, error, way);
     Radiance sum = response.sent;
     const Real weight = largest(response.mirror_weight);
     if (weight == 0) return sum;
@@ -642,7 +698,7 @@ class Tracer {
   /// Returns the radiance of both rays of a scene with glass, within the limits of the tree.
   Radiance trace_glass(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
                        const Way& way, const Media& beyond) const {
-    const BoundedResponse response = respond_with_textures(point, glm::normalize(ray.direction), error, way.media);
+    const BoundedResponse response = respond_with_textures(point, glm::normalize(ray.direction), error, way);
     const Vector left = way.media.left_after(hit.t * glm::length(ray.direction));
     Way here = way;
     here.weight *= left;
@@ -682,6 +738,7 @@ class Tracer {
   }
 
   const world::Scene& scene_;
+  bool has_lens_;
   Textures textures_;
   Surroundings surroundings_;
   bool has_glass_;
@@ -746,29 +803,53 @@ Cone camera_cone(const Camera& camera, const uvec2& size) {
 
 }  // namespace
 
-Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) {
+namespace {
+
+/// Returns the ray through a position on the picture, in pixels from its upper left corner.
+Ray ray_through(const Camera& camera, const uvec2& size, const std::array<Real, 2>& at,
+                const std::optional<std::array<Real, 2>>& on_lens) {
   const bool is_orthographic = camera.projection == Projection::kOrthographic;
   const double half_height =
       is_orthographic ? static_cast<double>(camera.ymag) : std::tan(0.5 * static_cast<double>(camera.yfov));
   const double pixel = 2.0 * half_height / size.y;
   const vec3 right(pixel * glm::cross(dvec3(camera.look), dvec3(camera.up)));
   const vec3 up(pixel * dvec3(camera.up));
-  const Vector on_film = (x + 0.5L - size.x / 2.0L) * Vector(right) + (size.y / 2.0L - y - 0.5L) * Vector(up);
+  const Vector on_film = (at[0] - size.x / 2.0L) * Vector(right) + (size.y / 2.0L - at[1]) * Vector(up);
   // The interval is open, so it begins just before the viewport.
   const Real tmin = std::nextafter(Real(camera.near), -kInfinity);
   const Vector eye(camera.eye);
   const Vector look(camera.look);
-  return is_orthographic ? Ray{eye + on_film, look, tmin} : Ray{eye, look + on_film, tmin};
+  Ray ray = is_orthographic ? Ray{eye + on_film, look, tmin} : Ray{eye, look + on_film, tmin};
+  if (on_lens) {
+    // The ray still goes through the same point of the plane in focus.
+    const Vector in_focus = ray.origin + Real(camera.focus_distance) * ray.direction;
+    const auto [x, y] = place_on_disc(*on_lens);
+    ray.origin += Real(camera.aperture_radius) * (x * glm::normalize(Vector(right)) + y * glm::normalize(Vector(up)));
+    ray.direction = (in_focus - ray.origin) / Real(camera.focus_distance);
+  }
+  return ray;
+}
+
+}  // namespace
+
+Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y) {
+  return ray_through(camera, size, {x + 0.5L, y + 0.5L}, {});
 }
 
 Picture render(const world::Scene& scene, const View& view) {
+  return render(scene, view, [](const uvec2& /*pixel*/) { return SampleChoice(); });
+}
+
+Picture render(const world::Scene& scene, const View& view,
+               const std::function<SampleChoice(const uvec2& pixel)>& place_of) {
   world::Scene lit = scene;
+  std::erase_if(lit.lights, [](const Light& light) { return !light.is_on; });
   for (Light& light : lit.lights) {
     if (light.kind != LightKind::kHeadlight) continue;
     light.kind = LightKind::kDirectional;
     light.direction = view.camera.look;
   }
-  const Tracer tracer(lit);
+  const Tracer tracer(lit, has_lens(view.camera));
   Way of_camera;
   of_camera.bounces = view.max_depth;
   of_camera.cone = camera_cone(view.camera, view.size);
@@ -783,8 +864,14 @@ Picture render(const world::Scene& scene, const View& view) {
     for (uint32_t x = 0; x < view.size.x; ++x) {
       Pixel& pixel = picture.pixels[row * view.size.x + x];
       uint32_t rays = 0;
+      uint32_t steps = 0;
       way.rays = &rays;
-      pixel.ray = camera_ray(view.camera, view.size, x, y);
+      way.steps = &steps;
+      const SampleChoice choice = place_of(uvec2(x, y));
+      way.sample = {uvec2(x, y), choice.number, view.seed, choice.is_refined};
+      std::optional<std::array<Real, 2>> on_lens;
+      if (has_lens(view.camera)) on_lens = sample_pair(way.sample, 0);
+      pixel.ray = ray_through(view.camera, view.size, {x + choice.place[0], y + choice.place[1]}, on_lens);
       const Seen seen = tracer.find(pixel.ray, way, {.passes_backs = true});
       pixel.hit = seen.hit;
       pixel.is_at_cutoff = seen.is_at_cutoff;

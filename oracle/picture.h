@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "oracle/oracle.h"
@@ -40,11 +42,24 @@ struct Picture {
   const Pixel& at(uint32_t x, uint32_t y) const { return pixels[static_cast<size_t>(y) * size.x + x]; }
 };
 
+/// A sample of each pixel.
+struct SampleChoice {
+  /// Position in the pixel, from its upper left corner.
+  std::array<Real, 2> place{0.5L, 0.5L};
+  /// The number of the sample.
+  uint32_t number = 0;
+  /// True for pictures with an error target.
+  bool is_refined = false;
+};
+
 /// Returns the ray through the centre of the pixel, computed from the fp32 numbers of the camera that the device
 /// receives. t is counted from the eye in units of the viewport's distance. A surface at t = near is hit.
 Ray camera_ray(const Camera& camera, const uvec2& size, uint32_t x, uint32_t y);
 
 /// Renders the whole picture on all cores, with one sample per pixel. It ignores the view's crop and number of samples.
 Picture render(const world::Scene& scene, const View& view);
+/// Returns the same for another sample. `place_of` returns the sample of a pixel.
+Picture render(const world::Scene& scene, const View& view,
+               const std::function<SampleChoice(const uvec2& pixel)>& place_of);
 
 }  // namespace promin::oracle

@@ -264,6 +264,11 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--camera", "NAME|INDEX", "Name of a camera of the scene, or its index, counted from 0 [0]",
             [&](const OptionValues& w) { view.camera = w.text(); });
   add_pose_options(table, view.pose);
+  table.add("--aperture-radius", "R",
+            "Radius of the camera's lens in scene units. Only what lies at --focus-distance is sharp [0, no lens]",
+            [&](const OptionValues& w) { view.aperture_radius = w.real(0, 0.0, kMaxCoordinate); });
+  table.add("--focus-distance", "D", "Distance from the eye to the plane in focus, along the direction of view",
+            [&](const OptionValues& w) { view.focus_distance = w.real(0, kLeastFocusDistance, kMaxCoordinate); });
   add_environment_options(table, view.environment);
 }
 

@@ -13,6 +13,7 @@
 #include "scene/alpha.h"
 #include "scene/glass.h"
 #include "scene/layers.h"
+#include "scene/light_kinds.h"
 #include "scene/texture_slots.h"
 
 namespace promin {
@@ -192,13 +193,22 @@ class MaterialPacker {
 /// The smallest difference of the cosines of a spot light's angles at which fp32 can distinguish points between them.
 constexpr double kLeastFalloffWidth = 1e-5;
 
+/// Returns the size of a light for LightRecord::kind. The squared sine of a small angle is not 0.
+float size_of(const Light& light) {
+  if (!has_size(light)) return 0.0F;
+  if (has_place(light.kind)) return light.radius;
+  const double sine = std::sin(0.5 * static_cast<double>(light.angle));
+  return std::max(static_cast<float>(sine * sine), std::numeric_limits<float>::min());
+}
+
 LightRecord pack(const Light& light) {
   const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
   const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
   return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),
           vec4(light.diffuse, static_cast<float>(1.0 / std::max(kLeastFalloffWidth, cos_inner - cos_outer))),
           vec4(light.specular, 0.0F),
-          uvec4(light.kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0, 0, 0)};
+          uvec4(light.kind, light.attenuation == Attenuation::kInverseSquare ? 1 : 0,
+                std::bit_cast<uint32_t>(size_of(light)), 0)};
 }
 
 }  // namespace

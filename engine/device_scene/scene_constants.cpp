@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/divide_up.h"
+#include "device_scene/scrambled_points.h"
 
 namespace promin {
 namespace {
@@ -57,11 +58,13 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
       .backdrop_bottom = vec4(backdrop.bottom, static_cast<float>(view.size.y)),
       .backdrop_rise = vec4(vec3(dvec3(camera.up) / (2.0 * half_height)), is_orthographic ? 1.0F : 0.0F),
       .tree_bounds = scene.tree_bounds,
-      .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y), 0.0F, 0.0F),
+      .film_center = vec4(0.5F * static_cast<float>(view.size.x), 0.5F * static_cast<float>(view.size.y),
+                          static_cast<float>(static_cast<double>(camera.aperture_radius) / pixel),
+                          camera.aperture_radius > 0.0F ? 1.0F / camera.focus_distance : 0.0F),
       .first_index = scene.first_index,
       .first_lookup = scene.first_lookup,
       .first_texture = scene.first_texture,
-      .first_glass = uvec4(scene.first_glass.x, media_around(scene, camera.eye), 0),
+      .first_glass = uvec4(scene.first_glass.x, media_around(scene, camera.eye), key_of_points(view.seed, 2)),
       .irradiance = {}};
   std::ranges::copy(scene.irradiance, constants.irradiance);
   return constants;

@@ -46,8 +46,14 @@ float fraction(uint32_t bits) {
 
 }  // namespace
 
-ScrambledPoints::ScrambledPoints(const uvec2& pixel) {
-  for (uint32_t axis = 0; axis < 2; ++axis) seeds_[axis] = mix_bits(pixel.x + mix_bits(pixel.y + mix_bits(axis)));
+uint32_t key_of_points(uint32_t seed, uint32_t dimension) {
+  return mix_bits(dimension + mix_bits(seed));
+}
+
+ScrambledPoints::ScrambledPoints(const uvec2& pixel, uint32_t seed) {
+  for (uint32_t axis = 0; axis < 2; ++axis) {
+    seeds_[axis] = mix_bits(pixel.x + mix_bits(pixel.y + key_of_points(seed, axis)));
+  }
 }
 
 vec2 ScrambledPoints::at(uint32_t index) const {

@@ -9,14 +9,18 @@
 
 namespace promin {
 
+/// Returns the key from which the sample points of all pixels follow: of the first two dimensions (0 and 1), and of all
+/// further dimensions (2), which shaders/shade/samples.glsl computes.
+uint32_t key_of_points(uint32_t seed, uint32_t dimension);
+
 /// The sample points of a pixel if their number is not known in advance: the first two Sobol dimensions with Owen
 /// scrambling by a hash of the pixel's position (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). The first
 /// 2^m points are a (0, m, 2)-net, so a pixel that takes more samples keeps its earlier ones. Coordinates are odd
 /// multiples of 2^-24 in 0...1, computed by integer operations only.
 class ScrambledPoints {
  public:
-  /// Creates the points of the pixel at this position in the whole picture.
-  explicit ScrambledPoints(const uvec2& pixel);
+  /// Creates the points of the pixel at this position in the whole picture, for View::seed.
+  explicit ScrambledPoints(const uvec2& pixel, uint32_t seed = 0);
 
   vec2 at(uint32_t index) const;
 

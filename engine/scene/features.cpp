@@ -162,6 +162,7 @@ FeatureMask light_features(std::span<const Light> lights) {
     if (!light.is_on) continue;
     features |= feature_of(light.kind);
     if (falls_off(light)) features |= FEATURE_FALLOFF;
+    if (has_size(light)) features |= FEATURE_SAMPLED_LIGHT;
   }
   return features;
 }

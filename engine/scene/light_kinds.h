@@ -24,4 +24,10 @@ inline bool falls_off(const Light& light) {
   return has_place(light.kind) && light.attenuation == Attenuation::kInverseSquare;
 }
 
+/// Returns whether the light shines from more than one point or direction.
+inline bool has_size(const Light& light) {
+  if (has_place(light.kind)) return light.radius >= kLeastLightRadius;
+  return light.kind == LightKind::kDirectional && light.angle > 0.0F;
+}
+
 }  // namespace promin

@@ -90,7 +90,7 @@ void visit_named_members(Visitor& visitor, std::string_view names, Members&... m
 
 // clang-format off
 PROMIN_MEMBERS(Light, name, kind, position, direction, diffuse, specular, attenuation, range, inner_cone_angle,
-               outer_cone_angle, is_on)
+               outer_cone_angle, radius, angle, is_on)
 PROMIN_MEMBERS(TextureSlot, texture, uv_set, to_u, to_v)
 PROMIN_MEMBERS(Texture, image, wrap_u, wrap_v, is_magnified_linearly, is_minified_linearly, has_levels,
                are_levels_linear)
@@ -108,7 +108,8 @@ PROMIN_MEMBERS(MetallicRoughness, base_color, metallic, roughness, ior, specular
                iridescence_thickness_texture, anisotropy, anisotropy_rotation, anisotropy_texture)
 PROMIN_MEMBERS(Unlit, color, color_texture)
 PROMIN_MEMBERS(Material, name, model, emissive, emissive_texture, alpha_mode, alpha, alpha_cutoff, is_double_sided)
-PROMIN_MEMBERS(Camera, name, projection, eye, look, up, yfov, ymag, aspect_ratio, resolution, near)
+PROMIN_MEMBERS(Camera, name, projection, eye, look, up, yfov, ymag, aspect_ratio, resolution, near,
+               aperture_radius, focus_distance)
 PROMIN_MEMBERS(Studio, front)
 PROMIN_MEMBERS(GradientSky, top, horizon, bottom, top_curve, bottom_curve)
 PROMIN_MEMBERS(Panorama, image)
@@ -120,7 +121,7 @@ PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, display, max_samples)
 PROMIN_MEMBERS(PixelWindow, lo, hi)
 PROMIN_MEMBERS(RenderMode, debug_view, has_shadows)
 PROMIN_MEMBERS(View, camera, size, crop, samples_per_pixel, error_target, depth_kind, filter, filter_width, max_depth,
-               mode)
+               seed, mode)
 PROMIN_MEMBERS(Sphere, center, radius)
 PROMIN_MEMBERS(Plane, point, normal)
 PROMIN_MEMBERS(Cylinder, center, axis, half_height, radius, is_open)

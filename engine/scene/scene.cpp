@@ -131,7 +131,8 @@ uint32_t primitive_count(const Scene& scene, const Object& object) {
 
 bool shows_same(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.look == b.look && a.up == b.up && a.projection == b.projection && a.yfov == b.yfov &&
-         a.ymag == b.ymag && a.near == b.near;
+         a.ymag == b.ymag && a.near == b.near && a.aperture_radius == b.aperture_radius &&
+         a.focus_distance == b.focus_distance;
 }
 
 uint32_t default_max_depth(const Scene& scene) {
@@ -149,7 +150,7 @@ uint32_t default_max_depth(const Scene& scene) {
 
 bool shows_same(const View& a, const View& b) {
   return a.size == b.size && a.mode == b.mode && a.max_depth == b.max_depth && a.filter == b.filter &&
-         a.filter_width == b.filter_width && shows_same(a.camera, b.camera);
+         a.filter_width == b.filter_width && a.seed == b.seed && shows_same(a.camera, b.camera);
 }
 
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment) {

@@ -260,6 +260,11 @@ class Validation {
       check("scene.light.cone", light.kind != LightKind::kSpot || are_angles,
             "the cone's angles are out of range, or the inner angle is not less than the outer angle",
             place + ".outer_cone_angle", "use 0 <= inner < outer <= pi/2");
+      check("scene.light.size", light.radius >= 0.0F && static_cast<double>(light.radius) <= kMaxCoordinate,
+            "the radius is negative, beyond 1e15 or not a number", place + ".radius", "use a number from 0 to 1e15");
+      check("scene.light.size", light.angle >= 0.0F && light.angle <= 3.1415927F,
+            "the angle is negative, beyond pi or not a number", place + ".angle",
+            "use an angle from 0 to pi, in radians");
     }
   }
 
@@ -351,6 +356,15 @@ class Validation {
           place + ".ymag", "use a positive number");
     check("scene.camera.range", camera.near >= 0.0F && std::isfinite(camera.near), "the near plane lies behind the eye",
           place + ".near", "use a distance of 0 or more");
+    check("scene.camera.lens",
+          camera.aperture_radius >= 0.0F && static_cast<double>(camera.aperture_radius) <= kMaxCoordinate,
+          "the lens has a radius that is negative, beyond 1e15 or not a number", place + ".aperture_radius",
+          "use a number from 0 to 1e15");
+    const bool is_focused =
+        camera.focus_distance >= kLeastFocusDistance && static_cast<double>(camera.focus_distance) <= kMaxCoordinate;
+    check("scene.camera.lens", !(camera.aperture_radius > 0.0F) || is_focused,
+          "the lens has no plane in focus in front of it", place + ".focus_distance",
+          "use a distance from 1e-15 to 1e15");
   }
 
   void check_view(const View& view) {

@@ -42,6 +42,18 @@ struct Camera {
   uvec2 resolution{0};
   /// Distance of the near plane in world units, >= 0. Nothing nearer than this plane is drawn.
   float near = 0.0F;
+  /// Radius of the lens in world units, 0 to 1e15; 0 for a camera without a lens, which shows everything sharp.
+  float aperture_radius = 0.0F;
+  /// Distance of the plane in focus from the eye, along `look`, in world units. It must be positive if there is a lens.
+  float focus_distance = 0.0F;
 };
+
+/// The smallest distance of a plane in focus.
+inline constexpr float kLeastFocusDistance = 1e-15F;
+
+/// Returns whether the camera shows surfaces sharp only at its distance of focus.
+inline bool has_lens(const Camera& camera) {
+  return camera.aperture_radius > 0.0F;
+}
 
 }  // namespace promin

@@ -55,9 +55,18 @@ struct Light {
   /// Half the angle of the cone outside which a spot light contributes nothing, in radians, inner_cone_angle <
   /// outer_cone_angle <= pi / 2.
   float outer_cone_angle = 0.785398163F;
+  /// Radius of point and spot lights in world units, 0 to 1e15. A light with a radius is a ball that shines evenly and
+  /// casts soft shadows; it is visible only as light. A radius below kLeastLightRadius counts as 0.
+  float radius = 0.0F;
+  /// The full angle of directional lights in radians, 0 to pi: a disc in the sky that shines evenly and casts soft
+  /// shadows, as the sun does (0.0093).
+  float angle = 0.0F;
   /// True if the light is on. A light that is off keeps its index, costs nothing and contributes nothing.
   bool is_on = true;
 };
+
+/// The smallest radius of a light, because fp32 cannot store the square of a smaller one.
+inline constexpr float kLeastLightRadius = 1e-18F;
 
 /// Returns the light for scenes without lights: a headlight with a diffuse and a specular power of 1.
 PROMIN_EXPORT Light make_headlight();

@@ -77,6 +77,8 @@ struct RendererOptions {
   /// The mode of the first pictures. The constructor compiles the pipeline of this mode. Pipelines of other modes are
   /// compiled at their first use.
   RenderMode mode = {};
+  /// True if the cameras of the first pictures have a lens (Camera::aperture_radius), which needs another pipeline.
+  bool has_lens = false;
   /// True if the first pictures have an error target. Pictures with and without an error target need different
   /// pipelines. render_within() starts without an error target.
   bool has_error_target = false;

@@ -126,6 +126,9 @@ struct View {
   float filter_width = 1.0F;
   /// Largest number of bounces, 0...kMaxDepth; 0 traces neither mirror nor refracted rays. See default_max_depth.
   uint32_t max_depth = 5;
+  /// The seed of the sample points that depend on the pixel: of lights with a size, and of pictures with an error
+  /// target. Each seed gives other noise.
+  uint32_t seed = 0;
   /// The mode. If it differs from the mode of the previous picture, promin first compiles the pipeline of this mode.
   RenderMode mode;
 };

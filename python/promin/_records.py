@@ -47,6 +47,11 @@ class Light:
     """Half the angle of the cone in which a spot light has its full power."""
     outer_cone_angle: float = 0.785398163
     """Half the angle of the cone outside which a spot light contributes nothing, at most pi / 2."""
+    radius: float = 0.0
+    """Radius of point and spot lights in world units. A light with a radius is a ball with soft shadows."""
+    angle: float = 0.0
+    """The full angle of directional lights in radians, at most pi. A light with an angle is a disc in the sky with soft
+    shadows."""
     is_on: bool = True
     """True if the light is on. A light that is off keeps its index."""
     name: str = ""
@@ -218,6 +223,10 @@ class Camera:
     """Half the height of an orthographic camera's view, in world units."""
     near: float = 0.0
     """Distance of the near plane in world units. Nothing nearer than this plane is drawn."""
+    aperture_radius: float = 0.0
+    """Radius of the lens in world units; 0 for a camera without a lens, which shows everything sharp."""
+    focus_distance: float = 0.0
+    """Distance of the plane in focus from the eye, along `look`, in world units. It is positive if there is a lens."""
     aspect_ratio: float = 0.0
     """Ratio of width to height that the scene's file requests; 0 if the file requests no ratio."""
     resolution: tuple[int, int] = (0, 0)

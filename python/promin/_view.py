@@ -51,6 +51,9 @@ class View:
     """The quality, in place of `spp` and `target_error`: "draft", "normal", "high" or "best"."""
     max_depth: int | None = None
     """Largest number of bounces; None: 5, or 8 with glass."""
+    seed: int = 0
+    """The seed of the points of lights with a size, and of `target_error`, 0 to 4294967295. Each seed gives other
+    noise."""
     target_error: float | None = None
     """The target error, in place of `spp`. Each pixel takes samples until its estimated error is at most this
     (docs/model.md, "Error of a pixel")."""
@@ -266,6 +269,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
         "filter": view.filter,
         "filter_width": width,
         "max_depth": default_max_depth if view.max_depth is None else view.max_depth,
+        "seed": view.seed,
         "mode": mode_of(view),
     }
 

@@ -10,10 +10,28 @@ uvec2 pixel_in_block(uint lane) {
   return uvec2(x, y);
 }
 
+// Returns the ray through a place in a pixel and the chosen point of the lens (choose_sample). All rays of a place meet
+// in the plane in focus. t has the same unit as without a lens.
+Ray lens_ray(uvec2 pixel, vec2 place) {
+  precise vec2 from_center = (vec2(pixel) - CAMERA.film_center.xy) + place;
+  precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;
+  vec3 disc = point_on_disc(sample_pair_point());
+  precise vec3 offset = CAMERA.film_center.z * (disc.x * CAMERA.right.xyz + disc.y * CAMERA.up.xyz);
+  precise vec3 turned = CAMERA.look.xyz - CAMERA.film_center.w * offset;
+  if (!is_orthographic()) {
+    precise vec3 direction = turned + on_film;
+    precise vec3 origin = CAMERA.eye.xyz + offset;
+    return make_ray(origin, direction, CAMERA.eye.w, INFINITY);
+  }
+  precise vec3 origin = (CAMERA.eye.xyz + on_film) + offset;
+  return make_ray(origin, turned, CAMERA.eye.w, INFINITY);
+}
+
 // Returns the ray through a place in a pixel. Its direction is D = V - O, where V lies on the viewport at distance 1
 // along `look`. Therefore t is in units of the viewport's distance, and points beyond the near plane have t > near. D
 // is not normalised.
 Ray ray_through(uvec2 pixel, vec2 place) {
+  if (has(FEATURE_LENS)) return lens_ray(pixel, place);
   precise vec2 from_center = (vec2(pixel) - CAMERA.film_center.xy) + place;
   precise vec3 on_film = from_center.x * CAMERA.right.xyz - from_center.y * CAMERA.up.xyz;
   if (!is_orthographic()) {

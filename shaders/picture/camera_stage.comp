@@ -165,7 +165,7 @@ void arrive() {
 }
 
 // Computes the contributions of one light source, and the packet of the shadow rays for it.
-void aim_at_source(LightRecord light) {
+void aim_at_source(LightRecord light, uint source) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
     contributions[i] = vec3(0.0);
     packet[i].tmax = -1.0;
@@ -176,6 +176,7 @@ void aim_at_source(LightRecord light) {
     // Points and rays are copied here and elsewhere, because glslang 12 fails if packets of points are passed that
     // contain packets.
     ShadingPoint point = points[i];
+    if (has(FEATURE_SAMPLED_LIGHT)) choose_sample(sample_ids[i], FIRST_LIGHT_PAIR + source);
     LightSample sampled = sample_light(light, point.position);
     contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
     if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
@@ -247,6 +248,7 @@ uint put_path(Path path) {
   pixels[record_of_weight(number, 0u)].xyz = floatBitsToUint(path.weight);
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
   store_part_of_ray(path);
+  if (has(FEATURE_SAMPLED_LIGHT)) pixels[record + RECORD_SAMPLE].xy = uvec2(sample_key, sample_number);
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
   words[path_list(turn) + number] = number;
   return number;
@@ -327,10 +329,12 @@ void leave_one_by_one() {
     vec3 own = own_lights[0];
     bool is_on_surface = is_lit[0];
     bool takes_part = is_inside[0];
+    if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[0], 0u);
     [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
       if (i != at) continue;
       path = paths[i];
       point = points[i];
+      if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[i], 0u);
       light = seen[i];
       own = own_lights[i];
       is_on_surface = is_lit[i];
@@ -350,6 +354,7 @@ void leave() {
     if (!is_inside[i]) continue;
     Path path = paths[i];
     ShadingPoint point = points[i];
+    if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[i], 0u);
     leave_pixel(path, point, seen[i], own_lights[i], is_lit[i]);
   }
 }
@@ -365,7 +370,7 @@ void trace_pixels() {
   bool aims = false;
   do {
     do {
-      if (aims) aim_at_source(load_light(VIEW.first_index.y + source));
+      if (aims) aim_at_source(load_light(VIEW.first_index.y + source), source);
       aims = false;
       // If surfaces blend, shadow rays also need the nearest hit.
       trace_packet(!is_first_turn && PASSES == 0u);

@@ -67,9 +67,16 @@ vec3 add_contributions(uint path, vec3 seen) {
   return seen;
 }
 
+// Chooses the sample of a light source of the current bounce. Each bounce has a pair of dimensions for each source.
+void choose_source_sample(uint path, uint source) {
+  uvec2 id = floatBitsToUint(load_record(record_of_path(path) + RECORD_SAMPLE).xy);
+  choose_sample(id, FIRST_LIGHT_PAIR + (turn / turns_of_bounce() + 1u) * source_count() + source);
+}
+
 // Stores the unblocked contribution of a light source of this turn, and requests the source's shadow ray.
 void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
+  if (has(FEATURE_SAMPLED_LIGHT)) choose_source_sample(path, first_source(turn) + source);
   LightSample sampled = sample_light(light, point.position);
   vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
   store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
@@ -82,7 +89,13 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
       pixels[record_of_source(path, source) + RECORD_CONTRIBUTION].w = floatBitsToUint(is_behind ? 1.0 : 0.0);
     }
     vec3 origin = is_behind ? shadow_origin_behind(point) : shadow_origin(point);
-    asked = ask(LIST_OF_SHADOW_RAYS, bin_of(origin, direction_to_source(origin, light, sampled)));
+    vec3 to_source = direction_to_source(origin, light, sampled);
+    if (has(FEATURE_SAMPLED_LIGHT)) {
+      Ray ray = sampled_shadow_ray(point, origin, light, sampled);
+      pixels[record_of_source(path, source) + RECORD_WAY] = floatBitsToUint(vec4(ray.direction, ray.tmax));
+      to_source = ray.direction;
+    }
+    asked = ask(LIST_OF_SHADOW_RAYS, bin_of(origin, to_source));
     ++shadow_ray_count;
   }
   words[ask_of_source(path, source)] = asked;
@@ -109,11 +122,12 @@ void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
 }
 
 // Adds all light sources to the radiance, if no object casts shadows.
-vec3 add_unshadowed(ShadingPoint point, vec3 to_eye, vec3 seen) {
+vec3 add_unshadowed(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
   uint source = 0u;
   do {
     if (source < source_count()) {
       LightRecord light = load_light(VIEW.first_index.y + source);
+      if (has(FEATURE_SAMPLED_LIGHT)) choose_source_sample(path, source);
       LightSample sampled = sample_light(light, point.position);
       vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
       precise vec3 sum = seen + contribution;
@@ -268,7 +282,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   if (has(FEATURE_SHADOWS)) {
     ask_sources(number, point, -path.direction);
   } else {
-    seen = add_unshadowed(point, -path.direction, seen);
+    seen = add_unshadowed(number, point, -path.direction, seen);
   }
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   store_vector(record_of_path(number) + RECORD_SEEN, seen);

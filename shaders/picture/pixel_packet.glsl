@@ -12,12 +12,19 @@ ShadingPoint points[PACKET_SIZE];
 vec3 seen[PACKET_SIZE];  // radiance from the hit so far
 vec3 own_lights[PACKET_SIZE];  // with FEATURE_LIGHT_AOVS: the part of it that no source contributes
 vec3 contributions[PACKET_SIZE];
+uvec2 sample_ids[PACKET_SIZE];  // with HAS_SAMPLE_POINTS: the arguments of choose_sample()
 // The following arrays are for shadow rays that can pass through surfaces:
 LightWay ways[PACKET_SIZE];
 Hit blockers[PACKET_SIZE];  // the last hit of each ray
 uint pass_count = 0u;
 uint refraction_count = 0u;
 uint hit_count = 0u;
+
+// Returns the id (choose_sample) of a sample of a list.
+uvec2 id_of_listed(uint index) {
+  uvec4 listed = pixels[index];
+  return uvec2(key_of_pixel(uvec2(listed.z & 0xFFFFu, listed.z >> 16)), listed.w);
+}
 
 // Prepares the pixels of the packet that lie in the window, and their camera rays. Returns false if no pixel lies in
 // the window.
@@ -34,8 +41,12 @@ bool begin_packet() {
       // The index of lanes beyond the last block is limited to pixels of the film.
       index = min(first_block() * (BLOCK_SIZE * BLOCK_SIZE) + place + i, window_pixel_count() - 1u);
       is_inside[i] = block < end_block() && pixels[index].z != NO_LISTED_SAMPLE;
+      if (HAS_SAMPLE_POINTS != 0u) sample_ids[i] = id_of_listed(index);
+      if (has(FEATURE_LENS)) choose_sample(sample_ids[i], 0u);
       packet[i] = listed_ray(index);
     } else {
+      if (HAS_SAMPLE_POINTS != 0u) sample_ids[i] = uvec2(key_of_pixel(window_corner() + pixel), sample_at_hand());
+      if (has(FEATURE_LENS)) choose_sample(sample_ids[i], 0u);
       packet[i] = camera_ray(pixel);
     }
     is_any_inside = is_any_inside || is_inside[i];

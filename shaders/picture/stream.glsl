@@ -22,6 +22,8 @@ const uint RECORD_CONTRIBUTION = 0u;  // for each source: xyz = its unblocked co
 // With FEATURE_DIFFUSE_TRANSMISSION a path has one more record. w of RECORD_CONTRIBUTION is 1 if the shadow ray starts
 // there:
 const uint RECORD_SHADOW_BEHIND = 7u;  // xyz = origin of shadow rays that start behind the surface
+// With FEATURE_SAMPLED_LIGHT each source has one more record, RECORD_WAY, and each path has RECORD_SAMPLE (below).
+const uint RECORD_WAY = 1u;  // xyz = direction of the source's shadow ray; w = its tmax
 // With FEATURE_GLASS there are further records behind these, and 4 for each ray that waits (tree.glsl):
 const uint RECORD_MEDIA = 0u;         // x, y = media that contain the ray; z = rays so far; bit HAS_SEEN_SHIFT:
                                       // RECORD_SEEN is in use; w = waiting rays, and the kind of the ray
@@ -53,14 +55,17 @@ uint most_paths;
 uint sources_of_turn;
 uint turn;
 uint records_of_path;
-const uint PATH_RECORDS = STREAM_PATH_RECORDS + STREAM_BEHIND_RECORDS * FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION);
+const uint PATH_RECORDS = STREAM_PATH_RECORDS + STREAM_BEHIND_RECORDS * FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION) +
+                          STREAM_SAMPLE_RECORDS * FEATURE_BIT(FEATURE_SAMPLED_LIGHT);
+const uint RECORD_SAMPLE = PATH_RECORDS - 1u;  // x, y = the sample's key and number (samples.glsl)
+const uint SOURCE_RECORDS = STREAM_SOURCE_RECORDS + STREAM_SAMPLE_RECORDS * FEATURE_BIT(FEATURE_SAMPLED_LIGHT);
 void begin_stream() {
   first_record = stream.place.x;
   most_paths = stream.place.y;
   sources_of_turn = stream.place.z;
   turn = stream.turn.x;
   records_of_path = has(FEATURE_GLASS) ? stream.shadow_rays.y
-                                       : PATH_RECORDS + STREAM_SOURCE_RECORDS * sources_of_turn;
+                                       : PATH_RECORDS + SOURCE_RECORDS * sources_of_turn;
 }
 
 uint paths_of_turn(uint which) { return (which & 1u) == 0u ? stream.turn.y : stream.turn.z; }
@@ -68,7 +73,7 @@ uint paths_with_ray() { return stream.turn.w; }
 
 uint record_of_path(uint path) { return first_record + records_of_path * path; }
 uint record_of_source(uint path, uint source) {
-  return record_of_path(path) + PATH_RECORDS + STREAM_SOURCE_RECORDS * source;
+  return record_of_path(path) + PATH_RECORDS + SOURCE_RECORDS * source;
 }
 uint record_of_glass(uint path) { return record_of_source(path, sources_of_turn); }
 uint record_of_waiting(uint path, uint place) {

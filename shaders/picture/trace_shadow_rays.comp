@@ -68,7 +68,13 @@ void main() {
     bool is_behind = load_record(record_of_source(path, source) + RECORD_CONTRIBUTION).w != 0.0;
     origin = is_behind ? RECORD_SHADOW_BEHIND : origin;
   }
-  Ray ray = shadow_ray(load_record(record_of_path(path) + origin).xyz, light);
+  Ray ray;
+  if (has(FEATURE_SAMPLED_LIGHT)) {
+    vec4 way = load_record(record_of_source(path, source) + RECORD_WAY);
+    ray = make_ray(load_record(record_of_path(path) + origin).xyz, way.xyz, 0.0, way.w);
+  } else {
+    ray = shadow_ray(load_record(record_of_path(path) + origin).xyz, light);
+  }
   step_counts = uvec2(0u);
   packet[0] = ray;
   Hit blocker;

@@ -15,8 +15,26 @@ struct LightSample {
 #include "shade/lights/directional.glsl"
 #include "shade/lights/spot.glsl"
 #include "shade/lights/headlight.glsl"
+#include "shade/samples.glsl"
+#include "shade/lights/ball.glsl"
+#include "shade/lights/sun.glsl"
+
+// Some kinds of lights may have a size: with FEATURE_SAMPLED_LIGHT, the bits of LightRecord::kind.z.
+const uint BALL_KINDS = FEATURE_BIT(FEATURE_POINT_LIGHTS) | FEATURE_BIT(FEATURE_SPOT_LIGHTS);
+
+// Returns the chosen point (choose_sample) of a light with a size.
+LightSample sample_sized_light(LightRecord light, vec3 position) {
+  LightSample sampled;
+  if (BALL_KINDS != 0u && (!has(FEATURE_DIRECTIONAL_LIGHTS) || light.kind.x != LIGHT_DIRECTIONAL)) {
+    sampled = sample_ball(light, position);
+  } else {
+    sampled = sample_sun(light);
+  }
+  return sampled;
+}
 
 LightSample sample_light(LightRecord light, vec3 position) {
+  if (has(FEATURE_SAMPLED_LIGHT) && light.kind.z != 0u) return sample_sized_light(light, position);
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)            \
   if (has(FEATURE_##FEATURE) && (LIGHT_KIND_COUNT == 1u || light.kind.x == NUMBER)) { \
     return sample_##PREFIX(light, position);                                          \

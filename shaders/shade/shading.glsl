@@ -449,7 +449,21 @@ vec3 shadow_origin_behind(ShadingPoint point) {
   return lift_off(point.position, -point.geometric_normal, point.lift);
 }
 
+// With FEATURE_SAMPLED_LIGHT, returns the shadow ray to the chosen point of a light. For a light without size it has
+// the same bits as shadow_ray(origin, light).
+Ray sampled_shadow_ray(ShadingPoint point, vec3 origin, LightRecord light, LightSample sampled) {
+  precise vec3 to_point = sampled.direction + (point.position - origin);
+  precise vec3 to_place = light.position.xyz - origin;
+  vec3 to_source = light.kind.z != 0u ? to_point : to_place;
+  return make_ray(origin, sampled.tmax < INFINITY ? to_source : sampled.direction, 0.0, sampled.tmax);
+}
+
 Ray shadow_ray(ShadingPoint point, LightRecord light, LightSample sampled) {
+  if (has(FEATURE_SAMPLED_LIGHT)) {
+    bool is_behind = has(FEATURE_DIFFUSE_TRANSMISSION) && lies_behind(point, sampled.direction);
+    vec3 origin = is_behind ? shadow_origin_behind(point) : shadow_origin(point);
+    return sampled_shadow_ray(point, origin, light, sampled);
+  }
   if (has(FEATURE_DIFFUSE_TRANSMISSION) && lies_behind(point, sampled.direction)) {
     return shadow_ray(shadow_origin_behind(point), light);
   }

@@ -223,7 +223,9 @@ struct LightRecord {
   vec4 direction;  // the direction in which the light travels; w = cosine of a spot light's outer angle
   vec4 diffuse;    // w = 1 / max(0.001, cos inner - cos outer)
   vec4 specular;
-  uvec4 kind;  // x = LIGHT_*, y = 1 if the power decreases with distance
+  uvec4 kind;  // x = LIGHT_*, y = 1 if the power decreases with distance; z = bits of the size: the radius of a
+               // point or spot light, the squared sine of half the angle of a directional light; 0 for a light without
+               // size
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 
@@ -242,13 +244,15 @@ struct ViewConstants {
   vec4 backdrop_rise;    // upward vector of length 1 / (height of the picture at distance 1) (orthographic: in the
                          // world); w = 1 for an orthographic camera
   vec4 tree_bounds;      // center and max-norm radius of the tree's primitives
-  vec4 film_center;      // x, y = half the picture's size in pixels
-  uvec4 first_index;     // first index in its view of shading data: x = materials, y = lights, z = normals, w = colours
+  vec4 film_center;     // x, y = half the picture's size in pixels; z = radius of the lens in units of `right`; w = 1 /
+                        // distance of the plane in focus
+  uvec4 first_index;    // first index in its view of shading data: x = materials, y = lights, z = normals, w = colours
   uvec4 first_lookup;   // x = table of lobes, y = sky, as texels of shading data; z = side of the sky's sharpest level;
                         // w = extensions, as ExtensionRecords
   uvec4 first_texture;  // x = texture coordinates, y = tangents, z = slots, as texels of shading data; w = words of
                         // images
-  uvec4 first_glass;    // x = GlassRecords; y, z = the media that contain the camera (glass.glsl)
+  uvec4 first_glass;    // x = GlassRecords; y, z = the media that contain the camera (glass.glsl); w = key of the
+                        // picture's sample points (samples.glsl)
   vec4 irradiance[9];   // coefficients of the sky's light divided by pi (environment.glsl)
 };
 
@@ -287,6 +291,8 @@ LAYOUT_CONSTANT STREAM_PATH_RECORDS = 7u;
 LAYOUT_CONSTANT STREAM_SOURCE_RECORDS = 1u;
 // Number of further records of a path with FEATURE_DIFFUSE_TRANSMISSION.
 LAYOUT_CONSTANT STREAM_BEHIND_RECORDS = 1u;
+// Number of further records of a path, and of each source of a turn, with FEATURE_SAMPLED_LIGHT.
+LAYOUT_CONSTANT STREAM_SAMPLE_RECORDS = 1u;
 // Number of further records of a path with FEATURE_GLASS, and number of further records for each waiting ray.
 LAYOUT_CONSTANT STREAM_GLASS_RECORDS = 2u;
 LAYOUT_CONSTANT STREAM_WAITING_RECORDS = 4u;
@@ -328,8 +334,8 @@ LAYOUT_CONSTANT NO_ORDER = 0xFFFFFFFFu;
 // the ray leaves a solid, otherwise 0.
 
 // With FEATURE_LISTED_SAMPLES each pixel of the film is a sample of a pixel of the picture. Before the sample is
-// traced, x and y of its record are the bits of its position in the pixel, and z is the pixel (column, and row above 16
-// bits) or NO_LISTED_SAMPLE. Afterwards xyz is the sample's radiance.
+// traced, x and y of its record are the bits of its position in the pixel, z is the pixel (column, and row above 16
+// bits) or NO_LISTED_SAMPLE, and w is the sample's number in its pixel. Afterwards xyz is the sample's radiance.
 LAYOUT_CONSTANT NO_LISTED_SAMPLE = 0xFFFFFFFFu;
 
 // The records of a film. The records of one kind are stored together for all pixels. The first record has the sum over

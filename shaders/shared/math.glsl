@@ -63,6 +63,17 @@ precise float power(float x, float y) {
   return power_of_two(z);
 }
 
+// Return the sine and the cosine of an angle of at most pi / 4, accurate to a few u. GLSL's own functions may have an
+// absolute error of 2^-11.
+precise float short_sine(float x) {
+  precise float x2 = x * x;
+  return x + x * x2 * (-0.166666667 + x2 * (0.00833333333 + x2 * (-0.000198412698 + x2 * 2.75573192e-6)));
+}
+precise float short_cosine(float x) {
+  precise float x2 = x * x;
+  return 1.0 + x2 * (-0.5 + x2 * (0.0416666667 + x2 * (-0.00138888889 + x2 * 2.48015873e-5)));
+}
+
 // Returns -x if `other` is negative, else x.
 float times_sign_of(float x, float other) {
   return uintBitsToFloat(floatBitsToUint(x) ^ (floatBitsToUint(other) & 0x80000000u));

@@ -112,6 +112,39 @@ std::vector<SpecializationConstant> constants_of(uint64_t features, uint32_t pac
 
 class KernelTest : public testing::TestWithParam<Kernel> {};
 
+// Scenes whose lights have no size, and cameras without a lens, do not pay for sample points: no kernel has a constant
+// of their hash.
+TEST(KernelsTest, OnlyFeaturesWithSamplePointsHaveTheirHash) {
+  constexpr uint32_t kOfHash = 0xB82F1E52;
+  constexpr uint64_t kSamples = uint64_t{1} << 55 | uint64_t{1} << 39;
+  static_assert(static_cast<uint32_t>(layout::FEATURE_SAMPLED_LIGHT) == 55);
+  static_assert(static_cast<uint32_t>(layout::FEATURE_LENS) == 39);
+  const auto has_hash = [](std::span<const uint32_t> spirv, uint64_t mask) {
+    const std::vector<uint32_t> module = specialize(spirv, constants_of(mask, 1, 0));
+    return std::ranges::count(module, kOfHash) > 0;
+  };
+  for (const auto& spirv :
+       {std::span<const uint32_t>(k_camera_stage_spirv), std::span<const uint32_t>(k_follow_paths_spirv)}) {
+    EXPECT_TRUE(has_hash(spirv, ~uint64_t{0}));
+    EXPECT_FALSE(has_hash(spirv, ~kSamples));
+  }
+  EXPECT_FALSE(has_hash(k_trace_shadow_rays_spirv, ~uint64_t{0}));
+}
+
+// Variables of code that is never reached are not left in a module.
+TEST(KernelsTest, VariablesWithoutUseAreLeftOut) {
+  const std::vector<uint32_t> module = specialize(k_camera_stage_spirv, constants_of(1, 1, 0));
+  size_t variables = 0;
+  size_t in_functions = 0;
+  for (size_t i = 5; i < module.size(); i += module[i] >> 16) {
+    if ((module[i] & 0xFFFFU) != 59U || module[i + 3] != 7U) continue;
+    ++variables;
+    in_functions += static_cast<size_t>(std::ranges::count(module, module[i + 2])) > 1 ? 1 : 0;
+  }
+  EXPECT_GT(variables, 0U);
+  EXPECT_EQ(in_functions, variables);
+}
+
 TEST_P(KernelTest, WhatIsLeftIsValidWithEachFeature) {
   std::set<std::vector<uint32_t>> modules;
   const auto add = [&](uint64_t mask, uint32_t packet_size, uint32_t any) {

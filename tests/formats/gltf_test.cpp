@@ -836,6 +836,36 @@ TEST_F(GltfTest, ClassicLightsDoNotFallOffUnlessToldTo) {
   EXPECT_EQ(light.specular, vec3(4, 5, 6));
 }
 
+TEST_F(GltfTest, LightsHaveSizes) {
+  const auto sized = [&](const char* type, const json& extension) {
+    return load(
+        light_gltf({{"type", type}, {"extensions", {{"PROMIN_lights_size", extension}}}}, {{"scale", {3, 3, 3}}}));
+  };
+  EXPECT_EQ(sized("point", {{"radius", 0.25}}).lights.at(0).radius, 0.25F) << "a node's scale does not matter";
+  EXPECT_EQ(sized("spot", {{"radius", 2}}).lights.at(0).radius, 2.0F);
+  EXPECT_EQ(sized("directional", {{"angle", 0.5}}).lights.at(0).angle, 0.5F);
+  EXPECT_EQ(sized("point", json::object()).lights.at(0).radius, 0.0F);
+  const LoadedScene sun = sized("directional", {{"radius", 1}});
+  EXPECT_EQ(sun.lights.at(0).radius, 0.0F);
+  EXPECT_THAT(sun.warnings, ElementsAre(HasSubstr("is directional; its radius is ignored")));
+  EXPECT_THAT(sized("point", {{"angle", 1}}).warnings, ElementsAre(HasSubstr("its angle is ignored")));
+}
+
+// Sizes out of range become the nearest that a light can have, with a warning.
+TEST_F(GltfTest, WrongSizesOfLightsAreRepaired) {
+  const auto sized = [&](const char* type, const json& extension) {
+    return load(light_gltf({{"type", type}, {"extensions", {{"PROMIN_lights_size", extension}}}}));
+  };
+  const LoadedScene ball = sized("point", {{"radius", -1}});
+  EXPECT_EQ(ball.lights.at(0).radius, 0.0F);
+  EXPECT_THAT(ball.warnings, ElementsAre(HasSubstr("PROMIN_lights_size.radius")));
+  const LoadedScene sun = sized("directional", {{"angle", 7}});
+  EXPECT_FLOAT_EQ(sun.lights.at(0).angle, std::numbers::pi_v<float>);
+  EXPECT_THAT(sun.warnings, ElementsAre(HasSubstr("PROMIN_lights_size.angle")));
+  const LoadedScene word = sized("point", {{"radius", "large"}});
+  EXPECT_THAT(word.warnings, ElementsAre(HasSubstr("PROMIN_lights_size.radius")));
+}
+
 TEST_F(GltfTest, ThePlainSkyIsBackgroundAndAmbientLight) {
   GltfBuilder gltf = triangle_gltf();
   const json plain = {{"color", {0.5, 0.5, 1}}};

@@ -147,6 +147,8 @@ std::vector<MessageCase> cases_of_scenes() {
       spoil("scene.light.direction", [](Scene& s) { s.lights[0].direction = vec3(0, 0, 2); }),
       spoil("scene.light.range", [](Scene& s) { s.lights[0].range = kNan; }),
       spoil("scene.light.cone", [](Scene& s) { s.lights[0].inner_cone_angle = 1; }),
+      spoil("scene.light.size", [](Scene& s) { s.lights[0].radius = -1; }),
+      spoil("scene.light.size", [](Scene& s) { s.lights[0].angle = 4; }),
       spoil("scene.panorama.missing", [](Scene& s) { s.environment.sky = Panorama(); }),
       spoil("scene.panorama.size",
             [](Scene& s) {

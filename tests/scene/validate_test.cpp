@@ -168,6 +168,12 @@ TEST(ValidateTest, EveryFaultOfAViewIsToldWithItsPlace) {
       {"view.camera", [](View& v) { v.camera.look = vec3(0, 0, -2); }},
       {"view.camera.yfov", [](View& v) { v.camera.yfov = 0; }},
       {"view.camera.near", [](View& v) { v.camera.near = kNan; }},
+      {"view.camera.aperture_radius",
+       [](View& v) {
+         v.camera.aperture_radius = kNan;
+         v.camera.focus_distance = 1;
+       }},
+      {"view.camera.focus_distance", [](View& v) { v.camera.aperture_radius = 1; }},
       {"view.size", [](View& v) { v.size.y = 0; }},
       {"view.size", [](View& v) { v.size = uvec2(1U << 30); }},
       {"view.samples_per_pixel", [](View& v) { v.samples_per_pixel = 0; }},

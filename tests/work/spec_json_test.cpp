@@ -79,6 +79,7 @@ const std::pair<std::vector<std::string>, std::pair<const char*, json>> kOptions
     {{"--filter", "tent"}, {"filter", "tent"}},
     {{"--filter-width", "0.1"}, {"filter_width", 0.1}},
     {{"--max-depth", "0"}, {"max_depth", 0}},
+    {{"--seed", "4294967295"}, {"seed", 4294967295}},
     {{"--shading", "normals"}, {"shading", "normals"}},
     {{"--no-shadows"}, {"no_shadows", true}},
     {{"--lights-off", "2,0,2"}, {"lights_off", {0, 2}}},

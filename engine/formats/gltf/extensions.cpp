@@ -49,6 +49,7 @@ constexpr std::string_view kKnown[] = {
     "KHR_texture_transform",
     "OMI_environment_sky",
     "PROMIN_lights_phong",
+    "PROMIN_lights_size",
     "PROMIN_materials_phong",
     "PROMIN_mesh_primitive_implicit_shape",
 };

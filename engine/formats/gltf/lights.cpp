@@ -63,6 +63,23 @@ void read_power(const json& source, const std::string& title, LightLink& link, L
   }
 }
 
+/// Reads the size of a light, in metres and radians; the node's scale does not change it.
+void read_size(const json& source, const std::string& title, Light& light, LoadReport& report) {
+  const json* size = find_extension(source, "PROMIN_lights_size");
+  if (size == nullptr) return;
+  const bool is_directional = light.kind == LightKind::kDirectional;
+  const char* unused = is_directional ? "radius" : "angle";
+  if (size->contains(unused)) {
+    report.warn("light " + title + " is " + (is_directional ? "directional" : "not directional") + "; its " + unused +
+                " is ignored");
+  }
+  if (is_directional) {
+    light.angle = static_cast<float>(size->value("angle", 0.0));
+  } else {
+    light.radius = static_cast<float>(size->value("radius", 0.0));
+  }
+}
+
 GradientSky gradient_of(const json& source) {
   GradientSky sky;
   sky.top = vec3(vec3_of(source, "topColor", dvec3(0.0)));
@@ -156,7 +173,9 @@ std::optional<LightLink> read_gltf_light(const GltfDocument& document, const Pla
     return std::nullopt;
   }
   if (light.kind == LightKind::kSpot) read_cone(source, place, light, report);
-  read_power(source, title_of(extension, "lights", index), result, report);
+  const std::string title = title_of(extension, "lights", index);
+  read_power(source, title, result, report);
+  read_size(source, title, light, report);
   return result;
 }
 

@@ -294,6 +294,9 @@ constexpr JsonRule kRules[] = {
     choice(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong.attenuation", "none|inverse_square"),
     color(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong.diffuseColor"),
     color(PROMIN_LIGHTS "[].extensions.PROMIN_lights_phong.specularColor"),
+    object(PROMIN_LIGHTS "[].extensions.PROMIN_lights_size"),
+    length_or_zero(PROMIN_LIGHTS "[].extensions.PROMIN_lights_size.radius"),
+    number(PROMIN_LIGHTS "[].extensions.PROMIN_lights_size.angle", 0.0, kPi),
 
     index("scenes[].extensions.OMI_environment_sky.sky", PROMIN_SKIES),
     needed(array(PROMIN_SKIES)),

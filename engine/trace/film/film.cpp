@@ -138,7 +138,7 @@ void Film::put_list(std::span<const ListedSample> samples) {
     for (size_t i = begin; i < end; ++i) {
       const ListedSample& sample = samples[i];
       list_records_[i] = uvec4(std::bit_cast<uint32_t>(sample.place.x), std::bit_cast<uint32_t>(sample.place.y),
-                               sample.pixel.x | sample.pixel.y << 16, 0);
+                               sample.pixel.x | sample.pixel.y << 16, sample.number);
     }
   });
   buffer_->write(std::as_bytes(std::span(list_records_)), kPixelsOffset);

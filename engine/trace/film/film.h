@@ -91,6 +91,9 @@ class Film {
   /// kernel.
   std::optional<gpu::KernelSource> side_kernel() const;
 
+  /// Returns whether samples choose points of lights or of the lens.
+  bool samples_points() const { return features_.has_any(layout::FEATURE_SAMPLED_LIGHT | layout::FEATURE_LENS); }
+
   /// Returns the layout of a pixel's records. Each record is a uvec4.
   const FilmRecords& records() const { return records_; }
   /// Returns the largest number of pixels of a film on this device.

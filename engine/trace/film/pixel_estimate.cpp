@@ -50,6 +50,17 @@ ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, s
   return range;
 }
 
+vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index) {
+  const uvec2 place(index % size.x, index / size.x);
+  const uvec2 lo = glm::max(place, uvec2(1)) - 1U;
+  const uvec2 hi = glm::min(place + 2U, size);
+  dvec3 sum(0.0);
+  for (uint32_t y = lo.y; y < hi.y; ++y) {
+    for (uint32_t x = lo.x; x < hi.x; ++x) sum += dvec3(values[static_cast<size_t>(y) * size.x + x]);
+  }
+  return vec3(sum / static_cast<double>((hi.x - lo.x) * (hi.y - lo.y)));
+}
+
 void PixelEstimate::add(const vec3& radiance) {
   if (count_ == batch_size_ * kMostBatches) {
     for (uint32_t i = 0; i < kMostBatches / 2; ++i) batches_[i] = batches_[2 * i] + batches_[2 * i + 1];
@@ -63,21 +74,30 @@ void PixelEstimate::add(const vec3& radiance) {
   ++count_;
 }
 
-vec3 PixelEstimate::claim(const ColorRange& around) const {
+double PixelEstimate::variance(int channel) const {
   assert(count_ >= kMinRefinedSamples && std::has_single_bit(count_));
   const uint32_t batches = count_ / batch_size_;
+  const double mean = sum_[channel] / count_;
+  double squares = 0.0;
+  for (uint32_t i = 0; i < batches; ++i) {
+    const double off = static_cast<double>(batches_[i][channel]) / batch_size_ - mean;
+    squares += off * off;
+  }
+  return squares / (static_cast<double>(batches) * (batches - 1));
+}
+
+vec3 PixelEstimate::variance() const {
+  return {variance(0), variance(1), variance(2)};
+}
+
+vec3 PixelEstimate::claim(const ColorRange& around, const vec3& spread) const {
   ColorRange wider = range_;
   wider.extend(around);
   const double edge = kEdgeError * falloff(count_);
   vec3 claim;
   for (int channel = 0; channel < 3; ++channel) {
-    const double mean = sum_[channel] / count_;
-    double squares = 0.0;
-    for (uint32_t i = 0; i < batches; ++i) {
-      const double off = static_cast<double>(batches_[i][channel]) / batch_size_ - mean;
-      squares += off * off;
-    }
-    const double deviation = std::sqrt(squares / (static_cast<double>(batches) * (batches - 1)));
+    // The variance of few batches may happen to be small, so that of the first samples around also counts.
+    const double deviation = std::sqrt(std::max(variance(channel), static_cast<double>(spread[channel])));
     const auto width = [&](const ColorRange& range) {
       return static_cast<double>(range.hi[channel]) - static_cast<double>(range.lo[channel]);
     };

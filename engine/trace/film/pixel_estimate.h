@@ -30,6 +30,9 @@ struct ColorRange {
 /// the pixel.
 ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, size_t index);
 
+/// Returns the mean of the values of a pixel and its neighbours, for the same arguments.
+vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index);
+
 /// The mean of a pixel's samples, and an estimate of its error (docs/model.md, "Error of a pixel"). The samples are
 /// scrambled nets (ScrambledPoints), whose error decreases as N^(-3/4). Everything is computed on the host, so the
 /// result is the same for the same samples.
@@ -42,12 +45,18 @@ class PixelEstimate {
   vec3 mean() const { return vec3(sum_ / static_cast<double>(count_)); }
   const ColorRange& range() const { return range_; }
 
+  /// Returns the variance of each channel of the mean, estimated from batches. Requires at least kMinRefinedSamples
+  /// samples.
+  vec3 variance() const;
+
   /// Returns the claimed error of each channel of the mean. `around` is the range of the first samples of the pixel's
-  /// neighbours. Requires at least kMinRefinedSamples samples.
-  vec3 claim(const ColorRange& around) const;
+  /// neighbours. `spread` is the variance of the mean that the first samples of the pixel and its neighbours suggest; 0
+  /// if the samples only decide where in the pixel they lie. Requires at least kMinRefinedSamples samples.
+  vec3 claim(const ColorRange& around, const vec3& spread = vec3(0.0F)) const;
 
  private:
   static constexpr uint32_t kMostBatches = 8;
+  double variance(int channel) const;
   dvec3 sum_{0.0};
   std::array<vec3, kMostBatches> batches_{};
   ColorRange range_;

@@ -57,15 +57,17 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window) {
   return parts;
 }
 
-Refinement::Refinement(const View& view, const PixelWindow& window, bool has_unlit)
+Refinement::Refinement(const View& view, const PixelWindow& window, bool has_unlit, bool samples_points)
     : target_(*view.error_target),
       window_(window),
       apron_(with_neighbors(window, view.size)),
       filter_(view),
+      seed_(view.seed),
       estimates_(area_of(apron_)),
       unlit_sums_(has_unlit ? area_of(apron_) : 0),
       shown_(has_unlit && target_.display ? area_of(apron_) : 0),
       first_ranges_(area_of(apron_)),
+      first_variances_(samples_points ? area_of(apron_) : 0),
       claims_(area_of(window)),
       errors_(area_of(window)),
       pixels_(area_of(apron_)),
@@ -103,9 +105,10 @@ std::span<const ListedSample> Refinement::next(size_t most) {
   for_each_chunk(listed_pixels_, kChunk, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uvec2 pixel = place_of(pixels_[handed_out_ + i]);
-      const ScrambledPoints points(pixel);
+      const ScrambledPoints points(pixel, seed_);
       for (uint32_t j = 0; j < samples; ++j) {
-        list_[i * samples + j] = {pixel, filter_.at(points.at(first_sample_ + j))};
+        const uint32_t number = first_sample_ + j;
+        list_[i * samples + j] = {pixel, filter_.at(points.at(number)), number};
       }
     }
   });
@@ -122,7 +125,9 @@ void Refinement::take(std::span<const vec3> radiance, std::span<const vec4> unli
         estimates_[pixel].add(radiance[j]);
         if (!unlit.empty()) add_unlit(pixel, radiance[j], unlit[j]);
       }
-      if (first_sample_ == 0) first_ranges_[pixel] = estimates_[pixel].range();
+      if (first_sample_ != 0) continue;
+      first_ranges_[pixel] = estimates_[pixel].range();
+      if (!first_variances_.empty()) first_variances_[pixel] = estimates_[pixel].variance();
     }
   });
   handed_out_ += listed_pixels_;
@@ -157,7 +162,12 @@ void Refinement::judge_stage() {
       const std::optional<size_t> pixel = window_index(pixels_[i]);
       if (!pixel) continue;
       const PixelEstimate& estimate = estimates_[pixels_[i]];
-      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]));
+      vec3 spread(0.0F);
+      if (!first_variances_.empty()) {
+        const float share = static_cast<float>(target_.min_samples) / static_cast<float>(estimate.count());
+        spread = share * mean_around(first_variances_, size, pixels_[i]);
+      }
+      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]), spread);
       errors_[*pixel] = judge_error(pixels_[i], claims_[*pixel]);
     }
   });

@@ -20,6 +20,8 @@ struct ListedSample {
   uvec2 pixel{0};
   /// Position of the sample, in pixels from the pixel's upper left corner.
   vec2 place{0.5F};
+  /// The number of the sample in its pixel.
+  uint32_t number = 0;
 };
 
 /// Number of samples that are traced before their results are evaluated.
@@ -54,8 +56,9 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
 class Refinement {
  public:
   /// The view must have an error target, and the window must not be empty. With `has_unlit`, take() also receives the
-  /// unlit surfaces of samples.
-  Refinement(const View& view, const PixelWindow& window, bool has_unlit = false);
+  /// unlit surfaces of samples. With `samples_points`, samples also choose points of lights or of the lens, so claims
+  /// have one more term (docs/model.md, "Error of a pixel").
+  Refinement(const View& view, const PixelWindow& window, bool has_unlit = false, bool samples_points = false);
 
   /// Returns the samples to trace next, at most about `most`. take() must receive their colours before the next call.
   /// Empty if the window has reached its error.
@@ -105,6 +108,7 @@ class Refinement {
   /// The window and the pixels around it that are in the picture.
   PixelWindow apron_;
   FilterPlaces filter_;
+  uint32_t seed_;
   /// The estimates, one for each pixel of the apron. Pixels outside the window have only their first samples.
   std::vector<PixelEstimate> estimates_;
   /// Sums for pictures with unlit surfaces, indexed by the pixels of the apron: sums of the samples' unlit colours and,
@@ -113,6 +117,8 @@ class Refinement {
   std::vector<PixelEstimate> shown_;
   /// Ranges of the colours of the first samples.
   std::vector<ColorRange> first_ranges_;
+  /// Variances of the means of the first samples; empty if samples choose no points.
+  std::vector<vec3> first_variances_;
   /// Claims, indexed by the pixels of the window.
   std::vector<vec3> claims_;
   /// The claims in the measure of the target. They are stored, because computing displayed claims takes time.

@@ -55,6 +55,7 @@ StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t
   StreamShape shape;
   shape.has_glass = features.has_any(layout::FEATURE_GLASS);
   shape.scatters_through = features.has_any(layout::FEATURE_DIFFUSE_TRANSMISSION);
+  shape.samples_lights = features.has_any(layout::FEATURE_SAMPLED_LIGHT);
   // At each bounce the mirror ray is followed first, so only refracted rays wait.
   shape.waiting_rays = std::min(refracted_rays(features) * depth, layout::MOST_TREE_RAYS);
   shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
@@ -68,7 +69,9 @@ uint32_t StreamShape::records_of_path() const {
   const uint32_t of_glass =
       has_glass ? layout::STREAM_GLASS_RECORDS + layout::STREAM_WAITING_RECORDS * waiting_rays : 0;
   const uint32_t of_behind = scatters_through ? layout::STREAM_BEHIND_RECORDS : 0;
-  return layout::STREAM_PATH_RECORDS + of_behind + layout::STREAM_SOURCE_RECORDS * sources + of_glass;
+  const uint32_t of_sample = samples_lights ? layout::STREAM_SAMPLE_RECORDS : 0;
+  return layout::STREAM_PATH_RECORDS + of_behind + of_sample + (layout::STREAM_SOURCE_RECORDS + of_sample) * sources +
+         of_glass;
 }
 
 uint64_t StreamShape::path_bytes() const {

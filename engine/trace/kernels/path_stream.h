@@ -37,6 +37,8 @@ struct StreamShape {
   bool has_glass = false;
   /// True if shadow rays may begin behind a surface.
   bool scatters_through = false;
+  /// True if paths and sources keep the data of sampled points of lights (FEATURE_SAMPLED_LIGHT).
+  bool samples_lights = false;
 
   /// Returns the number of records of a path, including its light sources.
   uint32_t records_of_path() const;

@@ -56,19 +56,20 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
   options_.progress = {};
   const Stopwatch compiling;
   if (options_.has_error_target) {
-    prepare_refining_film(options_.mode);
+    prepare_refining_film(options_.mode, options_.has_lens);
   } else {
-    prepare_film(options_.mode);
+    prepare_film(options_.mode, options_.has_lens);
   }
   stats_.pipeline_ms = compiling.ms();
   stats_.features = feature_names(film_features_);
 }
 
-void PictureTracer::prepare_film(const RenderMode& mode) {
+void PictureTracer::prepare_film(const RenderMode& mode, bool has_lens) {
   FeatureMask features = features_of_scene(mode) | features_of_samples(mode);
   // If steps are requested, trace_middle() also provides the AOVs of surfaces.
   if (wanted_.has_any(AovSource::kSurface) && !wanted_.steps) features |= layout::FEATURE_AOVS;
   if (estimates_errors(mode)) features |= layout::FEATURE_SAMPLE_RANGES;
+  if (has_lens) features |= layout::FEATURE_LENS;
   prepare_film(features);
 }
 
@@ -90,8 +91,10 @@ FeatureMask PictureTracer::features_of_samples(const RenderMode& mode) const {
   return features;
 }
 
-void PictureTracer::prepare_refining_film(const RenderMode& mode) {
-  prepare_film(features_of_scene(mode) | features_of_samples(mode) | layout::FEATURE_LISTED_SAMPLES);
+void PictureTracer::prepare_refining_film(const RenderMode& mode, bool has_lens) {
+  FeatureMask features = features_of_scene(mode) | features_of_samples(mode) | layout::FEATURE_LISTED_SAMPLES;
+  if (has_lens) features |= layout::FEATURE_LENS;
+  prepare_film(features);
 }
 
 void PictureTracer::prepare_film(FeatureMask features) {
@@ -282,7 +285,7 @@ RenderResult PictureTracer::render(const View& view, const ProgressCallback& pro
 RenderResult PictureTracer::render_samples(const View& view, const ProgressCallback& progress) {
   RenderResult result = make_result(view);
   result.samples_per_pixel = view.samples_per_pixel;
-  prepare_film(view.mode);
+  prepare_film(view.mode, has_lens(view.camera));
   const double steps_share = wanted_.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
   const auto pixel_count = static_cast<double>(result.image.pixels.size());
   if (wanted_.steps) trace_middle(view, result, keep_going(progress));
@@ -298,7 +301,9 @@ RenderResult PictureTracer::render_samples(const View& view, const ProgressCallb
 
 void PictureTracer::render_progressively(const View& view, double budget_ms,
                                          const std::function<bool(const Image&, const View&)>& on_picture) {
-  ProgressivePicture picture(device_, scene_.device_scene(), scene_.features(view.mode), budget_ms);
+  FeatureMask features = scene_.features(view.mode);
+  if (has_lens(view.camera)) features |= layout::FEATURE_LENS;
+  ProgressivePicture picture(device_, scene_.device_scene(), features, budget_ms);
   picture.resize(view.size);
   picture.want(view);
   uint64_t shown_count = 0;
@@ -322,7 +327,8 @@ WorkDone PictureTracer::work_done() const {
 }
 
 Explanation PictureTracer::explain(const View& view, const uvec2& pixel) const {
-  const FeatureMask features = scene_.features({.has_shadows = view.mode.has_shadows});
+  FeatureMask features = scene_.features({.has_shadows = view.mode.has_shadows});
+  if (has_lens(view.camera)) features |= layout::FEATURE_LENS;
   return explain_pixel(device_, scene_.device_scene(), scene_.numbers(), features, view, pixel);
 }
 

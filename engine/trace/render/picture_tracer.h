@@ -61,7 +61,7 @@ class PictureTracer {
   static constexpr uint32_t kMaxFilmRecords = ((64U << 20) - 4096) / sizeof(uvec4);
 
   /// Creates the film that a mode needs, unless it exists.
-  void prepare_film(const RenderMode& mode);
+  void prepare_film(const RenderMode& mode, bool has_lens);
   /// Returns the features for AOVs of all samples.
   FeatureMask features_of_samples(const RenderMode& mode) const;
   /// Returns whether a picture of a fixed number of samples estimates its error; a debug view does not.
@@ -74,7 +74,7 @@ class PictureTracer {
   FeatureMask features_of_scene(const RenderMode& mode) const;
   bool tells_unlit(const RenderMode& mode) const;
   /// Creates the film for samples of a list.
-  void prepare_refining_film(const RenderMode& mode);
+  void prepare_refining_film(const RenderMode& mode, bool has_lens);
   void prepare_film(FeatureMask features);
   FilmOptions film_options() const;
   /// Traces samples of a window of the picture. The film must have space for the window.
@@ -129,7 +129,7 @@ class PictureTracer {
   /// Returns whether AOVs of rays through the pixels' centres are requested.
   bool tells_of_centers() const;
   /// Compiles the missing pipelines.
-  void prepare_to_refine(const RenderMode& mode);
+  void prepare_to_refine(const View& view);
   RenderResult render_to_error(const View& view, const ProgressCallback& progress);
   /// Refines to the smallest error that is estimated to fit into the time, but at least to the first error.
   RenderResult refine_within(const View& view, double seconds, const ProgressCallback& progress);

@@ -92,9 +92,9 @@ bool PictureTracer::tells_of_centers() const {
   return wanted_.steps || wanted_.has_any(AovSource::kSurface);
 }
 
-void PictureTracer::prepare_to_refine(const RenderMode& mode) {
-  prepare_refining_film(mode);
-  if (tells_of_centers()) prepare_middle_film(mode);
+void PictureTracer::prepare_to_refine(const View& view) {
+  prepare_refining_film(view.mode, has_lens(view.camera));
+  if (tells_of_centers()) prepare_middle_film(view.mode);
 }
 
 RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallback& progress) {
@@ -102,7 +102,7 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
   View centers = view;
   centers.error_target.reset();
   centers.samples_per_pixel = 1;
-  prepare_to_refine(view.mode);
+  prepare_to_refine(view);
   if (tells_of_centers()) trace_middle(centers, result, keep_going(progress));
   result.error.emplace(PictureError{.target = view.error_target->error});
   return result;
@@ -116,7 +116,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
   double told = 0.0;
   const auto pixels = static_cast<double>(result.image.pixels.size());
   for (const PixelWindow& part : parts_to_refine(picture_window(view))) {
-    Refinement refinement(view, part, tells_unlit(view.mode));
+    Refinement refinement(view, part, tells_unlit(view.mode), film_->samples_points());
     RefinedAovs aovs = begin_refined_aovs(part, view);
     const auto part_pixels = static_cast<double>(refinement.pixel_count());
     refine(refinement, view, aovs, result, [&](double of_part) {
@@ -141,7 +141,7 @@ RenderResult PictureTracer::refine_within(const View& view, double seconds, cons
   step.error_target->error = first_error(*view.error_target);
   RenderResult result = begin_refined(step, progress);
   const PixelWindow window = picture_window(view);
-  Refinement refinement(step, window, tells_unlit(view.mode));
+  Refinement refinement(step, window, tells_unlit(view.mode), film_->samples_points());
   RefinedAovs aovs = begin_refined_aovs(window, step);
   const Stopwatch tracing;
   float& error = step.error_target->error;

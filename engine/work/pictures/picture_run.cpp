@@ -38,6 +38,9 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   run.scene = load_for(options.tracing, stats, console, run.sources);
   Scene& scene = run.scene;
   move_frames(run.frames, scene.center);
+  for (PlannedFrame& frame : run.frames) {
+    if (frame.camera) put_lens(options.view, *frame.camera);
+  }
   ViewOptions view = options.view;
   view.given_camera = run.frames.front().camera;
   stats.view = make_view(scene, view, console);
@@ -85,6 +88,7 @@ TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t e
   // A run with a time limit begins with a picture of one sample per pixel.
   result.has_error_target = options.error.target && !options.error.time_limit_s;
   result.mode = {options.view.debug_view, !options.view.has_no_shadows};
+  result.has_lens = options.view.aperture_radius.value_or(0.0) > 0.0;
   result.aovs = options.aovs;
   // The average exposure only uses pixels with a hit, so it needs this AOV.
   if (options.view.look.averages_exposure) result.aovs.object = true;

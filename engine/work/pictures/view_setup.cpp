@@ -58,12 +58,18 @@ std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
   return sides == uvec2(0) ? usual : complete_size(sides, usual);
 }
 
+void put_lens(const ViewOptions& options, Camera& camera) {
+  if (options.aperture_radius) camera.aperture_radius = static_cast<float>(*options.aperture_radius);
+  if (options.focus_distance) camera.focus_distance = static_cast<float>(*options.focus_distance);
+}
+
 View make_view(const Scene& scene, const ViewOptions& options, const Messages& console) {
   View view;
   const Camera* own = find_file_camera(scene, options);
   view.camera = own != nullptr ? *own : make_camera(scene, options, aspect_ratio_of(options));
   view.size = choose_size(options, view.camera, scene);
   if (own != nullptr) view.camera = pose_camera(scene, *own, options.pose, view.size, console);
+  put_lens(options, view.camera);
   view.crop = options.crop;
   if (view.crop && (view.crop->hi.x > view.size.x || view.crop->hi.y > view.size.y)) {
     throw UsageError({"view.crop.outside",

@@ -30,6 +30,9 @@ std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera);
 /// picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Messages& console);
 
+/// Gives a camera the lens of the options.
+void put_lens(const ViewOptions& options, Camera& camera);
+
 /// Sets the scene's environment, lights and background from the options. Throws the same errors as light_scene().
 AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings = {});
 

@@ -248,11 +248,20 @@ void check_dither(const RenderSpec& options) {
 
 }  // namespace
 
+void check_lens(const ViewOptions& view) {
+  const bool has_lens = view.aperture_radius.value_or(0.0) > 0.0;
+  refuse_if("usage.option.needs", has_lens && !view.focus_distance, "--aperture-radius needs a plane in focus",
+            "give --focus-distance as well");
+  refuse_if("usage.option.needs", view.focus_distance && !view.aperture_radius, "--focus-distance needs a lens",
+            "give --aperture-radius as well");
+}
+
 // The checks have the order in which contradictions are reported.
 void check_render_spec(const RenderSpec& options) {
   check_tracing_options(options.tracing);
   check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.path) check_no_camera(options.view, "--path");
+  check_lens(options.view);
   check_explanation(options);
   check_quality(options);
   if (options.error.is_given()) {

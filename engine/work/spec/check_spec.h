@@ -28,6 +28,8 @@ void check_motion_options(const MotionOptions& motion);
 void check_tracing_options(const TracingOptions& options);
 /// Throws UsageError if two options contradict each other, or if an option contradicts the choice of a camera by name.
 void check_pose_options(const PoseOptions& pose, bool names_camera);
+/// Throws UsageError if only one of the two numbers of a lens is given.
+void check_lens(const ViewOptions& view);
 /// Throws UsageError if a camera is given in addition to the option `name`, which has its own cameras.
 void check_no_camera(const ViewOptions& options, std::string_view name);
 /// Throws UsageError if the smallest number of samples exceeds the largest.

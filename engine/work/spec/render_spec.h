@@ -110,6 +110,9 @@ struct ViewOptions {
   /// A camera that replaces those of the scene.
   std::optional<Camera> given_camera;
   PoseOptions pose;
+  /// The lens of all cameras (Camera::aperture_radius and focus_distance), if it is given.
+  std::optional<double> aperture_radius = std::nullopt;
+  std::optional<double> focus_distance = std::nullopt;
   EnvironmentOptions environment;
 };
 

@@ -179,6 +179,8 @@ void add_pose(Table<RenderSpec>& table) {
   table.add("up", PROMIN_AT(view.pose.up), Vector());
   table.add_number("fov", PROMIN_AT(view.pose.fov_deg), kMinFovDeg, kMaxFovDeg);
   table.add_number("near", PROMIN_AT(view.pose.near), 0.0, kMaxCoordinate);
+  table.add_number("aperture_radius", PROMIN_AT(view.aperture_radius), 0.0, kMaxCoordinate);
+  table.add_number("focus_distance", PROMIN_AT(view.focus_distance), kLeastFocusDistance, kMaxCoordinate);
 }
 
 void add_environment(Table<RenderSpec>& table) {

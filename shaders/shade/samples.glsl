@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// The sample points of lights with a size and of the lens (docs/model.md, "Sample points"). A point depends only on the
+// pixel's place in the whole picture, the seed, the number of the sample in the pixel, and the number of the pair of
+// dimensions. It is computed with integers only.
+
+// True if some points are sampled. The first pair is the lens's if there is one. Then there is a pair for each source of
+// each bounce.
+const uint HAS_SAMPLE_POINTS = FEATURE_BIT(FEATURE_SAMPLED_LIGHT) | FEATURE_BIT(FEATURE_LENS);
+const uint FIRST_LIGHT_PAIR = FEATURE_BIT(FEATURE_LENS);
+
+// The sample whose points are requested: the key of its pixel, its number in the pixel, and the pair of dimensions. Set
+// by choose_sample().
+uint sample_key;
+uint sample_number;
+uint sample_pair;
+
+void choose_sample(uvec2 id, uint pair) {
+  sample_key = id.x;
+  sample_number = id.y;
+  sample_pair = pair;
+}
+
+// An integer hash, the same as engine/core/hash.h.
+uint mix_bits(uint x) {
+  x ^= x >> 16;
+  x *= 0x7FEB352Du;
+  x ^= x >> 15;
+  x *= 0x846CA68Bu;
+  return x ^ (x >> 16);
+}
+
+// Returns the key of a pixel at this place in the whole picture.
+uint key_of_pixel(uvec2 pixel) { return mix_bits(pixel.x + mix_bits(pixel.y + VIEW.first_glass.w)); }
+
+// Permutes the bits of x so that each bit of the result depends only on lower bits of x (Laine and Karras, "Stratified
+// Sampling for Stochastic Transparency", 2011, with Burley's constants).
+uvec2 permute_upwards(uvec2 x, uvec2 seeds) {
+  x += seeds;
+  x ^= x * 0x6C50B47Cu;
+  x ^= x * 0xB82F1E52u;
+  x ^= x * 0xC7AFE638u;
+  x ^= x * 0x8D22F6E6u;
+  return x;
+}
+
+// Returns the numbers of Sobol's first two dimensions with reversed bits. The second matrix is Pascal's triangle mod 2,
+// so the sum for a bit is over the supersets of its index.
+uvec2 first_sobols(uint index) {
+  uint x = index;
+  x ^= (x >> 1) & 0x55555555u;
+  x ^= (x >> 2) & 0x33333333u;
+  x ^= (x >> 4) & 0x0F0F0F0Fu;
+  x ^= (x >> 8) & 0x00FF00FFu;
+  x ^= x >> 16;
+  return uvec2(index, x);
+}
+
+// Returns the numbers of Sobol's third and fourth dimensions with reversed bits, for an index below 2^16. Each direction
+// number follows from those before it (Joe and Kuo, 2008: polynomials 7 and 11, first numbers 1, 3 and 1, 3, 1).
+uvec2 further_sobols(uint index) {
+  uvec2 third = uvec2(1u, 3u);
+  uvec3 fourth = uvec3(1u, 3u, 4u);
+  uvec2 sum = uvec2(0u);
+  for (uint i = 0u; i < 16u; ++i) {
+    uint mask = 0u - ((index >> i) & 1u);
+    sum ^= mask & uvec2(third.x, fourth.x);
+    third = uvec2(third.y, third.y ^ third.x ^ (third.x << 2));
+    fourth = uvec3(fourth.yz, fourth.y ^ fourth.x ^ (fourth.x << 3));
+  }
+  return sum;
+}
+
+// Returns the point of the chosen pair, an odd multiple of 2^-24 in each coordinate. The first 2^m points of a pair are
+// a (0, m, 2)-net. With FEATURE_LISTED_SAMPLES the sample's position in its pixel has Sobol's first two dimensions, and
+// the first pair has the third and the fourth. All other pairs have the first two dimensions in an order of their own.
+vec2 sample_pair_point() {
+  uint seed = mix_bits(sample_key + 3u * sample_pair);
+  uvec2 seeds = uvec2(mix_bits(seed + 1u), mix_bits(seed + 2u));
+  uvec2 reversed;
+  if (has(FEATURE_LISTED_SAMPLES) && sample_pair == 0u) {
+    reversed = further_sobols(sample_number);
+  } else {
+    uint shuffled = bitfieldReverse(permute_upwards(uvec2(bitfieldReverse(sample_number)), uvec2(seed)).x);
+    reversed = first_sobols(shuffled);
+  }
+  uvec2 bits = bitfieldReverse(permute_upwards(reversed, seeds)) >> 9;
+  precise vec2 point = vec2(bits) * 1.1920928955078125e-7 + 5.9604644775390625e-8;
+  return point;
+}
+
+// Maps a point of the unit square to the unit disc; areas stay in proportion (Shirley and Chiu, "A Low Distortion Map
+// Between Disk and Square", 1997). Returns the position, and in z the squared distance from the centre.
+vec3 point_on_disc(vec2 u) {
+  precise vec2 v = 2.0 * u - 1.0;
+  bool is_steep = abs(v.x) < abs(v.y);
+  float radius = is_steep ? v.y : v.x;
+  precise float angle = 0.785398163 * ((is_steep ? v.x : v.y) / radius);
+  float sine = short_sine(angle);
+  float cosine = short_cosine(angle);
+  precise vec3 point = vec3(radius * (is_steep ? sine : cosine), radius * (is_steep ? cosine : sine), radius * radius);
+  return point;
+}
+
+// A direction in a cone, with uniform density over its solid angle.
+struct ConeSample {
+  vec3 direction;  // unit
+  float below;     // 1 minus the cosine of its angle to the axis
+};
+
+// Chooses a direction in the cone about a unit axis. `cap` is 1 minus the cosine of half its angle, at most 2.
+ConeSample sample_cone(vec3 axis, float cap) {
+  vec3 disc = point_on_disc(sample_pair_point());
+  // Lambert's azimuthal projection maps the disc to the cap of the unit sphere; areas stay in proportion.
+  precise float below = cap * disc.z;
+  precise float scale = sqrt(cap * (2.0 - below));
+  vec3 across = normalize3(cross3(axis, abs(axis.x) < 0.57 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+  vec3 along = cross3(axis, across);
+  precise vec3 direction = scale * (disc.x * across + disc.y * along) + (1.0 - below) * axis;
+  return ConeSample(direction, below);
+}

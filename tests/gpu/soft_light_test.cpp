@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// These tests check lights with a size and the lens: sample by sample against the oracle, in the mean against closed
+// forms, and their bits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "device_scene/sampling.h"
+#include "device_scene/scrambled_points.h"
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "gpu/ways_of_tracing.h"
+#include "oracle/compare_picture.h"
+#include "trace/render/renderer_impl.h"
+
+namespace promin {
+namespace {
+
+constexpr uvec2 kSize(40, 30);
+
+Material make_matte(const vec3& color, float mirror = 0.0F) {
+  Phong phong;
+  phong.ambient = vec3(0.0F);
+  phong.diffuse = color;
+  phong.reflection = vec3(mirror);
+  return {.model = phong};
+}
+
+Light make_ball(const vec3& position, float radius, float power) {
+  Light light;
+  light.position = position;
+  light.radius = radius;
+  light.diffuse = light.specular = vec3(power);
+  light.attenuation = Attenuation::kInverseSquare;
+  return light;
+}
+
+/// A floor with balls, one of which is a mirror, under a ball of light, a spot with a radius, a sun of 20 degrees and a
+/// point.
+world::Scene make_soft_scene() {
+  world::Scene scene;
+  scene.materials = {make_matte(vec3(0.8F, 0.7F, 0.6F)), make_matte(vec3(0.3F, 0.5F, 0.8F)),
+                     make_matte(vec3(0.1F), 0.8F)};
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0},
+                   {"ball", world::Sphere{vec3(-0.8F, 0.5F, 0.0F), 0.5F}, 1},
+                   {"mirror", world::Sphere{vec3(0.7F, 0.6F, -0.3F), 0.6F}, 2}};
+  Light spot = make_ball(vec3(1.5F, 2.5F, 1.5F), 0.3F, 6.0F);
+  spot.kind = LightKind::kSpot;
+  spot.direction = glm::normalize(vec3(-0.5F, -1.0F, -0.5F));
+  spot.inner_cone_angle = 0.3F;
+  spot.outer_cone_angle = 0.5F;
+  Light sun = test::make_sun(vec3(-0.4F, -1.0F, -0.3F), 0.4F);
+  sun.angle = 0.35F;
+  Light point = make_ball(vec3(-2.0F, 2.0F, 1.0F), 0.0F, 1.0F);
+  scene.lights = {make_ball(vec3(-1.2F, 2.0F, 0.8F), 0.6F, 3.0F), spot, sun, point};
+  return scene;
+}
+
+View make_soft_view(uvec2 size = kSize) {
+  View view;
+  view.size = size;
+  view.camera.eye = vec3(0.0F, 1.6F, 4.0F);
+  view.camera.look = glm::normalize(vec3(0.0F, -0.3F, -1.0F));
+  view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 1, 0)), view.camera.look));
+  view.max_depth = 3;
+  return view;
+}
+
+class SoftLightTest : public test::DeviceTest {
+ protected:
+  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
+    return make_renderer(device(), scene, options);
+  }
+  static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
+    oracle::PictureReport report = compare_picture(scene, truth, image, {});
+    std::printf("%s\n", report.summary(scene).c_str());
+    return report;
+  }
+  /// Compares the first sample of each pixel, for several seeds.
+  static void expect_samples(const world::Scene& scene, View view) {
+    Renderer renderer = renderer_of(scene);
+    for (const uint32_t seed : {0U, 1U, 4294967295U}) {
+      view.seed = seed;
+      EXPECT_TRUE(compare(scene, oracle::render(scene, view), renderer.render(view).image).passes()) << seed;
+    }
+  }
+  /// Returns the mean over a picture of a white floor, seen from above, whose pixels all see a lit point.
+  static double mean_of(const world::Scene& scene, const View& view) {
+    const Image image = renderer_of(scene).render(view).image;
+    double sum = 0.0;
+    for (const vec3& pixel : image.pixels) sum += static_cast<double>(pixel.x);
+    return sum / static_cast<double>(image.pixels.size());
+  }
+};
+
+TEST_F(SoftLightTest, EachSampleIsTheOracles) {
+  expect_samples(make_soft_scene(), make_soft_view());
+}
+
+// Each sample of a pixel has another number. The mean of several tells whether all are right.
+TEST_F(SoftLightTest, NumberedSamplesAreTheOracles) {
+  const world::Scene scene = make_soft_scene();
+  View view = make_soft_view();
+  const auto mean_of_oracle = [&](const auto& choice_of) {
+    oracle::Picture mean;
+    for (uint32_t number = 0; number < 4; ++number) {
+      const oracle::Picture one =
+          oracle::render(scene, view, [&](const uvec2& pixel) { return choice_of(pixel, number); });
+      if (number == 0) mean = one;
+      for (size_t i = 0; i < one.pixels.size(); ++i) {
+        if (number > 0) mean.pixels[i].color += one.pixels[i].color;
+        mean.pixels[i].explained_error += one.pixels[i].explained_error;
+      }
+    }
+    for (oracle::Pixel& pixel : mean.pixels) pixel.color *= 0.25L;
+    return mean;
+  };
+  view.samples_per_pixel = 4;
+  const oracle::Picture lattice = mean_of_oracle([&](const uvec2& /*pixel*/, uint32_t number) {
+    const vec2 place = sample_point(view, lattice_generator(4), number);
+    return oracle::SampleChoice{{place.x, place.y}, number};
+  });
+  EXPECT_TRUE(compare(scene, lattice, renderer_of(scene).render(view).image).passes());
+
+  view.samples_per_pixel = 1;
+  view.seed = 7;
+  view.error_target = ErrorTarget{.error = 1.0F, .min_samples = 4, .max_samples = 4};
+  const FilterPlaces filter(view);
+  const oracle::Picture net = mean_of_oracle([&](const uvec2& pixel, uint32_t number) {
+    const vec2 place = filter.at(ScrambledPoints(pixel, view.seed).at(number));
+    return oracle::SampleChoice{{place.x, place.y}, number, true};
+  });
+  EXPECT_TRUE(compare(scene, net, renderer_of(scene).render(view).image).passes());
+}
+
+TEST_F(SoftLightTest, SamplesThroughALensAreTheOracles) {
+  View view = make_soft_view();
+  view.camera.aperture_radius = 0.15F;
+  view.camera.focus_distance = 4.0F;
+  expect_samples(make_soft_scene(), view);
+}
+
+// A picture of many samples is the mean over the light. A ball or a disc wholly above the horizon lights a point like a
+// light without size (E = I cos / d^2), which is the closed form.
+TEST_F(SoftLightTest, WholeLightsHaveTheirPower) {
+  world::Scene scene;
+  scene.materials = {make_matte(vec3(1.0F))};
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
+  View view = make_soft_view(uvec2(16));
+  view.camera.eye = vec3(0.3F, 3.0F, 0.2F);
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  view.samples_per_pixel = 256;
+  Light spot = make_ball(vec3(0.0F, 2.0F, 0.0F), 0.2F, 5.0F);
+  spot.kind = LightKind::kSpot;
+  spot.direction = vec3(0, -1, 0);
+  spot.inner_cone_angle = 1.3F;
+  spot.outer_cone_angle = 1.5F;
+  Light sun = test::make_sun(vec3(0.3F, -1.0F, 0.1F), 0.7F);
+  sun.angle = 0.6F;
+  Light classic = make_ball(vec3(0.5F, 2.0F, 0.0F), 1.2F, 0.6F);
+  classic.attenuation = Attenuation::kNone;
+  for (const Light& light : {make_ball(vec3(0.2F, 1.5F, -0.3F), 1.0F, 2.0F), spot, sun, classic}) {
+    scene.lights = {light};
+    const double soft = mean_of(scene, view);
+    scene.lights[0].radius = 0.0F;
+    scene.lights[0].angle = 0.0F;
+    const double hard = mean_of(scene, view);
+    EXPECT_NEAR(soft / hard, 1.0, 0.001) << static_cast<int>(light.kind);
+  }
+}
+
+// A ball whose centre lies on the floor is cut by the horizon: E = L (s - sin s cos s) for the angular radius s. A
+// point inside a ball has the irradiance pi L.
+TEST_F(SoftLightTest, CutBallsHaveTheirClosedForm) {
+  world::Scene scene;
+  scene.materials = {make_matte(vec3(1.0F))};
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
+  scene.lights = {make_ball(vec3(0.0F), 0.5F, 3.0F)};
+  View view = make_soft_view(uvec2(8));
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  view.camera.yfov = 0.02F;
+  view.samples_per_pixel = 256;
+  const double radiance = 3.0 / (std::numbers::pi * 0.25);
+  for (const double distance : {0.55, 0.8, 2.0}) {
+    view.camera.eye = vec3(static_cast<float>(distance), 1.0F, 0.0F);
+    const double s = std::asin(0.5 / distance);
+    const double expected = radiance * (s - std::sin(s) * std::cos(s));
+    // A pixel of the white Phong floor has the radiance E.
+    EXPECT_NEAR(mean_of(scene, view) / expected, 1.0, 0.01) << distance;
+  }
+  view.camera.eye = vec3(0.1F, 1.0F, 0.0F);
+  EXPECT_NEAR(mean_of(scene, view) / (std::numbers::pi * radiance), 1.0, 0.01) << "inside";
+}
+
+// Half of a sun's disc is visible below a straight edge that points at its middle.
+TEST_F(SoftLightTest, EdgesShowTheirShareOfTheSun) {
+  world::Scene scene;
+  scene.materials = {make_matte(vec3(1.0F))};
+  Mesh roof = test::make_board();
+  for (vec3& p : roof.positions) p = vec3(p.x < 0.0F ? -40.0F : 0.0F, 1.0F, 40.0F * p.y);
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}, {"roof", roof, 0}};
+  scene.lights = {test::make_sun(vec3(0, -1, 0))};
+  const double half_angle = 0.05;
+  scene.lights[0].angle = static_cast<float>(2.0 * half_angle);
+  View view = make_soft_view(uvec2(8));
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  view.camera.projection = Projection::kOrthographic;
+  view.camera.ymag = 1e-4F;
+  view.samples_per_pixel = 64;
+  for (const double offset : {-0.7, -0.3, 0.0, 0.4, 0.9}) {
+    // The eye is below the roof. `offset` is in radii of the disc.
+    view.camera.eye = vec3(static_cast<float>(offset * std::tan(half_angle)), 0.5F, 0.0F);
+    const double covered = (std::acos(offset) - offset * std::sqrt(1.0 - offset * offset)) / std::numbers::pi;
+    EXPECT_NEAR(mean_of(scene, view), 1.0 - covered, 0.006) << offset;
+  }
+}
+
+// A light without size has the same bits in kernels for lights with one.
+TEST_F(SoftLightTest, LightsWithoutSizeKeepTheirBits) {
+  world::Scene scene = make_soft_scene();
+  for (Light& light : scene.lights) light.radius = light.angle = 0.0F;
+  View view = make_soft_view();
+  view.samples_per_pixel = 3;
+  const Image hard = renderer_of(scene).render(view).image;
+  TunedRendererOptions options;
+  options.more_features = layout::FEATURE_SAMPLED_LIGHT | layout::FEATURE_LENS;
+  EXPECT_TRUE(test::has_same_bits(renderer_of(scene, options).render(view).image, hard));
+  // A radius that fp32 cannot square counts as none.
+  for (Light& light : scene.lights) light.radius = 1e-20F;
+  EXPECT_TRUE(test::has_same_bits(renderer_of(scene).render(view).image, hard));
+}
+
+TEST_F(SoftLightTest, EveryWayOfTracingHasTheSameBits) {
+  const world::Scene scene = make_soft_scene();
+  View view = make_soft_view();
+  view.samples_per_pixel = 3;
+  view.camera.aperture_radius = 0.1F;
+  view.camera.focus_distance = 3.0F;
+  const Image expected = renderer_of(scene).render(view).image;
+  for (const TunedRendererOptions& way : test::ways_of_tracing()) {
+    EXPECT_TRUE(test::has_same_bits(renderer_of(scene, way).render(view).image, expected));
+  }
+  View crop = view;
+  crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
+  const Image part = renderer_of(scene).render(crop).image;
+  for (uint32_t y = 0; y < part.size.y; ++y) {
+    for (uint32_t x = 0; x < part.size.x; ++x) {
+      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * kSize.x + x + 13]);
+    }
+  }
+  view.seed = 1;
+  EXPECT_FALSE(test::has_same_bits(renderer_of(scene).render(view).image, expected));
+}
+
+// Lamps that touch or surround what they light, of all sizes, have finite light.
+TEST_F(SoftLightTest, ExtremeSizesGiveFinitePictures) {
+  world::Scene scene = make_soft_scene();
+  View view = make_soft_view(uvec2(16, 12));
+  Renderer renderer = renderer_of(scene);
+  for (const float radius : {1e-18F, 1e-6F, 2.0F, 1e6F, 1e15F}) {
+    for (const vec3& position : {vec3(0.0F), vec3(-0.8F, 0.5F, 0.0F), vec3(1e7F, 1e7F, 0.0F)}) {
+      scene.lights = {make_ball(position, radius, 1.0F)};
+      renderer.set_lights(scene.lights);
+      for (const vec3& pixel : renderer.render(view).image.pixels) {
+        ASSERT_TRUE(std::isfinite(pixel.x) && pixel.x >= 0.0F) << radius << " " << position.x;
+      }
+    }
+  }
+  scene.lights = {test::make_sun(vec3(0, -1, 0))};
+  for (const float angle : {1e-30F, 1e-6F, 3.1415927F}) {
+    scene.lights[0].angle = angle;
+    renderer.set_lights(scene.lights);
+    for (const vec3& pixel : renderer.render(view).image.pixels) ASSERT_TRUE(std::isfinite(pixel.x)) << angle;
+  }
+}
+
+}  // namespace
+}  // namespace promin
