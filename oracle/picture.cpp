@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "oracle/distance.h"
+#include "oracle/lobe.h"
 #include "oracle/normal_error.h"
 #include "oracle/samples.h"
 #include "oracle/surface.h"
@@ -84,16 +85,116 @@ Real spot_share(const Light& light, const Vector& to_light) {
   return ramp * ramp;
 }
 
+/// Returns the solid angle of a rectangle from a corner of which the perpendicular to the point has the length z.
+Real solid_angle_of_corner(Real x, Real y, Real z) {
+  return std::atan2(x * y, z * std::sqrt(x * x + y * y + z * z));
+}
+
+/// Returns the light of one point of a flat light. It is chosen by solid angle if the light's square or rectangle has
+/// at least this solid angle, otherwise by area.
+constexpr Real kLeastRectAngle = 1.0L / 16;
+Illumination illuminate_flat(const Light& light, const Vector& position, const std::array<Real, 2>& u) {
+  const Vector to_center = Vector(light.position) - position;
+  const Vector normal = Vector(light.direction);
+  const Vector right = Vector(light.right);
+  const Vector up = glm::cross(normal, right);
+  const Real z = -glm::dot(to_center, normal);
+  if (z <= 0) return {normal, 0, 1};
+  const std::array<Real, 2> middle{glm::dot(to_center, right), glm::dot(to_center, up)};
+  const std::array<Real, 2> half{Real(light.size.x) / 2, Real(light.size.y) / 2};
+  const auto [x0, y0] = std::array<Real, 2>{middle[0] - half[0], middle[1] - half[1]};
+  const auto [x1, y1] = std::array<Real, 2>{middle[0] + half[0], middle[1] + half[1]};
+  // The solid angle of the part of the rectangle up to x.
+  const auto angle_to = [&, x0 = x0, y0 = y0, y1 = y1](Real x) {
+    return solid_angle_of_corner(x, y1, z) - solid_angle_of_corner(x0, y1, z) - solid_angle_of_corner(x, y0, z) +
+           solid_angle_of_corner(x0, y0, z);
+  };
+  const bool is_disk = light.kind == LightKind::kDisk;
+  const Real whole = angle_to(x1);
+  std::array<Real, 2> at{};
+  Real strength = whole;
+  if (whole >= kLeastRectAngle) {
+    // The shares of the solid angle increase with x, and of a strip with the sine of the angle to y.
+    Real lo = x0;
+    Real hi = x1;
+    for (int step = 0; step < 80; ++step) (angle_to((lo + hi) / 2) < u[0] * whole ? lo : hi) = (lo + hi) / 2;
+    at[0] = (lo + hi) / 2;
+    const Real apart = std::hypot(at[0], z);
+    const Real sine = y0 / std::hypot(apart, y0) * (1 - u[1]) + y1 / std::hypot(apart, y1) * u[1];
+    at[1] = apart * std::tan(std::asin(sine));
+    if (is_disk && std::hypot((at[0] - middle[0]) / half[0], (at[1] - middle[1]) / half[1]) > 1) strength = 0;
+  } else {
+    const std::array<Real, 2> off = is_disk ? place_on_disc(u) : std::array<Real, 2>{2 * u[0] - 1, 2 * u[1] - 1};
+    at = {middle[0] + off[0] * half[0], middle[1] + off[1] * half[1]};
+    const Real distance = std::hypot(std::hypot(at[0], at[1]), z);
+    strength = (is_disk ? std::numbers::pi_v<Real> : 4) * half[0] * half[1] * (z / distance) / (distance * distance);
+  }
+  const Vector to_point = at[0] * right + at[1] * up - z * normal;
+  return {glm::normalize(to_point), strength, glm::length(to_point)};
+}
+
+/// The lobe of a metallic-roughness material from which directions to lights may be chosen.
+struct SmoothLobe {
+  Vector normal{0};
+  Vector to_eye{0};
+  Real alpha = 1;
+
+  Real cosine_to_eye() const { return std::max(glm::dot(to_eye, normal), 0x1p-10L); }
+
+  /// Returns the direction that the lobe's visible normal at a point of the unit square reflects to the eye.
+  Vector place(const std::array<Real, 2>& u) const {
+    const Vector helper = std::abs(normal.x) < 0.57L ? Vector(1, 0, 0) : Vector(0, 1, 0);
+    const Vector across = glm::normalize(glm::cross(normal, helper));
+    const Vector along = glm::cross(normal, across);
+    const Vector wide =
+        glm::normalize(Vector(alpha * glm::dot(to_eye, across), alpha * glm::dot(to_eye, along), cosine_to_eye()));
+    // A point of the cap of the unit sphere that the stretched eye's direction sees, by areas.
+    const auto [x, y] = place_on_disc(u);
+    const Real share = x * x + y * y;
+    const Real azimuth = std::atan2(y, x);
+    const Real height = 1 - share * (1 + wide.z);
+    const Real aside = std::sqrt(std::max(1 - height * height, Real(0)));
+    const Vector sum = Vector(aside * std::cos(azimuth), aside * std::sin(azimuth), height) + wide;
+    const Vector local = glm::normalize(Vector(alpha * sum.x, alpha * sum.y, std::max(sum.z, Real(0))));
+    const Vector half = local.x * across + local.y * along + local.z * normal;
+    return glm::reflect(-to_eye, half);
+  }
+  /// Returns the density of place() per steradian: D G1 / (4 N.V).
+  Real density(const Vector& direction) const {
+    const Vector sum = to_eye + direction;
+    if (glm::length(sum) < 0x1p-12L) return 0;
+    const Real v = cosine_to_eye();
+    const Real theta = 2 * std::asin(std::min(glm::distance(glm::normalize(sum), normal) / 2, Real(1)));
+    const Real tangent2 = 1 / (v * v) - 1;
+    const Real masking = 2 / (1 + std::sqrt(1 + alpha * alpha * tangent2));
+    return microfacet_density(theta, alpha) * masking / (4 * v);
+  }
+};
+
 /// Returns the light of one point of a ball or of a disc in the sky. The strength is the radiance divided by the
 /// density, for a light whose irradiance is the power of the light without size.
-Illumination illuminate_sized(const Light& light, const Vector& position, const std::array<Real, 2>& u) {
+Illumination illuminate_sized(const Light& light, const Vector& position, const std::array<Real, 2>& u,
+                              const std::optional<SmoothLobe>& lobe) {
   constexpr Real kPi = std::numbers::pi_v<Real>;
+  if (is_flat(light.kind)) return illuminate_flat(light, position, u);
+  // Half of the samples of a smooth lobe choose a direction that it reflects to the eye.
+  const auto choose = [&](const Vector& axis, Real half_angle) -> std::pair<Vector, Real> {
+    const Real solid_angle = 4 * kPi * std::sin(half_angle / 2) * std::sin(half_angle / 2);
+    if (!lobe || !(lobe->alpha * lobe->alpha < solid_angle / (2 * kPi))) {
+      return {place_in_cone(axis, half_angle, u), solid_angle};
+    }
+    const bool is_of_lobe = u[0] > 0.5L;
+    const std::array<Real, 2> rest{2 * u[0] - (is_of_lobe ? 1 : 0), u[1]};
+    const Vector direction = is_of_lobe ? lobe->place(rest) : place_in_cone(axis, half_angle, rest);
+    const Real angle = 2 * std::asin(std::min(glm::distance(direction, axis) / 2, Real(1)));
+    if (is_of_lobe && angle > half_angle) return {direction, 0};
+    return {direction, 1 / (0.5L / solid_angle + 0.5L * lobe->density(direction))};
+  };
   if (!has_place(light.kind)) {
     const Real half_angle = Real(light.angle) / 2;
-    const Vector direction = place_in_cone(glm::normalize(-Vector(light.direction)), half_angle, u);
     const Real radiance = 1 / (kPi * std::sin(half_angle) * std::sin(half_angle));
-    const Real solid_angle = 4 * kPi * std::sin(half_angle / 2) * std::sin(half_angle / 2);
-    return {direction, radiance * solid_angle};
+    const auto [direction, inverse_density] = choose(glm::normalize(-Vector(light.direction)), half_angle);
+    return {direction, radiance * inverse_density};
   }
   const Vector to_center = Vector(light.position) - position;
   const Real distance = glm::length(to_center);
@@ -101,13 +202,14 @@ Illumination illuminate_sized(const Light& light, const Vector& position, const 
   const bool is_inside = distance <= radius;
   const Real half_angle = is_inside ? kPi : std::asin(radius / distance);
   const Vector axis = distance > 0 ? to_center / distance : Vector(0, 0, 1);
-  Illumination result{place_in_cone(axis, half_angle, u)};
+  const auto [chosen, inverse_density] = choose(axis, half_angle);
+  Illumination result{chosen};
   result.distance = distance_to_ball(to_center, radius, result.to_light);
   // A ball whose power does not fall off has the radiance for which its power at each place is 1.
   const bool does_fall = light.attenuation == Attenuation::kInverseSquare;
   const Real apart = std::max(distance, radius);
   const Real radiance = (does_fall ? 1 : apart * apart) / (kPi * radius * radius);
-  result.strength = radiance * 4 * kPi * std::sin(half_angle / 2) * std::sin(half_angle / 2);
+  result.strength = radiance * inverse_density;
   if (does_fall) result.strength *= std::clamp(1 - std::pow(apart / light.range, Real(4)), Real(0), Real(1));
   if (light.kind == LightKind::kSpot) result.strength *= spot_share(light, result.to_light);
   return result;
@@ -451,16 +553,26 @@ class Tracer {
     return {Vector(share.value), share.error};
   }
 
-  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error, const Way& way) const {
+  static std::optional<SmoothLobe> lobe_of(const SurfacePoint& point, const SlotTexels& texels,
+                                           const Vector& direction) {
+    const auto* material = std::get_if<MetallicRoughness>(&point.material->model);
+    if (material == nullptr) return std::nullopt;
+    const Real roughness = material->clearcoat > 0 ? material->clearcoat_roughness * texels[kCoatRoughnessSlot].g
+                                                   : material->roughness * texels[kMetallicRoughnessSlot].g;
+    return SmoothLobe{point.normal, -direction, std::max(roughness * roughness, 0.002L)};
+  }
+
+  std::vector<ArrivingLight> arriving_lights(const SurfacePoint& point, const PointError& error, const Way& way,
+                                             const std::optional<SmoothLobe>& lobe) const {
     // With a normal texture, a light slightly behind the geometric surface can light the front.
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
     // Each light has its own pair of dimensions for each ray of the sample.
     auto pair = static_cast<uint32_t>(way.step * scene_.lights.size() + (has_lens_ ? 1 : 0));
     for (const Light& light : scene_.lights) {
-      const Illumination illumination = has_size(light)
-                                            ? illuminate_sized(light, point.position, sample_pair(way.sample, pair))
-                                            : illuminate(light, point.position);
+      const Illumination illumination =
+          has_size(light) ? illuminate_sized(light, point.position, sample_pair(way.sample, pair), lobe)
+                          : illuminate(light, point.position);
       ++pair;
       const bool is_behind =
           !has_normals && !scatters_through(*point.material) && !(glm::dot(point.normal, illumination.to_light) > 0);
@@ -483,7 +595,6 @@ class Tracer {
   };
   BoundedResponse respond_with_textures(const SurfacePoint& point, const Vector& direction, const PointError& error,
                                         const Way& way) const {
-    const std::vector<ArrivingLight> lights = arriving_lights(point, error, way);
     SlotTexels texels;
     SlotTexels errors;
     for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -491,6 +602,7 @@ class Tracer {
       texels[slot] = shown.value;
       errors[slot] = shown.error;
     }
+    const std::vector<ArrivingLight> lights = arriving_lights(point, error, way, lobe_of(point, texels, direction));
     BoundedResponse bounded{respond(point, texels, direction, error, lights, surroundings_)};
     if (point.face) add_errors_of_face(point, texels, direction, error, bounded);
     for (size_t slot = 0; slot < kSlotCount; ++slot) {

@@ -201,7 +201,15 @@ float size_of(const Light& light) {
   return std::max(static_cast<float>(sine * sine), std::numeric_limits<float>::min());
 }
 
+/// Returns the record of a flat light. Its free numbers hold the sides and the direction of the width.
+LightRecord pack_flat(const Light& light) {
+  const uint32_t of_right = std::bit_cast<uint32_t>(light.right.z);
+  return {vec4(light.position, 0.5F * light.size.y), vec4(light.direction, 0.5F * light.size.x),
+          vec4(light.diffuse, light.right.x), vec4(light.specular, light.right.y), uvec4(light.kind, 0, of_right, 0)};
+}
+
 LightRecord pack(const Light& light) {
+  if (is_flat(light.kind)) return pack_flat(light);
   const double cos_outer = std::cos(static_cast<double>(light.outer_cone_angle));
   const double cos_inner = std::cos(static_cast<double>(light.inner_cone_angle));
   return {vec4(light.position, 1.0F / light.range), vec4(light.direction, static_cast<float>(cos_outer)),

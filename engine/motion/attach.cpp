@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/light_kinds.h"
 #include "scene/limits.h"
 
 namespace promin {
@@ -47,6 +48,12 @@ Attached attach(const dmat4& world_from_node, const std::optional<dmat3>& rotati
   if (light.kind != LightKind::kPoint) {
     const std::optional<dvec3> direction = direction_of(world_from_node, rotation);
     if (!direction) return Attached::kWithoutDirection;
+    if (is_flat(light.kind)) {
+      const dvec3 across(world_from_node[0]);
+      const dvec3 right = across - glm::dot(across, *direction) * *direction;
+      if (!(glm::length(right) > 0.0)) return Attached::kWithoutDirection;
+      light.right = vec3(glm::normalize(right));
+    }
     light.direction = vec3(*direction);
   }
   light.position = vec3(position);

@@ -72,7 +72,8 @@ double illuminance_of(const Scene& scene) {
   dvec3 center(0.0);
   double least_distance = 0.0;
   // Computing the bounds of a large scene takes time, so the function does this only if a light needs the bounds.
-  if (std::ranges::any_of(scene.lights, falls_off)) {
+  const auto has_distance = [](const Light& light) { return falls_off(light) || is_flat(light.kind); };
+  if (std::ranges::any_of(scene.lights, has_distance)) {
     const Bounds bounds = frame_of(scene);
     center = middle_of(bounds);
     least_distance = 0.25 * glm::length(dvec3(bounds.hi) - dvec3(bounds.lo));
@@ -80,8 +81,12 @@ double illuminance_of(const Scene& scene) {
   double sum = 0.0;
   for (const Light& light : scene.lights) {
     const double distance =
-        falls_off(light) ? std::max(glm::length(dvec3(light.position) - center), least_distance) : 1.0;
-    sum += luminance_of(light.diffuse) / (distance * distance);
+        has_distance(light) ? std::max(glm::length(dvec3(light.position) - center), least_distance) : 1.0;
+    // A flat light has the intensity of its radiance times its area.
+    const double area = is_flat(light.kind) ? static_cast<double>(light.size.x) * static_cast<double>(light.size.y) *
+                                                  (light.kind == LightKind::kDisk ? 0.25 * kPi : 1.0)
+                                            : 1.0;
+    sum += luminance_of(light.diffuse) * area / (distance * distance);
   }
   return sum / power_per_lux(scene);
 }

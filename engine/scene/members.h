@@ -90,7 +90,7 @@ void visit_named_members(Visitor& visitor, std::string_view names, Members&... m
 
 // clang-format off
 PROMIN_MEMBERS(Light, name, kind, position, direction, diffuse, specular, attenuation, range, inner_cone_angle,
-               outer_cone_angle, radius, angle, is_on)
+               outer_cone_angle, radius, angle, size, right, is_on)
 PROMIN_MEMBERS(TextureSlot, texture, uv_set, to_u, to_v)
 PROMIN_MEMBERS(Texture, image, wrap_u, wrap_v, is_magnified_linearly, is_minified_linearly, has_levels,
                are_levels_linear)

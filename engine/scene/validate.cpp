@@ -262,6 +262,18 @@ class Validation {
             place + ".outer_cone_angle", "use 0 <= inner < outer <= pi/2");
       check("scene.light.size", light.radius >= 0.0F && static_cast<double>(light.radius) <= kMaxCoordinate,
             "the radius is negative, beyond 1e15 or not a number", place + ".radius", "use a number from 0 to 1e15");
+      const bool is_flat_size = std::min(light.size.x, light.size.y) >= kLeastLightSide &&
+                                static_cast<double>(std::max(light.size.x, light.size.y)) <= kMaxCoordinate;
+      check("scene.light.size", !is_flat(light.kind) || is_flat_size,
+            "a side is smaller than 1e-15, beyond 1e15 or not a number", place + ".size",
+            "use a positive width and height");
+      check("scene.light.size", light.kind != LightKind::kDisk || light.size.x == light.size.y,
+            "the disk has two different diameters", place + ".size", "make them equal");
+      const bool is_across = std::abs(glm::length(light.right) - 1.0F) <= kDirectionTolerance &&
+                             std::abs(glm::dot(light.right, light.direction)) <= kDirectionTolerance;
+      check("scene.light.direction", !is_flat(light.kind) || is_across,
+            "the direction of the width is not a unit vector at a right angle to the light's direction",
+            place + ".right", "make it perpendicular to direction, and normalise it");
       check("scene.light.size", light.angle >= 0.0F && light.angle <= 3.1415927F,
             "the angle is negative, beyond pi or not a number", place + ".angle",
             "use an angle from 0 to pi, in radians");

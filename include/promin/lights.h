@@ -11,8 +11,8 @@
 
 namespace promin {
 
-/// The kind of a light: kPoint, kDirectional, kSpot or kHeadlight, a directional light that shines in the current
-/// camera's direction of view.
+/// The kind of a light: kPoint, kDirectional, kSpot, kRect, kDisk or kHeadlight, a directional light that shines in the
+/// current camera's direction of view. kRect and kDisk are flat lights that shine from one side.
 enum class LightKind : uint32_t {
 /// @cond
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME) ENUMERATOR = NUMBER,
@@ -35,11 +35,12 @@ struct Light {
   std::string name;
   /// The kind, which determines which of the members below are used.
   LightKind kind = LightKind::kPoint;
-  /// Position of point and spot lights in the world.
+  /// Position of point and spot lights in the world; the middle of flat lights.
   vec3 position{0.0F};
-  /// Unit vector: the direction in which the light of directional and spot lights travels.
+  /// Unit vector: the direction in which the light of directional and spot lights travels; the normal of flat lights.
   vec3 direction{0.0F, 0.0F, -1.0F};
-  /// Power for the diffuse term, linear RGB, finite and not negative; in candela for lights with attenuation.
+  /// Power for the diffuse term, linear RGB, finite and not negative; in candela for lights with attenuation. The
+  /// radiance of flat lights, in nits.
   vec3 diffuse{1.0F};
   /// Power for the specular term, in the same units.
   vec3 specular{1.0F};
@@ -61,10 +62,16 @@ struct Light {
   /// The full angle of directional lights in radians, 0 to pi: a disc in the sky that shines evenly and casts soft
   /// shadows, as the sun does (0.0093).
   float angle = 0.0F;
+  /// Width and height of flat lights in world units, 1e-15 to 1e15. A disk has two equal diameters.
+  vec2 size{1.0F};
+  /// Unit vector along the width of flat lights, at a right angle to `direction`.
+  vec3 right{1.0F, 0.0F, 0.0F};
   /// True if the light is on. A light that is off keeps its index, costs nothing and contributes nothing.
   bool is_on = true;
 };
 
+/// The smallest side of a flat light.
+inline constexpr float kLeastLightSide = 1e-15F;
 /// The smallest radius of a light, because fp32 cannot store the square of a smaller one.
 inline constexpr float kLeastLightRadius = 1e-18F;
 

@@ -29,8 +29,8 @@ class Light:
     """A light (promin/lights.h). The default is a classic point light of power 1 at the origin."""
 
     kind: str = "point"
-    """The kind of the light: "point", "directional", "spot" or "headlight". A headlight shines in the direction of
-    view."""
+    """The kind of the light: "point", "directional", "spot", "rect", "disk" or "headlight". A headlight shines in
+    the direction of view. A "rect" or a "disk" is flat and shines from one side."""
     position: Vec3 = (0.0, 0.0, 0.0)
     """Position of point and spot lights."""
     direction: Vec3 = (0.0, 0.0, -1.0)
@@ -52,6 +52,10 @@ class Light:
     angle: float = 0.0
     """The full angle of directional lights in radians, at most pi. A light with an angle is a disc in the sky with soft
     shadows."""
+    size: tuple[float, float] = (1.0, 1.0)
+    """Width and height of flat lights in world units; a disk has two equal diameters."""
+    right: Vec3 = (1.0, 0.0, 0.0)
+    """Unit vector along the width of flat lights, at a right angle to `direction`."""
     is_on: bool = True
     """True if the light is on. A light that is off keeps its index."""
     name: str = ""

@@ -176,8 +176,13 @@ void aim_at_source(LightRecord light, uint source) {
     // Points and rays are copied here and elsewhere, because glslang 12 fails if packets of points are passed that
     // contain packets.
     ShadingPoint point = points[i];
-    if (has(FEATURE_SAMPLED_LIGHT)) choose_sample(sample_ids[i], FIRST_LIGHT_PAIR + source);
-    LightSample sampled = sample_light(light, point.position);
+    LightSample sampled;
+    if (has(FEATURE_SAMPLED_LIGHT)) {
+      choose_sample(sample_ids[i], FIRST_LIGHT_PAIR + source);
+      sampled = sample_light_or_lobe(point, -paths[i].direction, light);
+    } else {
+      sampled = sample_light(light, point.position);
+    }
     contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
     if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
     Ray ray = shadow_ray(point, light, sampled);

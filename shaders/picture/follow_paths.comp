@@ -76,8 +76,13 @@ void choose_source_sample(uint path, uint source) {
 // Stores the unblocked contribution of a light source of this turn, and requests the source's shadow ray.
 void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
-  if (has(FEATURE_SAMPLED_LIGHT)) choose_source_sample(path, first_source(turn) + source);
-  LightSample sampled = sample_light(light, point.position);
+  LightSample sampled;
+  if (has(FEATURE_SAMPLED_LIGHT)) {
+    choose_source_sample(path, first_source(turn) + source);
+    sampled = sample_light_or_lobe(point, to_eye, light);
+  } else {
+    sampled = sample_light(light, point.position);
+  }
   vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
   store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
   begin_source_log(first_source(turn) + source);
@@ -127,8 +132,13 @@ vec3 add_unshadowed(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
   do {
     if (source < source_count()) {
       LightRecord light = load_light(VIEW.first_index.y + source);
-      if (has(FEATURE_SAMPLED_LIGHT)) choose_source_sample(path, source);
-      LightSample sampled = sample_light(light, point.position);
+      LightSample sampled;
+      if (has(FEATURE_SAMPLED_LIGHT)) {
+        choose_source_sample(path, source);
+        sampled = sample_light_or_lobe(point, to_eye, light);
+      } else {
+        sampled = sample_light(light, point.position);
+      }
       vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
       precise vec3 sum = seen + contribution;
       seen = sum;

@@ -16,25 +16,33 @@ struct LightSample {
 #include "shade/lights/spot.glsl"
 #include "shade/lights/headlight.glsl"
 #include "shade/samples.glsl"
-#include "shade/lights/ball.glsl"
-#include "shade/lights/sun.glsl"
 
-// Some kinds of lights may have a size: with FEATURE_SAMPLED_LIGHT, the bits of LightRecord::kind.z.
+// Kinds of lights that may have a size: with FEATURE_SAMPLED_LIGHT, the bits of LightRecord::kind.z.
 const uint BALL_KINDS = FEATURE_BIT(FEATURE_POINT_LIGHTS) | FEATURE_BIT(FEATURE_SPOT_LIGHTS);
+const uint ROUND_KINDS = BALL_KINDS | FEATURE_BIT(FEATURE_DIRECTIONAL_LIGHTS);
+// Other kinds always have one.
+const uint FLAT_KINDS = FEATURE_BIT(FEATURE_RECT_LIGHTS) | FEATURE_BIT(FEATURE_DISK_LIGHTS);
 
-// Returns the chosen point (choose_sample) of a light with a size.
-LightSample sample_sized_light(LightRecord light, vec3 position) {
-  LightSample sampled;
-  if (BALL_KINDS != 0u && (!has(FEATURE_DIRECTIONAL_LIGHTS) || light.kind.x != LIGHT_DIRECTIONAL)) {
-    sampled = sample_ball(light, position);
-  } else {
-    sampled = sample_sun(light);
-  }
-  return sampled;
+bool is_flat(LightRecord light) { return light.kind.x == LIGHT_RECT || light.kind.x == LIGHT_DISK; }
+bool is_round(LightRecord light) {
+  return ROUND_KINDS != 0u && light.kind.z != 0u && (FLAT_KINDS == 0u || !is_flat(light));
 }
 
+#include "shade/lights/ball.glsl"
+#include "shade/lights/area.glsl"
+
+// Returns the point of sample_u of a round light.
+LightSample sample_round_light(LightRecord light, vec3 position) {
+  RoundLight seen = round_light(light, position);
+  return point_of_round(light, seen, sample_cone(seen.axis, seen.cap));
+}
+
+// Returns the light as seen from `position`; of a light with a size, the point of the chosen sample (choose_sample).
 LightSample sample_light(LightRecord light, vec3 position) {
-  if (has(FEATURE_SAMPLED_LIGHT) && light.kind.z != 0u) return sample_sized_light(light, position);
+  if (has(FEATURE_SAMPLED_LIGHT)) {
+    sample_u = sample_pair_point();
+    if (is_round(light)) return sample_round_light(light, position);
+  }
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)            \
   if (has(FEATURE_##FEATURE) && (LIGHT_KIND_COUNT == 1u || light.kind.x == NUMBER)) { \
     return sample_##PREFIX(light, position);                                          \

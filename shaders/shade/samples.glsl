@@ -15,6 +15,10 @@ uint sample_key;
 uint sample_number;
 uint sample_pair;
 
+// The point of the unit square for which sample_light() returns a point of a light with a size. Set by sample_light() or
+// by sample_light_or_lobe().
+vec2 sample_u;
+
 void choose_sample(uvec2 id, uint pair) {
   sample_key = id.x;
   sample_number = id.y;
@@ -102,20 +106,28 @@ vec3 point_on_disc(vec2 u) {
   return point;
 }
 
-// A direction in a cone, with uniform density over its solid angle.
+// Returns two unit vectors at right angles to a unit axis and to each other.
+void make_frame(vec3 axis, out vec3 across, out vec3 along) {
+  across = normalize3(cross3(axis, abs(axis.x) < 0.57 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+  along = cross3(axis, across);
+}
+
+// A direction in a cone.
 struct ConeSample {
   vec3 direction;  // unit
   float below;     // 1 minus the cosine of its angle to the axis
 };
 
-// Chooses a direction in the cone about a unit axis. `cap` is 1 minus the cosine of half its angle, at most 2.
+// Chooses a direction in the cone about a unit axis, with uniform density over its solid angle. `cap` is 1 minus the
+// cosine of half its angle, at most 2.
 ConeSample sample_cone(vec3 axis, float cap) {
-  vec3 disc = point_on_disc(sample_pair_point());
+  vec3 disc = point_on_disc(sample_u);
   // Lambert's azimuthal projection maps the disc to the cap of the unit sphere; areas stay in proportion.
   precise float below = cap * disc.z;
   precise float scale = sqrt(cap * (2.0 - below));
-  vec3 across = normalize3(cross3(axis, abs(axis.x) < 0.57 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-  vec3 along = cross3(axis, across);
+  vec3 across;
+  vec3 along;
+  make_frame(axis, across, along);
   precise vec3 direction = scale * (disc.x * across + disc.y * along) + (1.0 - below) * axis;
   return ConeSample(direction, below);
 }

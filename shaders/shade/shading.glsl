@@ -449,12 +449,78 @@ vec3 shadow_origin_behind(ShadingPoint point) {
   return lift_off(point.position, -point.geometric_normal, point.lift);
 }
 
+// Returns the density per solid angle with which choose_from_lobe() chooses a direction (Heitz, "Sampling the GGX
+// Distribution of Visible Normals", JCGT 7(4), 2018).
+float density_of_lobe(vec3 normal, float alpha, vec3 to_eye, vec3 direction) {
+  precise vec3 sum = to_eye + direction;
+  float size = length3(sum);
+  if (size < LEAST_HALF_VECTOR) return 0.0;
+  precise vec3 h = sum / size;
+  float v = max(dot3(normal, to_eye), LEAST_COSINE);
+  precise float root = sqrt(alpha * alpha + (1.0 - alpha * alpha) * v * v);
+  precise float density = density_of(normal, h, alpha) * 0.5 / (v + root);
+  return density;
+}
+
+// Returns a direction in which a lobe reflects light to the eye, for a point of the unit square: by visible normals
+// (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
+vec3 choose_from_lobe(vec3 normal, float alpha, vec3 to_eye, vec2 u) {
+  vec3 across;
+  vec3 along;
+  make_frame(normal, across, along);
+  precise vec3 stretched = vec3(alpha * dot3(to_eye, across), alpha * dot3(to_eye, along), max(dot3(to_eye, normal), LEAST_COSINE));
+  vec3 wide = normalize3(stretched);
+  vec3 disc = point_on_disc(u);
+  precise float z = (1.0 - disc.z) * (1.0 + wide.z) - wide.z;
+  precise vec2 aside = disc.xy * sqrt(max((1.0 - z) * (1.0 + z), 0.0) / disc.z);
+  precise vec3 standard = vec3(alpha * (aside + wide.xy), max(z + wide.z, 0.0));
+  vec3 local = normalize3(standard);
+  precise vec3 h = local.x * across + (local.y * along + local.z * normal);
+  precise vec3 direction = 2.0 * dot3(to_eye, h) * h - to_eye;
+  return normalize3(direction);
+}
+
+// Returns a point of a light as sample_light() does. A lobe that is narrower than a round light reflects an image of it,
+// which light sampling alone would see in few samples of large weight. Half of the samples then choose a direction from
+// the lobe. The strength is 1 / density of the mixture (Veach and Guibas, 1995: the balance heuristic), and 0 if the
+// direction misses the light.
+LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, LightRecord light) {
+  if (!has(FEATURE_METALLIC_ROUGHNESS) || model_of(point) != MATERIAL_METALLIC_ROUGHNESS || !is_round(light)) {
+    return sample_light(light, point.position);
+  }
+  bool has_coat = is_coated(point);
+  float roughness = has_coat ? point.coat.roughness : point.material.c.x;
+  vec3 normal = has_coat ? point.coat.normal : point.normal;
+  precise float alpha = max(roughness * roughness, LEAST_ALPHA);
+  RoundLight seen = round_light(light, point.position);
+  bool is_mixed = alpha * alpha < seen.cap;
+  vec2 u = sample_pair_point();
+  bool is_of_lobe = is_mixed && u.x > 0.5;
+  precise float x = is_mixed ? 2.0 * u.x - (is_of_lobe ? 1.0 : 0.0) : u.x;
+  sample_u = vec2(x, u.y);
+  ConeSample cone = sample_cone(seen.axis, seen.cap);
+  if (is_of_lobe) {
+    cone.direction = choose_from_lobe(normal, alpha, to_eye, sample_u);
+    precise vec3 apart = cone.direction - seen.axis;
+    precise float below = 0.5 * dot3(apart, apart);
+    cone.below = below;
+  }
+  LightSample sampled = point_of_round(light, seen, cone);
+  if (is_mixed) {
+    precise float share = 6.28318531 * seen.cap * density_of_lobe(normal, alpha, to_eye, cone.direction);
+    precise float strength = sampled.strength * 2.0 / (1.0 + share);
+    sampled.strength = cone.below <= seen.cap ? strength : 0.0;
+  }
+  return sampled;
+}
+
 // With FEATURE_SAMPLED_LIGHT, returns the shadow ray to the chosen point of a light. For a light without size it has
 // the same bits as shadow_ray(origin, light).
 Ray sampled_shadow_ray(ShadingPoint point, vec3 origin, LightRecord light, LightSample sampled) {
   precise vec3 to_point = sampled.direction + (point.position - origin);
   precise vec3 to_place = light.position.xyz - origin;
-  vec3 to_source = light.kind.z != 0u ? to_point : to_place;
+  bool has_size = is_round(light) || (FLAT_KINDS != 0u && is_flat(light));
+  vec3 to_source = has_size ? to_point : to_place;
   return make_ray(origin, sampled.tmax < INFINITY ? to_source : sampled.direction, 0.0, sampled.tmax);
 }
 

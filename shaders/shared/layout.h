@@ -225,7 +225,8 @@ struct LightRecord {
   vec4 specular;
   uvec4 kind;  // x = LIGHT_*, y = 1 if the power decreases with distance; z = bits of the size: the radius of a
                // point or spot light, the squared sine of half the angle of a directional light; 0 for a light without
-               // size
+               // size. Flat lights (lights/area.glsl): z = bits of the z of the direction of the width, whose x and y
+               // are diffuse.w and specular.w; direction.w and position.w = half of the width and of the height
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 

@@ -119,7 +119,7 @@ TEST(KernelsTest, OnlyFeaturesWithSamplePointsHaveTheirHash) {
   constexpr uint64_t kSamples = uint64_t{1} << 55 | uint64_t{1} << 39;
   static_assert(static_cast<uint32_t>(layout::FEATURE_SAMPLED_LIGHT) == 55);
   static_assert(static_cast<uint32_t>(layout::FEATURE_LENS) == 39);
-  const auto has_hash = [](std::span<const uint32_t> spirv, uint64_t mask) {
+  const auto has_hash = [&](std::span<const uint32_t> spirv, uint64_t mask) {
     const std::vector<uint32_t> module = specialize(spirv, constants_of(mask, 1, 0));
     return std::ranges::count(module, kOfHash) > 0;
   };

@@ -851,6 +851,33 @@ TEST_F(GltfTest, LightsHaveSizes) {
   EXPECT_THAT(sized("point", {{"angle", 1}}).warnings, ElementsAre(HasSubstr("its angle is ignored")));
 }
 
+// EXT_lights_area is a draft.
+TEST_F(GltfTest, FlatLightsAreRead) {
+  const auto flat = [&](const json& light, const json& node = json::object()) {
+    GltfBuilder gltf = triangle_gltf();
+    gltf.json["extensions"]["EXT_lights_area"]["lights"] = {light};
+    json holder = node;
+    holder["extensions"]["EXT_lights_area"]["light"] = 0;
+    gltf.add_node(holder);
+    return load(gltf);
+  };
+  const LoadedScene rect =
+      flat({{"type", "rect"}, {"color", {1, 0.5, 0}}, {"intensity", 8}, {"size", 0.5}, {"rect", {{"aspect", 3}}}},
+           {{"scale", {2, 1, 1}}, {"translation", {1, 2, 3}}});
+  const Light& light = rect.lights.at(0);
+  EXPECT_EQ(light.kind, LightKind::kRect);
+  EXPECT_EQ(light.position, vec3(1, 2, 3));
+  EXPECT_EQ(light.diffuse, vec3(8, 4, 0));
+  EXPECT_EQ(light.size, vec2(3, 1)) << "the largest scale multiplies both sides";
+  expect_near(light.direction, {0, 0, -1});
+  expect_near(light.right, {1, 0, 0});
+  EXPECT_EQ(flat({{"type", "disk"}}).lights.at(0).size, vec2(1));
+  const LoadedScene wrong = flat({{"type", "rect"}, {"size", -1}});
+  EXPECT_THAT(wrong.warnings, ElementsAre(HasSubstr("EXT_lights_area.lights[0].size")));
+  EXPECT_THAT(flat({{"type", "tube"}}).warnings, ElementsAre(HasSubstr("promin omits the light")));
+  EXPECT_THAT(flat({{"type", "disk"}}, {{"scale", {0, 0, 0}}}).warnings, ElementsAre(HasSubstr("promin omits it")));
+}
+
 // Sizes out of range become the nearest that a light can have, with a warning.
 TEST_F(GltfTest, WrongSizesOfLightsAreRepaired) {
   const auto sized = [&](const char* type, const json& extension) {

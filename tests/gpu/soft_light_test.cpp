@@ -58,6 +58,26 @@ world::Scene make_soft_scene() {
   return scene;
 }
 
+/// The same floor and balls under a rectangle and a disk, which touch the region where points are chosen by area, and
+/// two small ones.
+world::Scene make_flat_scene() {
+  world::Scene scene = make_soft_scene();
+  scene.lights.clear();
+  const auto add = [&](LightKind kind, const vec3& position, const vec3& direction, const vec2& size, float radiance) {
+    Light light = make_ball(position, 0.0F, radiance);
+    light.kind = kind;
+    light.direction = glm::normalize(direction);
+    light.right = glm::normalize(glm::cross(light.direction, vec3(0.2F, 0.3F, 1.0F)));
+    light.size = size;
+    scene.lights.push_back(light);
+  };
+  add(LightKind::kRect, vec3(-1.0F, 1.8F, 0.9F), vec3(0.3F, -1.0F, -0.2F), vec2(1.2F, 0.7F), 3.0F);
+  add(LightKind::kDisk, vec3(1.4F, 1.5F, 0.8F), vec3(-0.4F, -1.0F, -0.4F), vec2(0.9F), 3.0F);
+  add(LightKind::kRect, vec3(-2.0F, 3.0F, 1.5F), vec3(0.6F, -1.0F, -0.4F), vec2(0.2F, 0.1F), 60.0F);
+  add(LightKind::kDisk, vec3(0.0F, 3.5F, -1.0F), vec3(0.0F, -1.0F, 0.3F), vec2(0.15F), 60.0F);
+  return scene;
+}
+
 View make_soft_view(uvec2 size = kSize) {
   View view;
   view.size = size;
@@ -99,7 +119,57 @@ TEST_F(SoftLightTest, EachSampleIsTheOracles) {
   expect_samples(make_soft_scene(), make_soft_view());
 }
 
-// Each sample of a pixel has another number. The mean of several tells whether all are right.
+TEST_F(SoftLightTest, EachSampleOfFlatLightsIsTheOracles) {
+  expect_samples(make_flat_scene(), make_soft_view());
+}
+
+/// The same scene with metals and a coat, smooth and rough.
+world::Scene make_glossy_scene() {
+  world::Scene scene = make_soft_scene();
+  MetallicRoughness metal;
+  metal.base_color = vec3(0.9F, 0.7F, 0.4F);
+  metal.metallic = 1.0F;
+  metal.roughness = 0.25F;
+  MetallicRoughness coated;
+  coated.base_color = vec3(0.2F, 0.3F, 0.7F);
+  coated.metallic = 0.0F;
+  coated.roughness = 0.8F;
+  coated.clearcoat = 1.0F;
+  coated.clearcoat_roughness = 0.15F;
+  MetallicRoughness floor;
+  floor.metallic = 0.0F;
+  floor.roughness = 0.35F;
+  scene.materials = {{.model = floor}, {.model = metal}, {.model = coated}};
+  return scene;
+}
+
+// Half of the samples of smooth lobes choose a direction that the lobe reflects.
+TEST_F(SoftLightTest, EachSampleOfSmoothLobesIsTheOracles) {
+  expect_samples(make_glossy_scene(), make_soft_view());
+}
+
+// The mean does not depend on how points are chosen: a lobe slightly wider than the light chooses points of the light
+// alone. The reflectance of a narrow lobe that sees the lamp's image is its share of the lamp's radiance.
+TEST_F(SoftLightTest, MirrorsOfLampsHaveTheLampsRadiance) {
+  world::Scene scene;
+  MetallicRoughness metal;
+  metal.metallic = 1.0F;
+  metal.roughness = 0.05F;
+  scene.materials = {{.model = metal}};
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
+  scene.lights = {make_ball(vec3(0.0F, 2.0F, 0.0F), 0.5F, 3.0F)};
+  View view = make_soft_view(uvec2(8));
+  view.camera.eye = vec3(0.0F, 3.0F, 0.0F);
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  view.camera.yfov = 0.01F;
+  view.max_depth = 0;
+  view.samples_per_pixel = 256;
+  // Light of radiance L from the whole lobe is reflected as L by a white metal.
+  EXPECT_NEAR(mean_of(scene, view) / (3.0 / (std::numbers::pi * 0.25)), 1.0, 0.01);
+}
+
+// Each sample of a pixel has another number. The mean of several samples is right only if all are.
 TEST_F(SoftLightTest, NumberedSamplesAreTheOracles) {
   const world::Scene scene = make_soft_scene();
   View view = make_soft_view();
@@ -196,6 +266,50 @@ TEST_F(SoftLightTest, CutBallsHaveTheirClosedForm) {
   EXPECT_NEAR(mean_of(scene, view) / (std::numbers::pi * radiance), 1.0, 0.01) << "inside";
 }
 
+// E = L / 2 sum of angle_i cos_i over the edges (Lambert's formula for polygons), and E = pi L r^2 / (r^2 + h^2) on the
+// axis of a disk. Behind a flat light there is no light.
+TEST_F(SoftLightTest, FlatLightsHaveTheirClosedForm) {
+  world::Scene scene;
+  scene.materials = {make_matte(vec3(1.0F))};
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
+  View view = make_soft_view(uvec2(8));
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  view.camera.yfov = 0.002F;
+  view.samples_per_pixel = 256;
+  Light light = make_ball(vec3(0.1F, 0.6F, -0.2F), 0.0F, 2.0F);
+  light.kind = LightKind::kRect;
+  light.direction = vec3(0, -1, 0);
+  for (const vec2& size : {vec2(1.3F, 0.6F), vec2(0.1F, 0.05F)}) {
+    for (const dvec3& at : {dvec3(0, 0, 0), dvec3(0.9, 0, 0.4), dvec3(-2.0, 0, 1.5)}) {
+      light.size = size;
+      scene.lights = {light};
+      view.camera.eye = vec3(at + dvec3(0, 0.3, 0));
+      const dvec3 x = 0.5 * static_cast<double>(size.x) * dvec3(1, 0, 0);
+      const dvec3 z = 0.5 * static_cast<double>(size.y) * dvec3(0, 0, 1);
+      const dvec3 middle = dvec3(light.position) - at;
+      const std::array<dvec3, 4> corners = {middle - x - z, middle + x - z, middle + x + z, middle - x + z};
+      double sum = 0.0;
+      for (size_t i = 0; i < 4; ++i) {
+        const dvec3 a = glm::normalize(corners[i]);
+        const dvec3 b = glm::normalize(corners[(i + 1) % 4]);
+        sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(b, a)).y;
+      }
+      EXPECT_NEAR(mean_of(scene, view) / std::abs(0.5 * 2.0 * sum), 1.0, 0.003) << size.x << " " << at.x;
+    }
+  }
+  light.kind = LightKind::kDisk;
+  view.camera.eye = vec3(0.1F, 0.3F, -0.2F);
+  for (const double radius : {0.5, 0.05}) {
+    light.size = vec2(static_cast<float>(2.0 * radius));
+    scene.lights = {light};
+    const double expected = std::numbers::pi * 2.0 * radius * radius / (radius * radius + 0.36);
+    EXPECT_NEAR(mean_of(scene, view) / expected, 1.0, 0.003) << radius;
+  }
+  scene.lights[0].direction = vec3(0, 1, 0);
+  EXPECT_EQ(mean_of(scene, view), 0.0);
+}
+
 // Half of a sun's disc is visible below a straight edge that points at its middle.
 TEST_F(SoftLightTest, EdgesShowTheirShareOfTheSun) {
   world::Scene scene;
@@ -276,6 +390,19 @@ TEST_F(SoftLightTest, ExtremeSizesGiveFinitePictures) {
     scene.lights[0].angle = angle;
     renderer.set_lights(scene.lights);
     for (const vec3& pixel : renderer.render(view).image.pixels) ASSERT_TRUE(std::isfinite(pixel.x)) << angle;
+  }
+  scene.lights = {make_flat_scene().lights[0], make_flat_scene().lights[1]};
+  for (const vec2& size : {vec2(1e-15F), vec2(1e6F, 1e-6F), vec2(1e15F)}) {
+    for (const vec3& position : {vec3(0.0F), vec3(-0.8F, 0.5F, 0.0F), vec3(0.0F, 2.0F, 0.0F)}) {
+      for (Light& light : scene.lights) {
+        light.size = light.kind == LightKind::kDisk ? vec2(size.x) : size;
+        light.position = position;
+      }
+      renderer.set_lights(scene.lights);
+      for (const vec3& pixel : renderer.render(view).image.pixels) {
+        ASSERT_TRUE(std::isfinite(pixel.x) && pixel.x >= 0.0F) << size.x << " " << size.y << " " << position.y;
+      }
+    }
   }
 }
 

@@ -19,6 +19,7 @@ using nlohmann::json;
 /// The extensions that the loader reads.
 // clang-format off
 constexpr std::string_view kKnown[] = {
+    "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_avif",

@@ -67,7 +67,7 @@ std::string say_left_out(const JsonRule& rule) {
   const std::string_view name = last_name(part);
   if (name.ends_with("Texture")) return "promin omits the texture";
   if (name == "cameras[]") return "promin omits the camera";
-  if (name == "lights[]" || name == "KHR_lights_punctual") return "promin omits the light";
+  if (name == "lights[]" || name == "KHR_lights_punctual" || name == "EXT_lights_area") return "promin omits the light";
   return "promin ignores the object that contains it";
 }
 

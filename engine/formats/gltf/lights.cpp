@@ -179,6 +179,44 @@ std::optional<LightLink> read_gltf_light(const GltfDocument& document, const Pla
   return result;
 }
 
+std::optional<LightLink> read_gltf_area_light(const GltfDocument& document, const PlacedNode& placed,
+                                              LoadReport& report) {
+  const auto& node = document.json["nodes"][static_cast<size_t>(placed.node)];
+  const json* link = find_extension(node, "EXT_lights_area");
+  if (link == nullptr) return std::nullopt;
+  const size_t index = (*link)["light"];
+  const auto& source = document.json["extensions"]["EXT_lights_area"]["lights"][index];
+  if (source.is_null()) return std::nullopt;
+  const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
+
+  LightLink result{.node = placed.index};
+  Light& light = result.rest;
+  const std::string name = node.value("name", "");
+  light.name = name.empty() ? source.value("name", "") : name;
+  light.kind = source["type"] == "rect" ? LightKind::kRect : LightKind::kDisk;
+  const dmat3 columns(placed.world_from_object);
+  const double scale = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
+  const double height = scale * source.value("size", 1.0);
+  const double aspect =
+      light.kind == LightKind::kRect && source.contains("rect") ? source["rect"].value("aspect", 1.0) : 1.0;
+  light.size = vec2(static_cast<float>(aspect * height), static_cast<float>(height));
+  const bool is_sized = std::min(light.size.x, light.size.y) >= kLeastLightSide &&
+                        static_cast<double>(std::max(light.size.x, light.size.y)) <= kMaxCoordinate;
+  const Attached attached = attach(placed.world_from_object, placed.rotation, light);
+  if (attached == Attached::kFar || !is_sized) {
+    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world, or its sides are out of range", "",
+                 node_place, "", "promin omits it"});
+    return std::nullopt;
+  }
+  if (attached == Attached::kWithoutDirection) {
+    report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
+    return std::nullopt;
+  }
+  const dvec3 radiance = source.value("intensity", 1.0) * vec3_of(source, "color", dvec3(1.0));
+  light.diffuse = light.specular = vec3(radiance);
+  return result;
+}
+
 void read_gltf_sky(const GltfDocument& document, Scene& scene, LoadReport& report) {
   const json* extension = find_extension(document.json, "OMI_environment_sky");
   if (extension == nullptr || (*extension)["skies"].empty()) return;

@@ -83,7 +83,9 @@ class SceneReader {
     }
     // A light that an animation may show keeps its number while it is hidden.
     if (placed.is_visible || animated_.is_hidden[placed.index]) {
-      if (auto light = read_gltf_light(document_, placed, report_)) {
+      for (const auto& read : {read_gltf_light, read_gltf_area_light}) {
+        auto light = read(document_, placed, report_);
+        if (!light) continue;
         light->rest.is_on = placed.is_visible;
         scene_.lights.push_back(light->rest);
         motion_.lights.push_back(std::move(*light));

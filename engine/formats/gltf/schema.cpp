@@ -47,8 +47,12 @@ constexpr double kHalfPi = 1.5707964;
 constexpr double kPi = 3.141592653589793;
 constexpr double kJustUnder = 1.0 - 0x1p-52;
 constexpr double kTiny = 1e-9;
+/// The smallest side of a light, and its smallest ratio of width to height.
+constexpr double kMinSide = 1e-15;
+constexpr double kMinAspect = 1e-6;
 
 #define PROMIN_LIGHTS "extensions.KHR_lights_punctual.lights"
+#define PROMIN_AREAS "extensions.EXT_lights_area.lights"
 #define PROMIN_SHAPES "extensions.KHR_implicit_shapes.shapes"
 #define PROMIN_SKIES "extensions.OMI_environment_sky.skies"
 #define PROMIN_LINK "meshes[].primitives[].extensions.PROMIN_mesh_primitive_implicit_shape"
@@ -298,6 +302,17 @@ constexpr JsonRule kRules[] = {
     length_or_zero(PROMIN_LIGHTS "[].extensions.PROMIN_lights_size.radius"),
     number(PROMIN_LIGHTS "[].extensions.PROMIN_lights_size.angle", 0.0, kPi),
 
+    needed(index("nodes[].extensions.EXT_lights_area.light", PROMIN_AREAS)),
+    needed(array(PROMIN_AREAS)),
+    object(PROMIN_AREAS "[]"),
+    text(PROMIN_AREAS "[].name"),
+    needed(choice(PROMIN_AREAS "[].type", "rect|disk")),
+    color(PROMIN_AREAS "[].color"),
+    factor(PROMIN_AREAS "[].intensity"),
+    number(PROMIN_AREAS "[].size", kMinSide, kMaxCoordinate),
+    object(PROMIN_AREAS "[].rect"),
+    number(PROMIN_AREAS "[].rect.aspect", kMinAspect, 1.0 / kMinAspect),
+
     index("scenes[].extensions.OMI_environment_sky.sky", PROMIN_SKIES),
     needed(array(PROMIN_SKIES)),
     object(PROMIN_SKIES "[]"),
@@ -380,6 +395,7 @@ constexpr JsonRule kBufferRules[] = {
 };
 
 #undef PROMIN_LIGHTS
+#undef PROMIN_AREAS
 #undef PROMIN_SHAPES
 #undef PROMIN_SKIES
 #undef PROMIN_LINK
@@ -413,10 +429,12 @@ constexpr std::string_view kRepairedParts[] = {
     "cameras",
     "nodes[].camera",
     "nodes[].extensions.KHR_lights_punctual",
+    "nodes[].extensions.EXT_lights_area",
     "nodes[].extensions.KHR_node_visibility",
     "meshes[].primitives[].material",
     "meshes[].primitives[].extensions.KHR_materials_variants",
     "extensions.KHR_lights_punctual",
+    "extensions.EXT_lights_area",
     "extensions.KHR_materials_variants",
     "extensions.OMI_environment_sky",
     "scenes[].extensions.OMI_environment_sky",
