@@ -50,9 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.command in ("render", "cast"):
             return _begin(options, [word for word in others if word != "--"])
         if others:
-            raise jobs.UsageError(
-                f"{others[0]} is not known; see promin-farm {options.command} -h"
-            )
+            raise jobs.UsageError(f"{others[0]} is not known; see promin-farm {options.command} -h")
         commands = {"resume": _resume, "work": _work, "status": _status, "verify": _verify, "audit": _audit}
         return commands[options.command](options)
     except jobs.Error as error:

@@ -331,7 +331,9 @@ def test_comparisons_of_answers(scene: Path, rays: Path, tmp_path: Path, query: 
         hits[met[:count], 0] = np.float32(1e6).view(np.int32)
         job.write(0, description, hits.tobytes() + tail)
         found = runner.compare(0)
-        assert found.is_within == is_within and (found.mismatches == count if query != "--all" else found.mismatches >= 1)
+        assert found.is_within == is_within and (
+            found.mismatches == count if query != "--all" else found.mismatches >= 1
+        )
 
 
 def test_a_tree_is_built_once(tmp_path: Path, run_promin: RunPromin) -> None:

@@ -10,26 +10,30 @@ import subprocess
 import sys
 import tempfile
 
-FIRST = '''
+FIRST = """
 #include <span>
 #define PARTS(NAME) case NAME: return 1;
 namespace promin {
 namespace {
 using Json = int;
 using std::string;
+
 constexpr int kSize = 1 << 20;  // kPlain
 const char* const kWords[] = {"namespace { int kQuoted; }", "}"};
 struct Row : Base<int> {
   int member() { return kPlain; }
 };
+
 template <typename Number, size_t N>
 requires std::is_integral_v<Number>
 std::array<Number, N> make_row(const std::map<int, int>& values = {}) {
   return {};
 }
 [[nodiscard]] bool is_good(float value) { return value > 0; }
+
 }  // namespace
 static void turn() {}
+
 int count(int value) {
   struct Local {};
   const int kLocal = 1;
@@ -38,19 +42,19 @@ int count(int value) {
 Row::Row() : member_(1) {}
 TEST(Names, Differ) {}
 }  // namespace promin
-'''
+"""
 # Each text declares a name of FIRST once more. The line is that of the clash in FIRST.
 CLASHES = {
     "namespace { using Json = long; }": 6,
-    "namespace { int kSize; }": 8,
-    "namespace { constexpr std::array kWords = {1}; }": 9,
-    "namespace { enum class Row { kOne }; }": 10,
-    "namespace promin { namespace { template <typename T> int make_row(T) { return 0; } } }": 13,
-    "int is_good(double value) { return 0; }\nint user() { return is_good(1.0); }": 18,
-    "static int turn(int x) {\n  return x;\n}": 20,
-    "TEST(Names, Differ) {}": 27,
+    "namespace { int kSize; }": 9,
+    "namespace { constexpr std::array kWords = {1}; }": 10,
+    "namespace { enum class Row { kOne }; }": 11,
+    "namespace promin { namespace { template <typename T> int make_row(T) { return 0; } } }": 15,
+    "int is_good(double value) { return 0; }\nint user() { return is_good(1.0); }": 20,
+    "static int turn(int x) {\n  return x;\n}": 23,
+    "TEST(Names, Differ) {}": 31,
 }
-FINE = '''
+FINE = """
 namespace {
 using Json = int;
 using std::string;
@@ -60,7 +64,7 @@ void PARTS_of() {}
 }  // namespace
 TEST(Names, Agree) {}
 int other(int value) { return value; }
-'''
+"""
 
 
 def run(tool, folder, *texts):
