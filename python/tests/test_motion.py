@@ -77,7 +77,7 @@ def test_a_pose_keeps_additions_and_can_be_pickled(moving_file: Path) -> None:
     scene.add_sphere(center=(0, 0, 9), radius=1)
     scene.set_material(0, name="mine")
     posed = scene.at(1.0)
-    assert bounds_of(posed) == [[-1, -1, 0], [3, 1, 10]]
+    assert np.allclose(bounds_of(posed), [[-1, -1, 0], [3, 1, 10]], atol=1e-5)
     assert posed.materials[0].name == "mine"
     assert [each.primitive_count for each in posed.objects] == [1, 1]
     assert bounds_of(pickle.loads(pickle.dumps(posed))) == bounds_of(posed)
