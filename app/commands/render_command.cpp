@@ -29,6 +29,7 @@
 #include "promin/image.h"
 #include "trace/film/refinement.h"
 #include "work/jobs/render_job.h"
+#include "work/pictures/frame_renderers.h"
 #include "work/pictures/picture_run.h"
 #include "work/pictures/tracing_run.h"
 #include "work/spec/check_spec.h"
@@ -106,7 +107,7 @@ double writing_s(const View& view, size_t pictures) {
 /// Renders all frames after loading the scene once. The message of an error names the frame. The pictures of earlier
 /// frames are complete then.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& options, const Stopwatch& total,
-                   const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                   const gpu::Device& device, const Scene& scene, FrameRenderers& renderers, RunStats& stats,
                    const Console& console) {
   Progress progress(console.is_quiet());
   const View asked = *stats.view;
@@ -114,8 +115,9 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& op
   for (size_t i = 0; i < frames.size(); ++i) {
     const PlannedFrame& frame = frames[i];
     const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
+    Renderer& renderer = renderers.at(frame);
     stats.view = asked;
-    if (frame.camera) stats.view->camera = *frame.camera;
+    renderers.describe(frame, *stats.view, stats);
     // The first frame's time includes loading and compiling; each frame's time includes writing its pictures.
     const Stopwatch of_frame;
     const auto taken_s = [&] { return 1e-3 * (i == 0 ? total : of_frame).ms(); };
@@ -185,7 +187,27 @@ void check_standard_output(const RenderSpec& options) {
   };
   if (count > 1) refuse("-o - is given twice");
   if (options.path) refuse("-o - takes one picture, not the frames of --path");
+  if (options.makes_film()) refuse("-o - takes one picture, not the frames of an animation");
   if (options.job.folder) refuse("-o - and --job contradict each other");
+}
+
+/// Checks the files of the frames, and removes frames whose pictures exist if the user wants that. Returns false if
+/// nothing remains. Throws UsageError.
+bool has_work(const RenderSpec& given, const RenderSpec& options, std::vector<PlannedFrame>& frames,
+              const Console& console) {
+  const TracingOptions& tracing = options.tracing;
+  const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
+  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
+  const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
+  check_outputs(inputs_of(options), pictures_of(frames), tracing.stats);
+  if (skipped > 0) {
+    console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
+                             count_of(skipped + frames.size(), "frame")));
+  }
+  if (!frames.empty()) return true;
+  if (tracing.stats)
+    console.note(fmt::format("{} is not written, because nothing was traced", tracing.stats->string()));
+  return false;
 }
 
 /// Continues a job. If all pieces are done, writes its pictures. Calls `begin` after all checks have passed.
@@ -212,24 +234,15 @@ void render(const RenderSpec& given, bool prints_spec) {
   options.pictures = name_pictures(options);
   check_pictures(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);
-  const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
-  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
-  const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
-  check_outputs(inputs_of(options), pictures_of(frames), tracing.stats);
-  if (skipped > 0) {
-    console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
-                             count_of(skipped + frames.size(), "frame")));
-  }
-  if (frames.empty()) {
-    if (tracing.stats)
-      console.note(fmt::format("{} is not written, because nothing was traced", tracing.stats->string()));
-    return;
-  }
+  // The length of a whole film is known only after the scene is read.
+  const bool is_known = !frames.empty();
+  if (is_known && !has_work(given, options, frames, console)) return;
 
   std::optional<StageNote> stage;
   stage.emplace("loading", console);
   PictureRun run = prepare_pictures(options, std::move(frames), console);
   stage.reset();
+  if (!is_known && !has_work(given, options, run.frames, console)) return;
   options = run.options;
   check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
   const auto tell_names = [&] {
@@ -245,8 +258,9 @@ void render(const RenderSpec& given, bool prints_spec) {
   RunStats& stats = run.stats;
   const gpu::DeviceHandle device = open_device_for(tracing, stats, console);
   stage.emplace("compiling", console);
-  Renderer renderer = make_renderer(
-      *device, scene, make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
+  FrameRenderers renderers(*device, run,
+                           make_renderer_options(options, count_samples(*stats.view, run.frames.size(), options)));
+  Renderer& renderer = renderers.at(run.frames.front());
   stage.reset();
   take_setup(renderer.setup_stats(), *device, stats, console);
   if (options.explained_pixel) {
@@ -255,7 +269,7 @@ void render(const RenderSpec& given, bool prints_spec) {
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }
-  render_frames(run.frames, options, total, *device, scene, renderer, stats, console);
+  render_frames(run.frames, options, total, *device, scene, renderers, stats, console);
 
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();

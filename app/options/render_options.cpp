@@ -273,15 +273,16 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
 }
 
 void add_fps_option(OptionTable& table, std::optional<double>& fps) {
-  table.add("--fps", "N|stored",
-            fmt::format("Pictures per second of the path, {} to {}. stored renders exactly the frames in the file [the "
-                        "fps in the file; if it has none, stored]",
-                        PathPictures::kMinFps, PathPictures::kMaxFps),
-            [&](const OptionValues& w) {
-              constexpr std::array<std::string_view, 1> kWords = {"stored"};
-              const bool is_stored = w.text() == kWords[0];
-              fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps, kWords);
-            });
+  table.add(
+      "--fps", "N|stored",
+      fmt::format("Pictures per second of the path or of the scene's animation, {} to {}. stored renders exactly the "
+                  "frames in the path's file [the fps in the file; if it has none, stored. Without --path: 24]",
+                  PathPictures::kMinFps, PathPictures::kMaxFps),
+      [&](const OptionValues& w) {
+        constexpr std::array<std::string_view, 1> kWords = {"stored"};
+        const bool is_stored = w.text() == kWords[0];
+        fps = is_stored ? PathPictures::kStored : w.real(0, PathPictures::kMinFps, PathPictures::kMaxFps, kWords);
+      });
 }
 
 namespace {
@@ -373,7 +374,9 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   table.add("--path", "FILE.json",
             "Render the frames of a camera path. #### in the name of -o stands for the frame number",
             [&](const OptionValues& w) { options.path = w.text(); });
-  table.add("--frames", "A-B", "With --path: render only frames A to B, including B. The first frame is 0 [all]",
+  table.add("--frames", "A-B",
+            "Render only frames A to B of a camera path or of the scene's animation, including B. The first frame is "
+            "0. Without --path, frame I has the time I / fps [all]",
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
   table.add_flag("--skip-existing", "With --path: skip frames if their pictures exist already", options.skips_existing);

@@ -194,8 +194,8 @@ TEST_F(PathCliTest, WrongUseIsRefused) {
     expect_failure(render_path(arguments), 2, part);
     EXPECT_THAT(files(), testing::ElementsAre("path.json"));
   }
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "usage.option.needs --frames");
-  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "usage.option.needs --fps");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--frames", "0"}), 2, "animation.missing square.gltf");
+  expect_failure(run({"render", "square.gltf", "-o", "a.exr", "--fps", "9"}), 2, "animation.missing square.gltf");
   write("path.json", "{}");
   const ProcessResult bad = render_path({"-o", "f#.exr"});
   EXPECT_EQ(bad.exit_code, 3);

@@ -166,8 +166,17 @@ const WrongUsage kWrongUsages[] = {
     {"usage.options.contradict", {"render", "square.gltf", "--job", "j", "--piece", "0/2", "-o", "a.exr"}},
     {"usage.option.needs", {"render", "square.gltf", "--piece", "0/2"}},
     {"usage.option.value", {"render", "square.gltf", "--job", "j", "--piece", "2"}},
-    {"usage.option.needs", {"render", "square.gltf", "--frames", "0-3"}},
-    {"usage.option.needs", {"render", "square.gltf", "--fps", "25"}},
+    {"animation.missing", {"render", "square.gltf", "--frames", "0-3"}},
+    {"animation.missing", {"render", "square.gltf", "--path", "path.json", "--animation", "0"}},
+    {"usage.option.needs", {"render", "walk.gltf", "--fps", "stored"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--time", "1"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--fps", "12", "--animation", "none"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--bvh", "a.pbvh"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--exposure", "average"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--explain", "1", "1"}},
+    {"output.frames.one", {"render", "walk.gltf", "--frames", "0-3", "-o", "a.png"}},
+    {"output.standard.taken", {"render", "walk.gltf", "--frames", "0-3", "-o", "-"}},
+    {"film.frames.many", {"render", "long.gltf", "--fps", "1000"}},
     {"usage.option.value", {"render", "square.gltf", "--frames", "3-0"}},
     {"usage.option.needs", {"render", "square.gltf", "--depth", "plane"}},
     {"usage.option.value", {"render", "square.gltf", "--lights-off", "x"}},
@@ -227,6 +236,9 @@ void write_scenes() {
   test::animate(walk, 1, "/nodes/0/scale", {0, 1}, {1, 1, 1, 2, 2, 2}, "VEC3");
   walk.json["animations"][0]["name"] = "walk";
   write_case("walk.gltf", walk.text());
+  GltfBuilder slow = triangle_gltf();
+  test::animate(slow, 0, "/nodes/0/translation", {0, 1e6F}, {0, 0, 0, 1, 0, 0}, "VEC3");
+  write_case("long.gltf", slow.text());
   std::string narrow = kSquareGltf;
   const std::string yfov = "\"yfov\"";
   write_case("narrow.gltf", narrow.replace(narrow.find(yfov), yfov.size(), "\"aspectRatio\": 1e-6, " + yfov));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -39,6 +40,15 @@ TEST(SlerpTest, TurnsAtAConstantSpeed) {
     EXPECT_NEAR(slerp(from, -to, t).y, std::sin(0.7 * t), 1e-15) << "q and -q are the same rotation";
   }
   EXPECT_NEAR(glm::length(slerp(from, -from, 0.5)), 1.0, 1e-15);
+}
+
+TEST(SamplerTest, SplinesOfRotationsAreUnitQuaternions) {
+  const AnimationSampler sampler{
+      Interpolation::kCubicSpline, {0, 1}, {0, 0, 0, 0, 0, 0, 0, 1, 3, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0}};
+  std::array<double, 4> q{};
+  sample(sampler, 0.5, true, q);
+  EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1.0, 1e-15);
+  EXPECT_GT(q[0], 0.1);
 }
 
 class SceneAtTest : public SceneFolder {

@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/file.h"
 #include "promin/error.h"
 #include "work/jobs/job_manifest.h"
 #include "work/jobs/picture_part.h"
 #include "work/jobs/picture_pieces.h"
+#include "work/pictures/frame_renderers.h"
 #include "work/spec/spec_json.h"
 
 namespace promin::work {
@@ -67,19 +69,21 @@ class PicturePieces : public PieceMaker {
     const uint64_t samples = count_samples(*stats_.view, job.run_.frames.size(), job.run_.options);
     const uint64_t expected = samples / all * std::clamp<size_t>(pieces, 1, all);
     TunedRendererOptions options = make_renderer_options(job.run_.options, expected);
-    options.shared_bvh = shared_tree_file(job.run_.options.job, options.builder);
+    // Each frame of a film has its own tree.
+    if (job.run_.moving == nullptr) options.shared_bvh = shared_tree_file(job.run_.options.job, options.builder);
     options.progress = progress;
-    renderer_.emplace(make_renderer(device, job.run_.scene, options));
-    take_setup(renderer_->setup_stats(), device_, stats_, job.console_);
+    renderers_.emplace(device, job.run_, options);
+    if (job.run_.moving == nullptr) prepare(job.run_.frames.front());
   }
 
   jobs::Content make(size_t piece, const ProgressCallback& progress) override {
     const RenderSpec& options = job_.run_.options;
     const PlannedFrame& frame = job_.run_.frames[piece / job_.parts_.size()];
+    Renderer& renderer = prepare(frame);
     View view = *job_.run_.stats.view;
-    if (frame.camera) view.camera = *frame.camera;
+    renderers_->describe(frame, view, stats_);
     view.crop = job_.parts_[piece % job_.parts_.size()];
-    TracedFrame traced = trace(*renderer_, view, options, std::nullopt, progress);
+    TracedFrame traced = trace(renderer, view, options, std::nullopt, progress);
     check_validation(device_, stats_);
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);
@@ -98,10 +102,18 @@ class PicturePieces : public PieceMaker {
   }
 
  private:
+  /// Returns the renderer of a frame. The first one reports its setup.
+  Renderer& prepare(const PlannedFrame& frame) {
+    Renderer& renderer = renderers_->at(frame);
+    if (!std::exchange(is_set_up_, true)) take_setup(renderer.setup_stats(), device_, stats_, job_.console_);
+    return renderer;
+  }
+
   const PictureJob& job_;
   const gpu::Device& device_;
   RunStats stats_;
-  std::optional<Renderer> renderer_;
+  std::optional<FrameRenderers> renderers_;
+  bool is_set_up_ = false;
 };
 
 std::unique_ptr<PieceMaker> PictureJob::open(const gpu::Device& device, size_t pieces,

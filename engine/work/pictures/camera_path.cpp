@@ -221,6 +221,10 @@ PathPictures PathPictures::moved_to(const dvec3& center) const {
   return moved;
 }
 
+double PathPictures::time_s(size_t picture) const {
+  return fps_ == kStored ? path_.frames[picture].time_s : static_cast<double>(picture) / fps_;
+}
+
 Camera PathPictures::camera(size_t picture) const {
   assert(picture < count_);
   if (fps_ == kStored) return path_.frames[picture].camera;

@@ -53,6 +53,8 @@ class PathPictures {
   /// Returns the number of pictures, at least one.
   size_t count() const { return count_; }
   Camera camera(size_t picture) const;
+  /// Returns the time of a picture in seconds.
+  double time_s(size_t picture) const;
   /// Returns the seconds from picture to picture; 0 if the pictures are the stored frames.
   double interval_s() const { return fps_ == kStored ? 0.0 : 1.0 / fps_; }
 

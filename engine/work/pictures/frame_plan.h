@@ -15,17 +15,25 @@ namespace promin::work {
 
 /// One of the pictures that a command renders.
 struct PlannedFrame {
-  /// Index of the picture on a camera path; nullopt for the scene's cameras or the user's pose.
+  /// Index of the picture on a camera path or in a film; nullopt for a single picture.
   std::optional<uint32_t> number;
   std::optional<Camera> camera;
   std::vector<std::filesystem::path> pictures;
+  /// The time of the scene in seconds; empty if all frames have the same pose.
+  std::optional<double> time_s = std::nullopt;
   /// The camera path, shared by all frames.
   std::shared_ptr<const PathPictures> path = nullptr;
 };
 
-/// Returns the frames that the options request: one frame, or frames of the path. Throws InputError for an invalid
-/// path. Throws UsageError if the path does not have a frame, or if several frames would be written to one file.
+/// Returns the frames that the options request: one frame, frames of the path, or frames of a film. Returns no frames
+/// for a film without a range of frames, because its length is known only after the scene is read (plan_film). Throws
+/// InputError for an invalid path. Throws UsageError if the path does not have a frame, or if several frames would be
+/// written to one file.
 std::vector<PlannedFrame> plan_frames(const RenderSpec& options);
+
+/// Returns all frames of a film of a scene whose animations last this long. Frame i has the time i / fps. Throws
+/// UsageError if there are too many, or if several frames would be written to one file.
+std::vector<PlannedFrame> plan_film(const RenderSpec& options, double duration_s);
 
 /// Sets the cameras of a path's frames for a scene with this center (Scene::center).
 void move_frames(std::vector<PlannedFrame>& frames, const dvec3& center);

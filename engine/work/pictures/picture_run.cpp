@@ -9,6 +9,7 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "work/pictures/camera_choice.h"
+#include "work/pictures/load_posed.h"
 #include "work/pictures/view_setup.h"
 
 namespace promin::work {
@@ -28,6 +29,18 @@ std::vector<Camera> cameras_of(const PictureRun& run) {
   return cameras;
 }
 
+/// Returns the scene of a film. Throws UsageError if the scene has no animations.
+std::shared_ptr<MovingScene> make_moving(Scene scene, const RenderSpec& options) {
+  MotionOptions motion = options.tracing.motion;
+  if (!motion.time_s) motion.time_s = 0.0;
+  PoseChoice clip = choose_pose(scene, motion);
+  if (clip.animations.empty()) {
+    throw UsageError({"animation.missing", "the scene has no animation to show", scene.file.string(),
+                      options.path ? "remove --animation" : "give --path for a flight of the camera"});
+  }
+  return std::make_shared<MovingScene>(std::move(scene), std::move(clip));
+}
+
 }  // namespace
 
 PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console) {
@@ -35,7 +48,18 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   apply_quality(run.options);
   const RenderSpec& options = run.options;
   RunStats& stats = run.stats;
-  run.scene = load_for(options.tracing, stats, console, run.sources);
+  std::shared_ptr<MovingScene> moving;
+  if (options.moves_scene()) {
+    TracingOptions resting = options.tracing;
+    resting.motion = {};
+    moving = make_moving(load_for(resting, stats, console, run.sources), options);
+    stats.motion = options.tracing.motion;
+    stats.motion.time_s = 0.0;
+    if (run.frames.empty()) run.frames = plan_film(options, moving->duration_s());
+    run.scene = moving->envelope();
+  } else {
+    run.scene = load_for(options.tracing, stats, console, run.sources);
+  }
   Scene& scene = run.scene;
   move_frames(run.frames, scene.center);
   for (PlannedFrame& frame : run.frames) {
@@ -66,6 +90,10 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   run.options.hides_unlit = keeps_unlit && !options.aovs.unlit;
   run.options.aovs.unlit |= keeps_unlit;
   check_lights(scene, options.view.lights_off);
+  if (moving) {
+    moving->take_light(scene, options.view.lights_off);
+    run.moving = moving;
+  }
   switch_lights(scene.lights, options.view.lights_off);
   const auto is_on = [](const Light& light) { return light.is_on; };
   stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));

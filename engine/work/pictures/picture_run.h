@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "trace/render/make_renderer.h"
 #include "work/pictures/frame_plan.h"
 #include "work/pictures/messages.h"
+#include "work/pictures/moving_scene.h"
 #include "work/pictures/picture_files.h"
 #include "work/pictures/run_stats.h"
 #include "work/pictures/tracing_run.h"
@@ -30,15 +32,17 @@ struct PictureRun {
   /// The options. They include Aovs::unlit if the display of the pictures needs it.
   RenderSpec options;
   std::vector<PlannedFrame> frames;
-  /// The scene with its lights and its cameras.
+  /// The scene with its lights and its cameras. If the scene moves, this is the scene that stands for all frames.
   Scene scene;
+  /// The scene of each frame, if the frames have different poses.
+  std::shared_ptr<const MovingScene> moving = nullptr;
   std::vector<SourceFile> sources;
   /// The statistics so far. They include the display transform and the view of all frames without their cameras.
   RunStats stats;
 };
 
-/// Loads the scene of checked options and chooses open settings, with notes. Throws InputError. Throws UsageError if
-/// the options refer to something that the scene does not have.
+/// Loads the scene of checked options and chooses open settings, with notes. Plans the frames of a film if there are
+/// none. Throws InputError. Throws UsageError if the options refer to something that the scene does not have.
 PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console);
 
 /// Returns the number of samples of all pictures together.

@@ -15,6 +15,7 @@
 #include "promin/aovs.h"
 #include "promin/error.h"
 #include "promin/image.h"
+#include "work/pictures/camera_path.h"
 
 namespace promin::work {
 namespace {
@@ -36,8 +37,9 @@ void refuse_beside(std::string_view name, std::initializer_list<Given> others,
 
 }  // namespace
 
-void check_motion_options(const MotionOptions& motion) {
-  refuse_if("usage.option.needs", motion.loops && !motion.time_s, "--loop needs a time", "give --time as well");
+void check_motion_options(const MotionOptions& motion, bool has_frames) {
+  refuse_if("usage.option.needs", motion.loops && !motion.time_s && !has_frames, "--loop needs a time",
+            "give --time as well");
   if (motion.animations.size() < 2) return;
   for (const char* word : {MotionOptions::kAll, MotionOptions::kNone}) {
     refuse_if("usage.options.contradict", std::ranges::count(motion.animations, word) > 0,
@@ -46,8 +48,8 @@ void check_motion_options(const MotionOptions& motion) {
   }
 }
 
-void check_tracing_options(const TracingOptions& options) {
-  check_motion_options(options.motion);
+void check_tracing_options(const TracingOptions& options, bool has_frames) {
+  check_motion_options(options.motion, has_frames);
   if (options.bvh) refuse_beside("--bvh", {{options.builder.has_value(), "--builder"}});
 }
 
@@ -116,6 +118,8 @@ void check_explanation(const RenderSpec& options) {
   if (!options.explained_pixel) return;
   refuse_beside("--explain", {{!options.pictures.empty(), "--output"},
                               {options.path.has_value(), "--path"},
+                              {options.frames.has_value(), "--frames"},
+                              {options.fps.has_value(), "--fps"},
                               {options.aovs.any(), "--aov"},
                               {view.crop.has_value(), "--crop"},
                               {is_debug, "--shading"},
@@ -199,9 +203,19 @@ void check_frames(const RenderSpec& options) {
             "--skip-existing and --exposure average contradict each other, because promin takes the average from the "
             "first frame",
             "give --exposure in stops");
-  refuse_if("usage.option.needs", options.frames && !options.path, "--frames needs a camera path",
+  const bool is_stored = options.fps == PathPictures::kStored;
+  refuse_if("usage.option.needs", is_stored && !options.path, "--fps stored needs a camera path",
             "give --path as well");
-  refuse_if("usage.option.needs", options.fps && !options.path, "--fps needs a camera path", "give --path as well");
+  if (!options.moves_scene()) return;
+  const MotionOptions& motion = options.tracing.motion;
+  const std::string_view name = options.frames ? "--frames" : options.fps ? "--fps" : "--path";
+  refuse_beside(name, {{motion.time_s.has_value(), "--time"},
+                       {motion.chooses_none(), "--animation none"},
+                       {options.tracing.bvh.has_value(), "--bvh"}});
+  refuse_if("usage.options.contradict", averages,
+            "--exposure average and the frames of an animation contradict each other, because the exposure belongs to "
+            "the whole animation",
+            "give --exposure in stops");
 }
 
 /// Refuses channels that none of the pictures can store.
@@ -258,7 +272,7 @@ void check_lens(const ViewOptions& view) {
 
 // The checks have the order in which contradictions are reported.
 void check_render_spec(const RenderSpec& options) {
-  check_tracing_options(options.tracing);
+  check_tracing_options(options.tracing, options.moves_scene());
   check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.path) check_no_camera(options.view, "--path");
   check_lens(options.view);

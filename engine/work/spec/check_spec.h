@@ -22,10 +22,10 @@ void check_cast_spec(const CastSpec& spec);
 
 // Parts of these checks, for commands that have only some of the options.
 
-/// Checks the choice of a pose. Throws UsageError.
-void check_motion_options(const MotionOptions& motion);
+/// Checks the choice of a pose. `has_frames` is true if frames have different times. Throws UsageError.
+void check_motion_options(const MotionOptions& motion, bool has_frames = false);
 
-void check_tracing_options(const TracingOptions& options);
+void check_tracing_options(const TracingOptions& options, bool has_frames = false);
 /// Throws UsageError if two options contradict each other, or if an option contradicts the choice of a camera by name.
 void check_pose_options(const PoseOptions& pose, bool names_camera);
 /// Throws UsageError if only one of the two numbers of a lens is given.

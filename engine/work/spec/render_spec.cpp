@@ -111,7 +111,8 @@ void apply_quality(RenderSpec& options) {
 
 std::vector<std::filesystem::path> name_pictures(const RenderSpec& options) {
   if (!options.pictures.empty() || options.explained_pixel || options.job.share) return options.pictures;
-  const std::string stem = options.tracing.scene.stem().string() + (options.path ? ".####" : "");
+  const std::string stem =
+      options.tracing.scene.stem().string() + (options.path || options.makes_film() ? ".####" : "");
   return {stem + ".exr", stem + ".png"};
 }
 

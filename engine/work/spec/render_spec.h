@@ -193,7 +193,8 @@ struct RenderSpec {
   ExrOptions exr;
   /// True if the user has chosen the compression of EXRs, even if it is the default.
   bool names_compression = false;
-  /// A camera path, and the frames to render; if `frames` is empty, all frames.
+  /// A camera path, and the frames to render; if `frames` is empty, all frames. Without a path they are frames of the
+  /// scene's animation.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
   /// The number of pictures per second, in the form that PathPictures takes.
@@ -201,13 +202,20 @@ struct RenderSpec {
   /// A pixel to explain. No picture is written then.
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
+
+  /// Returns whether the pictures are frames of the scene's animation without a camera path.
+  bool makes_film() const { return !path && (frames || fps); }
+  /// Returns whether the frames have different poses of the scene. A path shows an animation that the user names.
+  bool moves_scene() const {
+    return makes_film() || (path && !tracing.motion.animations.empty() && !tracing.motion.time_s);
+  }
 };
 
 /// Sets the number of samples or the error target of the quality.
 void apply_quality(RenderSpec& options);
 
 /// Returns the pictures that a command writes: the named ones. If none is named and no pixel is explained, they have
-/// the scene's name with .exr and .png in the current folder, with #### for frames of a path.
+/// the scene's name with .exr and .png in the current folder, with #### for frames of a path or film.
 std::vector<std::filesystem::path> name_pictures(const RenderSpec& options);
 
 }  // namespace promin::work

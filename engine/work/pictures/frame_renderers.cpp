@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/pictures/frame_renderers.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "work/pictures/camera_choice.h"
+#include "work/pictures/view_setup.h"
+
+namespace promin::work {
+namespace {
+
+/// The number of entries by which the stack of a frame may exceed that of the first. Kernels are compiled for multiples
+/// of 8 entries.
+constexpr uint32_t kSpareStack = 8;
+
+}  // namespace
+
+FrameRenderers::FrameRenderers(const gpu::Device& device, const PictureRun& run, TunedRendererOptions options)
+    : device_(device), run_(run), options_(std::move(options)) {
+  if (run.moving == nullptr) return;
+  options_.more_features |= run.moving->features();
+  options_.repack = [this](PackedScene packed) {
+    if (stack_size_ == 0) stack_size_ = packed.stack_size + kSpareStack;
+    packed.stack_size = std::max(packed.stack_size, stack_size_);
+    return packed;
+  };
+}
+
+Renderer& FrameRenderers::at(const PlannedFrame& frame) {
+  if (renderer_ && time_s_ == frame.time_s) return *renderer_;
+  renderer_.reset();
+  if (run_.moving == nullptr) {
+    renderer_.emplace(make_renderer(device_, run_.scene, options_));
+  } else {
+    const Scene scene = run_.moving->at(frame.time_s.value_or(0.0));
+    camera_.reset();
+    const ViewOptions& view = run_.options.view;
+    if (!frame.camera && find_file_camera(scene, view) != nullptr) {
+      camera_ = make_view(scene, view, Messages()).camera;
+    }
+    renderer_.emplace(make_renderer(device_, scene, options_));
+  }
+  time_s_ = frame.time_s;
+  return *renderer_;
+}
+
+void FrameRenderers::describe(const PlannedFrame& frame, View& view, RunStats& stats) const {
+  if (frame.time_s) stats.motion.time_s = frame.time_s;
+  if (frame.camera) {
+    view.camera = *frame.camera;
+  } else if (camera_) {
+    view.camera = *camera_;
+  }
+}
+
+}  // namespace promin::work

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/feature_mask.h"
+#include "promin/motion.h"
+#include "promin/scene.h"
+
+namespace promin::work {
+
+/// The number of pictures per second of a film if the user does not choose it.
+inline constexpr double kDefaultFps = 24.0;
+/// The largest number of poses from which properties of a whole film are computed.
+inline constexpr size_t kMostSampledPoses = 64;
+
+/// A scene whose frames have different poses. Framing, light and features belong to the animations and not to a frame,
+/// so that a frame has the same pixels alone and in any sequence.
+class MovingScene {
+ public:
+  /// `scene` is in the pose of its nodes. `clip` has at least one animation; its time is not used.
+  MovingScene(Scene scene, PoseChoice clip);
+
+  /// Returns the scene that stands for all frames (envelope_of), without light.
+  const Scene& envelope() const { return envelope_; }
+  /// Uses the light and the environment of the envelope after light_up() for all frames, with some lights off.
+  void take_light(const Scene& lit_envelope, const std::vector<uint32_t>& lights_off);
+  double duration_s() const { return duration_s_; }
+  /// Returns the features of pictures of all poses at the times of keys, so that all frames use the same kernels.
+  const FeatureMask& features() const { return features_; }
+  /// Returns the scene at a time, with its light. Throws InputError.
+  Scene at(double time_s) const;
+
+ private:
+  Scene scene_;
+  PoseChoice clip_;
+  double duration_s_;
+  std::vector<double> times_;
+  Scene envelope_;
+  Scene lit_;
+  std::vector<uint32_t> lights_off_;
+  FeatureMask features_;
+};
+
+}  // namespace promin::work
