@@ -330,10 +330,14 @@ TEST_P(OtherValuesTest, LoadOrAreRefused) {
   GltfBuilder gltf = GetParam()();
   gltf.text();
   const json good = gltf.json.flatten();
+  // The document of motion is large, so its mutants are sampled.
+  const int step = GetParam() == &moving_gltf && !test::is_thorough() ? 7 : 1;
   int refused = 0;
   int total = 0;
+  int number = 0;
   for (const auto& [pointer, old] : good.items()) {
     for (const json& value : kOtherValues) {
+      if (number++ % step != 0) continue;
       json document = good.unflatten();
       document[json::json_pointer(pointer)] = value;
       // The object or array around the value changes, too.
