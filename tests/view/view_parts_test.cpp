@@ -84,6 +84,13 @@ TEST(DescribeCommand, NamesTheSurroundingsAndTheVariant) {
                                  "--light-rotation -60.125 --variant 'red one' --root 'the store' --eye"));
 }
 
+TEST(DescribeCommand, NamesThePose) {
+  DescribedScene scene{.file = "s"};
+  scene.motion = {.animations = {"Run fast", "2"}, .time_s = 0.1, .loops = true};
+  EXPECT_THAT(describe_command(scene, View()),
+              testing::HasSubstr(" --time 0.1 --animation 'Run fast' --animation '2' --loop --eye"));
+}
+
 TEST(DescribeCommand, NamesThePictureThatIsSaved) {
   EXPECT_THAT(describe_command({.file = "s", .output = "a box.png"}, View()),
               testing::StartsWith("promin render 's' -o 'a box.png' --size"));
