@@ -21,6 +21,9 @@ namespace promin {
 /// Returns a word of the file for messages: in double quotes and shortened to a line.
 std::string quote(std::string_view word);
 
+/// The warning of a scene that shows nothing.
+inline constexpr std::string_view kNothingToDraw = "the scene contains nothing to draw";
+
 /// A fault of a file that does not affect its geometry. The loader repairs it; a strict loader refuses the file.
 struct Fault {
   /// The kind of the problem.

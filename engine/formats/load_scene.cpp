@@ -205,7 +205,7 @@ void refuse_wrong_ending(const std::filesystem::path& file, const SceneFormat& f
 void check_geometry(const SceneFormat& format, const LoadReport& report, Scene& scene) {
   if (has_anything_to_draw(scene)) return;
   refuse_wrong_ending(report.file(), format);
-  const std::string what = "the scene contains nothing to draw";
+  const std::string what(kNothingToDraw);
   if (!format.is_mesh && !report.has_lost_geometry()) return scene.warnings.push_back(what);
   const std::string reason = scene.warnings.empty() ? "" : " (" + scene.warnings.front() + ")";
   throw InputError({"scene.geometry.none", what + reason, report.file().string(), "export it with triangles"});

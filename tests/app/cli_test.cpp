@@ -481,6 +481,11 @@ TEST_F(CliTest, InfoListsAnimations) {
   EXPECT_EQ(document["motion"]["animations"][0]["channels"]["scale"], 1);
   EXPECT_EQ(document["motion"]["skins"][0]["joints"], 1);
   EXPECT_EQ(document["motion"]["morph_targets"], 2);
+  gltf.json["nodes"][0]["scale"] = {0, 0, 0};
+  write("hidden.gltf", gltf.text());
+  const char* const nothing = "the scene contains nothing to draw";
+  EXPECT_THAT(run({"info", "hidden.gltf"}).out, HasSubstr(nothing));
+  EXPECT_THAT(run({"info", "hidden.gltf", "--time", "1"}).out, Not(HasSubstr(nothing)));
   expect_failure(run({"info", "walk.gltf", "--animation", "1"}), 3, "gltf.animation.count 1 2");
   EXPECT_THAT(run({"info", "square.gltf", "--time", "1"}).out,
               HasSubstr("the scene has no animations, so its pose does not depend on the time"));

@@ -4,11 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "formats/load_report.h"
 #include "promin/error.h"
 
 namespace promin::work {
@@ -37,6 +39,13 @@ uint32_t find_animation(const Scene& scene, const std::string& selection) {
                     "choose one of: " + list_animations(animations)});
 }
 
+/// Adds or removes the warning of a scene that shows nothing, which depends on the pose.
+void renew_warning(Scene& scene) {
+  std::erase(scene.warnings, kNothingToDraw);
+  const auto is_drawn = [](const Object& object) { return object.geometry != Object::kNoGeometry; };
+  if (std::ranges::none_of(scene.objects, is_drawn)) scene.warnings.emplace_back(kNothingToDraw);
+}
+
 }  // namespace
 
 PoseChoice choose_pose(const Scene& scene, const MotionOptions& options) {
@@ -60,7 +69,11 @@ Scene load_posed(const std::filesystem::path& file, const LoadOptions& load, con
                  std::vector<SourceFile>& sources) {
   Scene scene = load_scene(file, load, sources);
   const PoseChoice choice = choose_pose(scene, motion);
-  if (!choice.animations.empty()) return scene_at(std::move(scene), choice);
+  if (!choice.animations.empty()) {
+    scene = scene_at(std::move(scene), choice);
+    renew_warning(scene);
+    return scene;
+  }
   if (motion.any() && !motion.chooses_none()) {
     scene.warnings.emplace_back("the scene has no animations, so its pose does not depend on the time");
   }
