@@ -172,7 +172,7 @@ Json describe(const Animation& animation) {
     count = count.is_null() ? 1 : count.get<int>() + 1;
   }
   return {{"name", animation.name},
-          {"duration_s", json_of(animation.duration_s)},
+          {"duration_s", animation.duration_s},
           {"channels", channels},
           {"can_be_shown", animation.problems.empty()}};
 }
