@@ -9,30 +9,16 @@
 namespace promin::oracle {
 namespace {
 
-/// The first direction numbers of a dimension and its polynomial, in the form of Joe and Kuo's file new-joe-kuo-6.
-struct SobolRow {
-  uint32_t degree;
-  uint32_t polynomial;
-  std::array<uint32_t, 3> first;
-};
-constexpr std::array<SobolRow, kSobolDimensions> kSobolRows = {
-    {{0, 0, {}}, {1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}}};
-
 using Directions = std::array<uint32_t, 32>;
 
-Directions make_directions(const SobolRow& row) {
-  Directions v{};
-  for (uint32_t i = 0; i < 32; ++i) {
-    if (row.degree == 0) {
-      v[i] = 0x80000000U >> i;
-    } else if (i < row.degree) {
-      v[i] = row.first[i] << (31 - i);
-    } else {
-      v[i] = v[i - row.degree] ^ (v[i - row.degree] >> row.degree);
-      for (uint32_t k = 1; k < row.degree; ++k) {
-        if ((row.polynomial >> (row.degree - 1 - k) & 1U) != 0) v[i] ^= v[i - k];
-      }
-    }
+/// The first dimension has one bit in each direction number. In the second, each number is the one before, added to
+/// itself shifted by one bit.
+std::array<Directions, 2> make_directions() {
+  std::array<Directions, 2> v{};
+  v[0][0] = v[1][0] = 0x80000000U;
+  for (size_t i = 1; i < 32; ++i) {
+    v[0][i] = v[0][i - 1] >> 1;
+    v[1][i] = v[1][i - 1] ^ v[1][i - 1] >> 1;
   }
   return v;
 }
@@ -54,14 +40,21 @@ uint32_t hashed(uint32_t x) {
 }  // namespace
 
 uint32_t sobol(uint32_t index, int dimension) {
-  static const std::array<Directions, kSobolDimensions> kDirections = {
-      make_directions(kSobolRows[0]), make_directions(kSobolRows[1]), make_directions(kSobolRows[2]),
-      make_directions(kSobolRows[3])};
+  static const std::array<Directions, 2> kDirections = make_directions();
   uint32_t result = 0;
   for (size_t bit = 0; bit < 32; ++bit) {
     if ((index >> bit & 1U) != 0) result ^= kDirections[static_cast<size_t>(dimension)][bit];
   }
   return result;
+}
+
+uint32_t joint_index(uint32_t number) {
+  constexpr std::array<uint32_t, 10> kColumns = {1, 2, 6, 13, 27, 45, 111, 188, 274, 687};
+  uint32_t index = 0;
+  for (uint32_t bit = 0; bit < 32; ++bit) {
+    if ((number >> bit & 1U) != 0) index ^= bit < kColumns.size() ? kColumns[bit] : 1U << bit;
+  }
+  return index;
 }
 
 uint32_t scramble(uint32_t x, uint32_t seed) {
@@ -74,10 +67,10 @@ std::array<Real, 2> sample_pair(const SampleId& id, uint32_t pair) {
   const uint32_t key = hashed(id.pixel.x + hashed(id.pixel.y + hashed(2 + hashed(id.seed))));
   const uint32_t seed = hashed(key + 3 * pair);
   const bool is_joint = id.is_refined && pair == 0;
-  const uint32_t index = is_joint ? id.number : scramble(id.number, seed);
+  const uint32_t index = is_joint ? joint_index(id.number) : scramble(id.number, seed);
   std::array<Real, 2> point{};
   for (uint32_t axis = 0; axis < 2; ++axis) {
-    const uint32_t bits = scramble(sobol(index, static_cast<int>(axis + (is_joint ? 2 : 0))), hashed(seed + 1 + axis));
+    const uint32_t bits = scramble(sobol(index, static_cast<int>(axis)), hashed(seed + 1 + axis));
     point[axis] = ((bits >> 9) + 0.5L) / 8388608;
   }
   return point;

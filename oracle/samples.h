@@ -12,12 +12,12 @@
 /// bits.
 namespace promin::oracle {
 
-/// The number of dimensions of Sobol's sequence in use.
-inline constexpr int kSobolDimensions = 4;
-
-/// Returns a number of Sobol's sequence as a fraction of 2^32, computed from a table of direction numbers (Joe and Kuo,
-/// 2008). `dimension` is in 0...kSobolDimensions - 1.
+/// Returns a number of Sobol's first or second dimension (0 or 1) as a fraction of 2^32, computed from a table of
+/// direction numbers.
 uint32_t sobol(uint32_t index, int dimension);
+
+/// Returns the index of the point of the first pair for a sample of a pixel with an error target.
+uint32_t joint_index(uint32_t number);
 
 /// Returns x as scrambled by Owen's method: a hash of the bits above a bit decides whether the bit is inverted. The
 /// hash is that of Laine and Karras with Burley's constants.
@@ -29,8 +29,7 @@ struct SampleId {
   /// The number of the sample in its pixel.
   uint32_t number = 0;
   uint32_t seed = 0;
-  /// True if the sample belongs to a pixel with an error target, whose position in the pixel has Sobol's first two
-  /// dimensions.
+  /// True if the sample belongs to a pixel with an error target, whose position in the pixel has the same dimensions.
   bool is_refined = false;
 };
 

@@ -30,7 +30,7 @@ class Light:
 
     kind: str = "point"
     """The kind of the light: "point", "directional", "spot", "rect", "disk" or "headlight". A headlight shines in
-    the direction of view. A "rect" or a "disk" is flat and shines from one side."""
+    the direction of view. Rectangles and disks are flat and shine from one side."""
     position: Vec3 = (0.0, 0.0, 0.0)
     """Position of point and spot lights."""
     direction: Vec3 = (0.0, 0.0, -1.0)

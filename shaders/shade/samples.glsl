@@ -60,35 +60,32 @@ uvec2 first_sobols(uint index) {
   return uvec2(index, x);
 }
 
-// Returns the numbers of Sobol's third and fourth dimensions with reversed bits, for an index below 2^16. Each direction
-// number follows from those before it (Joe and Kuo, 2008: polynomials 7 and 11, first numbers 1, 3 and 1, 3, 1).
-uvec2 further_sobols(uint index) {
-  uvec2 third = uvec2(1u, 3u);
-  uvec3 fourth = uvec3(1u, 3u, 4u);
-  uvec2 sum = uvec2(0u);
-  for (uint i = 0u; i < 16u; ++i) {
-    uint mask = 0u - ((index >> i) & 1u);
-    sum ^= mask & uvec2(third.x, fourth.x);
-    third = uvec2(third.y, third.y ^ third.x ^ (third.x << 2));
-    fourth = uvec3(fourth.yz, fourth.y ^ fourth.x ^ (fourth.x << 3));
-  }
-  return sum;
+// Returns the index of the first pair's point for a sample of a pixel with an error target: a linear map of the bits of
+// the sample's number (docs/model.md, "Sample points").
+uint joint_index(uint number) {
+  uint index = number & 0xFFFFFC03u;
+#define PROMIN_JOIN(BIT, COLUMN) index ^= (0u - ((number >> BIT) & 1u)) & COLUMN
+  PROMIN_JOIN(2u, 6u);
+  PROMIN_JOIN(3u, 13u);
+  PROMIN_JOIN(4u, 27u);
+  PROMIN_JOIN(5u, 45u);
+  PROMIN_JOIN(6u, 111u);
+  PROMIN_JOIN(7u, 188u);
+  PROMIN_JOIN(8u, 274u);
+  PROMIN_JOIN(9u, 687u);
+#undef PROMIN_JOIN
+  return index;
 }
 
 // Returns the point of the chosen pair, an odd multiple of 2^-24 in each coordinate. The first 2^m points of a pair are
-// a (0, m, 2)-net. With FEATURE_LISTED_SAMPLES the sample's position in its pixel has Sobol's first two dimensions, and
-// the first pair has the third and the fourth. All other pairs have the first two dimensions in an order of their own.
+// a (0, m, 2)-net. All pairs have Sobol's first two dimensions, in an order of their own. The order of the first pair
+// with FEATURE_LISTED_SAMPLES is the one that suits the positions in the pixel, which have the same dimensions.
 vec2 sample_pair_point() {
   uint seed = mix_bits(sample_key + 3u * sample_pair);
   uvec2 seeds = uvec2(mix_bits(seed + 1u), mix_bits(seed + 2u));
-  uvec2 reversed;
-  if (has(FEATURE_LISTED_SAMPLES) && sample_pair == 0u) {
-    reversed = further_sobols(sample_number);
-  } else {
-    uint shuffled = bitfieldReverse(permute_upwards(uvec2(bitfieldReverse(sample_number)), uvec2(seed)).x);
-    reversed = first_sobols(shuffled);
-  }
-  uvec2 bits = bitfieldReverse(permute_upwards(reversed, seeds)) >> 9;
+  uint shuffled = bitfieldReverse(permute_upwards(uvec2(bitfieldReverse(sample_number)), uvec2(seed)).x);
+  if (has(FEATURE_LISTED_SAMPLES)) shuffled = sample_pair == 0u ? joint_index(sample_number) : shuffled;
+  uvec2 bits = bitfieldReverse(permute_upwards(first_sobols(shuffled), seeds)) >> 9;
   precise vec2 point = vec2(bits) * 1.1920928955078125e-7 + 5.9604644775390625e-8;
   return point;
 }

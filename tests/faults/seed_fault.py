@@ -97,6 +97,15 @@ FAULTS = {
     "grain_unbent": {"shade/anisotropy.glsl": [(r"max_abs\(bent\) == 0\.0 \? point\.normal : bent", "point.normal")]},
     "sky_behind_in_front": {"shade/materials/metallic_roughness.glsl": [(r"ambient_at\(-point", "ambient_at(point")]},
     "grain_turned": {"shade/anisotropy.glsl": [(r"vec2\(along, across\)", "vec2(across, along)")]},
+    # These are faults of points of lights (tests/gpu/soft_light_test.cpp).
+    "light_density_off": {"shade/lights/ball.glsl": [(r"share = 2\.0 / ", "share = 2.04 / ")]},
+    "light_order_unshuffled": {
+        "shade/samples.glsl": [(r"uint shuffled = [^;]*;", "uint shuffled = sample_number;")]
+    },
+    "flat_cosine_left_out": {"shade/lights/area.glsl": [(r"area \* z / \(d2 \* sqrt\(d2\)\)", "area / d2")]},
+    "flat_angle_off": {"shade/lights/area.glsl": [(r"strength = solid_angle;", "strength = 1.02 * solid_angle;")]},
+    "lobe_density_off": {"shade/shading.glsl": [(r"6\.28318531 \* seen\.cap", "6.4 * seen.cap")]},
+    "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},
     # These are faults of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},
     "colors_swapped": {"shade/glass.glsl": [(r"color == RED \? -", "color == BLUE ? -")]},

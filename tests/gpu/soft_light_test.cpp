@@ -10,6 +10,7 @@
 #include "device_scene/sampling.h"
 #include "device_scene/scrambled_points.h"
 #include "gpu/device_fixture.h"
+#include "gpu/faulty_shaders.h"
 #include "gpu/test_scenes.h"
 #include "gpu/ways_of_tracing.h"
 #include "oracle/compare_picture.h"
@@ -25,7 +26,7 @@ Material make_matte(const vec3& color, float mirror = 0.0F) {
   phong.ambient = vec3(0.0F);
   phong.diffuse = color;
   phong.reflection = vec3(mirror);
-  return {.model = phong};
+  return {.name = "", .model = phong};
 }
 
 Light make_ball(const vec3& position, float radius, float power) {
@@ -139,7 +140,7 @@ world::Scene make_glossy_scene() {
   MetallicRoughness floor;
   floor.metallic = 0.0F;
   floor.roughness = 0.35F;
-  scene.materials = {{.model = floor}, {.model = metal}, {.model = coated}};
+  scene.materials = {{.name = "", .model = floor}, {.name = "", .model = metal}, {.name = "", .model = coated}};
   return scene;
 }
 
@@ -155,7 +156,7 @@ TEST_F(SoftLightTest, MirrorsOfLampsHaveTheLampsRadiance) {
   MetallicRoughness metal;
   metal.metallic = 1.0F;
   metal.roughness = 0.05F;
-  scene.materials = {{.model = metal}};
+  scene.materials = {{.name = "", .model = metal}};
   scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
   scene.lights = {make_ball(vec3(0.0F, 2.0F, 0.0F), 0.5F, 3.0F)};
   View view = make_soft_view(uvec2(8));
@@ -210,6 +211,28 @@ TEST_F(SoftLightTest, SamplesThroughALensAreTheOracles) {
   view.camera.aperture_radius = 0.15F;
   view.camera.focus_distance = 4.0F;
   expect_samples(make_soft_scene(), view);
+}
+
+// A density that is off by 2 % is seen, and so are other faults.
+TEST_F(SoftLightTest, FaultsInPointsAreSeen) {
+  for (const char* fault : test::cases_of<const char*>({"light_density_off", "light_order_unshuffled", "flat_angle_off",
+                                                        "flat_cosine_left_out", "lobe_density_off", "lens_turned"},
+                                                       1)) {
+    const std::string name = fault;
+    const world::Scene scene = name.starts_with("flat")   ? make_flat_scene()
+                               : name.starts_with("lobe") ? make_glossy_scene()
+                                                          : make_soft_scene();
+    View view = make_soft_view();
+    if (name.starts_with("lens")) {
+      view.camera.aperture_radius = 0.15F;
+      view.camera.focus_distance = 4.0F;
+    }
+    const test::FaultyShaders faulty(fault);
+    TunedRendererOptions options;
+    options.shaders = faulty.shaders();
+    const Image image = renderer_of(scene, options).render(view).image;
+    EXPECT_FALSE(compare(scene, oracle::render(scene, view), image).passes()) << fault;
+  }
 }
 
 // A picture of many samples is the mean over the light. A ball or a disc wholly above the horizon lights a point like a

@@ -162,6 +162,8 @@ std::vector<MessageCase> cases_of_scenes() {
       spoil("scene.camera.resolution", [](Scene& s) { s.cameras[0].resolution = uvec2(512, 0); }),
       spoil("scene.camera.basis", [](Scene& s) { s.cameras[0].up = vec3(0, 0, 1); }),
       spoil("scene.camera.range", [](Scene& s) { s.cameras[0].yfov = 4; }),
+      spoil("scene.camera.lens", [](Scene& s) { s.cameras[0].aperture_radius = -1; }),
+      spoil("scene.camera.lens", [](Scene& s) { s.cameras[0].aperture_radius = 1; }),
       spoil("scene.transform.range", [](Scene& s) { s.objects[1].world_from_object[3][0] = kNan; }),
       spoil("scene.transform.affine", [](Scene& s) { s.objects[1].world_from_object[0][3] = 1; }),
       spoil("scene.transform.singular", [](Scene& s) { s.objects[0].world_from_object[2] = dvec4(0); }),

@@ -426,5 +426,39 @@ TEST(RefinementTest, WhatAllWillTakeIsForetold) {
   EXPECT_EQ(refinement.foretell_total(), total);
 }
 
+// Where samples choose points of lights, a pixel does not stop because its own few batches happen to agree.
+TEST(RefinementTest, NoiseAroundAPixelCountsIfSamplesChoosePoints) {
+  PixelEstimate calm;
+  PixelEstimate noisy;
+  for (int i = 0; i < 8; ++i) {
+    calm.add(vec3(0.5F));
+    noisy.add(vec3((i / 2) % 2 == 0 ? 0.0F : 1.0F));
+  }
+  // Four batches with means of 0 and 1: the variance of the mean is 1 / 12.
+  EXPECT_NEAR(noisy.variance().x, 1.0 / 12.0, 1e-6);
+  EXPECT_EQ(calm.variance(), vec3(0.0F));
+  EXPECT_EQ(calm.claim({vec3(0.5F), vec3(0.5F)}), vec3(0.0F));
+  const vec3 claim = calm.claim({vec3(0.5F), vec3(0.5F)}, noisy.variance());
+  EXPECT_NEAR(claim.x, 1.6 * std::sqrt(1.0 / 12.0), 1e-6);
+  const std::vector<vec3> variances = {vec3(0.0F), vec3(0.9F), vec3(0.0F), vec3(0.0F)};
+  EXPECT_FLOAT_EQ(mean_around(variances, uvec2(2, 2), 0).x, 0.225F);
+
+  // A picture of noise takes more samples with the term.
+  const auto noise = [](const dvec2& p) {
+    const auto bits = static_cast<uint64_t>(p.x * 1e6) * 0x9E3779B97F4A7C15U + static_cast<uint64_t>(p.y * 1e6);
+    return vec3(static_cast<float>((bits * 0xBF58476D1CE4E5B9U) >> 40) * 0x1p-24F);
+  };
+  View view;
+  view.size = uvec2(24, 16);
+  view.error_target = ErrorTarget{.error = 1.0F / 16.0F, .min_samples = 8, .max_samples = 128};
+  std::array<uint64_t, 2> samples{};
+  for (const bool samples_points : {false, true}) {
+    Refinement refinement(view, {uvec2(0), view.size}, false, samples_points);
+    run(refinement, noise, 5000);
+    samples[samples_points ? 1 : 0] = refinement.sample_count();
+  }
+  EXPECT_GT(samples[1], samples[0]);
+}
+
 }  // namespace
 }  // namespace promin
