@@ -95,7 +95,8 @@ class SoftLightTest : public test::DeviceTest {
     return make_renderer(device(), scene, options);
   }
   static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
-    oracle::PictureReport report = compare_picture(scene, truth, image, {});
+    // Densities that are off by 2 % change few pixels of smooth surfaces.
+    oracle::PictureReport report = compare_picture(scene, truth, image, {}, {.color_mean = 1e-6L});
     std::printf("%s\n", report.summary(scene).c_str());
     return report;
   }
