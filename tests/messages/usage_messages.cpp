@@ -34,7 +34,7 @@ const WrongUsage kWrongUsages[] = {
     {"usage.option.value", {"render", "square.gltf", "--filter", "bx"}},
     {"usage.command.unknown", {"diff", "a.png", "b.png"}},
     {"usage.option.unknown", {"render", "square.gltf", "--denoise"}},
-    {"usage.option.unknown", {"render", "square.gltf", "--seed", "1"}},
+    {"usage.option.unknown", {"render", "square.gltf", "--dice", "1"}},
     {"usage.argument.unexpected", {"square.gltf", "x.png"}},
     {"usage.option.unknown", {"--spp", "3"}},
     {"usage.words.wrong", {"render"}},
