@@ -63,7 +63,7 @@ OrderedJson json_of_part(const ExplainedSource& source, const Scene& scene) {
   return json;
 }
 
-std::string_view name_of(RayKind kind) {
+std::string_view ray_name_of(RayKind kind) {
   switch (kind) {
     case RayKind::kCamera:
       return "camera";
@@ -78,7 +78,7 @@ std::string_view name_of(RayKind kind) {
 }
 
 OrderedJson json_of_part(const ExplainedRay& ray, const Scene& scene) {
-  OrderedJson json = {{"kind", name_of(ray.kind)}, {"parent", nullptr}};
+  OrderedJson json = {{"kind", ray_name_of(ray.kind)}, {"parent", nullptr}};
   if (ray.kind != RayKind::kCamera) json["parent"] = ray.parent;
   json.update(json_of_part(ray.ray, scene));
   json["weight"] = json_of_part(ray.weight);
@@ -131,7 +131,7 @@ std::string text_of(const ExplainedSource& source, const Scene& scene) {
 /// Returns the text of a ray. `depth` is the number of rays that lead to it.
 std::string text_of(const ExplainedRay& ray, size_t depth, const Scene& scene) {
   const std::string indent(2 * depth + 2, ' ');
-  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, name_of(ray.kind),
+  std::string text = fmt::format("{}{} ray from {} along {}, weight {}\n", indent, ray_name_of(ray.kind),
                                  text_of_place(ray.ray.origin, scene), text_of(ray.ray.direction), text_of(ray.weight));
   const auto add = [&](const std::string& line) { text += indent + "  " + line + "\n"; };
   if (ray.hit.object < 0) {

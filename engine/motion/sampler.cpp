@@ -56,7 +56,7 @@ void sample_spline(const AnimationSampler& sampler, const Interval& at, std::spa
   }
 }
 
-dvec4 quaternion_of(std::span<const double> numbers) {
+dvec4 quaternion_in(std::span<const double> numbers) {
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
@@ -102,12 +102,12 @@ void sample(const AnimationSampler& sampler, double time_s, bool is_rotation, st
   } else {
     const std::span<const double> second = key_of(sampler, at.second, 0, value.size());
     if (is_rotation) {
-      const dvec4 from = to_unit_quaternion(quaternion_of(first));
-      return put(slerp(from, to_unit_quaternion(quaternion_of(second)), at.fraction), value);
+      const dvec4 from = to_unit_quaternion(quaternion_in(first));
+      return put(slerp(from, to_unit_quaternion(quaternion_in(second)), at.fraction), value);
     }
     for (size_t i = 0; i < value.size(); ++i) value[i] = (1.0 - at.fraction) * first[i] + at.fraction * second[i];
   }
-  if (is_rotation) put(to_unit_quaternion(quaternion_of(value)), value);
+  if (is_rotation) put(to_unit_quaternion(quaternion_in(value)), value);
 }
 
 }  // namespace promin

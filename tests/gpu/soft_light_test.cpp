@@ -19,7 +19,7 @@
 namespace promin {
 namespace {
 
-constexpr uvec2 kSize(40, 30);
+constexpr uvec2 kSoftSize(40, 30);
 
 Material make_matte(const vec3& color, float mirror = 0.0F) {
   Phong phong;
@@ -79,7 +79,7 @@ world::Scene make_flat_scene() {
   return scene;
 }
 
-View make_soft_view(uvec2 size = kSize) {
+View make_soft_view(uvec2 size = kSoftSize) {
   View view;
   view.size = size;
   view.camera.eye = vec3(0.0F, 1.6F, 4.0F);
@@ -388,7 +388,7 @@ TEST_F(SoftLightTest, EveryWayOfTracingHasTheSameBits) {
   const Image part = renderer_of(scene).render(crop).image;
   for (uint32_t y = 0; y < part.size.y; ++y) {
     for (uint32_t x = 0; x < part.size.x; ++x) {
-      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * kSize.x + x + 13]);
+      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * kSoftSize.x + x + 13]);
     }
   }
   view.seed = 1;
