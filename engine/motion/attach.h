@@ -20,8 +20,8 @@ enum class Attached {
 };
 
 /// Sets the position and direction of a light. It shines along -Z of its node. `rotation` is the product of the
-/// rotations of the node and its ancestors, if it exists; it gives the direction of a node with a scale of 0. Sides keep
-/// their lengths. The light is unchanged unless the result is kDone.
+/// rotations of the node and its ancestors, if it exists; it gives the direction of a node with a scale of 0. Sides
+/// keep their lengths. The light is unchanged unless the result is kDone.
 Attached attach(const dmat4& world_from_node, const std::optional<dmat3>& rotation, Light& light);
 
 /// Does the same for a camera, which looks along -Z.
