@@ -23,7 +23,7 @@ def prepare_rays(spec: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Returns the specification of a cast with DIR.rays.npy in place of rays in a zarr array. The file contains the
     same numbers as the array, so the identity of the job depends on the rays and not on their source. Raises UsageError
     and InputError."""
-    rays, folder = Path(spec["rays"]), folder.absolute()
+    rays, folder = Path(spec.get("rays", "")), folder.absolute()
     if rays.suffix != ".zarr":
         return dict(spec)
     return {**spec, "rays": str(_copy(rays, folder.with_name(f"{folder.name}.rays.npy")))}
