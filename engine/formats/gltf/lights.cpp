@@ -144,6 +144,36 @@ void warn_about_sky(const json& sky, LoadReport& report) {
   }
 }
 
+/// Names a light after its node or its definition, and places it. If that fails, warns and returns nullopt; `far` is
+/// the warning of a light beyond the limits.
+std::optional<LightLink> place_light(const Light& light, const PlacedNode& placed, const json& node, const json& source,
+                                     const char* far, LoadReport& report) {
+  const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
+  LightLink link{.node = placed.index, .rest = light};
+  const std::string name = node.value("name", "");
+  link.rest.name = name.empty() ? source.value("name", "") : name;
+  switch (attach(placed.world_from_object, placed.rotation, link.rest)) {
+    case Attached::kDone:
+      return link;
+    case Attached::kFar:
+      report.warn({"gltf.light.far", far, "", node_place, "", "promin omits it"});
+      break;
+    case Attached::kWithoutDirection:
+      report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
+      break;
+  }
+  return std::nullopt;
+}
+
+/// Returns the width and height of a flat light.
+dvec2 sides_of(const json& source, LightKind kind, const dmat4& world_from_node) {
+  const dmat3 columns(world_from_node);
+  const double scale = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
+  const double height = scale * source.value("size", 1.0);
+  const double aspect = kind == LightKind::kRect && source.contains("rect") ? source["rect"].value("aspect", 1.0) : 1.0;
+  return {aspect * height, height};
+}
+
 }  // namespace
 
 std::optional<LightLink> read_gltf_light(const GltfDocument& document, const PlacedNode& placed, LoadReport& report) {
@@ -156,26 +186,16 @@ std::optional<LightLink> read_gltf_light(const GltfDocument& document, const Pla
   // A light that cannot be used is null (JsonCheck).
   if (source.is_null()) return std::nullopt;
   const std::string place = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "]";
-  const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
 
-  LightLink result{.node = placed.index, .definition = static_cast<uint32_t>(index)};
-  Light& light = result.rest;
-  const std::string name = node.value("name", "");
-  light.name = name.empty() ? source.value("name", "") : name;
+  Light light;
   light.kind = light_kind_of(source["type"]);
-  const Attached attached = attach(placed.world_from_object, placed.rotation, light);
-  if (attached == Attached::kFar) {
-    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world", "", node_place, "", "promin omits it"});
-    return std::nullopt;
-  }
-  if (attached == Attached::kWithoutDirection) {
-    report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
-    return std::nullopt;
-  }
-  if (light.kind == LightKind::kSpot) read_cone(source, place, light, report);
+  auto result = place_light(light, placed, node, source, "a light lies beyond 1e15 in the world", report);
+  if (!result) return std::nullopt;
+  result->definition = static_cast<uint32_t>(index);
+  if (light.kind == LightKind::kSpot) read_cone(source, place, result->rest, report);
   const std::string title = title_of(extension, "lights", index);
-  read_power(source, title, result, report);
-  read_size(source, title, light, report);
+  read_power(source, title, *result, report);
+  read_size(source, title, result->rest, report);
   return result;
 }
 
@@ -187,33 +207,22 @@ std::optional<LightLink> read_gltf_area_light(const GltfDocument& document, cons
   const size_t index = (*link)["light"];
   const auto& source = document.json["extensions"]["EXT_lights_area"]["lights"][index];
   if (source.is_null()) return std::nullopt;
-  const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
 
-  LightLink result{.node = placed.index};
-  Light& light = result.rest;
-  const std::string name = node.value("name", "");
-  light.name = name.empty() ? source.value("name", "") : name;
+  constexpr const char* kFar = "a light lies beyond 1e15 in the world, or its sides are out of range";
+  Light light;
   light.kind = source["type"] == "rect" ? LightKind::kRect : LightKind::kDisk;
-  const dmat3 columns(placed.world_from_object);
-  const double scale = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
-  const double height = scale * source.value("size", 1.0);
-  const double aspect =
-      light.kind == LightKind::kRect && source.contains("rect") ? source["rect"].value("aspect", 1.0) : 1.0;
-  light.size = vec2(static_cast<float>(aspect * height), static_cast<float>(height));
+  light.size = vec2(sides_of(source, light.kind, placed.world_from_object));
   const bool is_sized = std::min(light.size.x, light.size.y) >= kLeastLightSide &&
                         static_cast<double>(std::max(light.size.x, light.size.y)) <= kMaxCoordinate;
-  const Attached attached = attach(placed.world_from_object, placed.rotation, light);
-  if (attached == Attached::kFar || !is_sized) {
-    report.warn({"gltf.light.far", "a light lies beyond 1e15 in the world, or its sides are out of range", "",
-                 node_place, "", "promin omits it"});
+  if (!is_sized) {
+    const std::string node_place = "nodes[" + std::to_string(placed.node) + "]";
+    report.warn({"gltf.light.far", kFar, "", node_place, "", "promin omits it"});
     return std::nullopt;
   }
-  if (attached == Attached::kWithoutDirection) {
-    report.warn({"gltf.light.direction", "a light has no direction", "", node_place, "", "promin omits it"});
-    return std::nullopt;
-  }
+  auto result = place_light(light, placed, node, source, kFar, report);
+  if (!result) return std::nullopt;
   const dvec3 radiance = source.value("intensity", 1.0) * vec3_of(source, "color", dvec3(1.0));
-  light.diffuse = light.specular = vec3(radiance);
+  result->rest.diffuse = result->rest.specular = vec3(radiance);
   return result;
 }
 

@@ -199,12 +199,9 @@ class SceneReader {
       if (animated_.is_moved[placed.index] && has_mesh) link.fallback = find_mesh(placed, primitive).posed;
       return;
     }
-    if (triangle_count_ > kMaxTriangles) return;
-    const KnownMesh known = find_mesh(placed, primitive);
-    if (known.posed == Object::kNoGeometry) return;
-    connect(known, link);
-    count_triangles(known.posed, placed);
-    place_gltf_mesh(placed, known.posed, place_of(mesh, primitive), scene_, object, report_);
+    const uint32_t geometry = connect_mesh(placed, primitive, link);
+    if (geometry == Object::kNoGeometry) return;
+    place_gltf_mesh(placed, geometry, place_of(mesh, primitive), scene_, object, report_);
   }
 
   /// Reads the geometry of an object that is hidden in the nodes' own pose.
@@ -217,11 +214,18 @@ class SceneReader {
       if (has_mesh) link.fallback = find_mesh(placed, primitive).posed;
       return;
     }
-    if (triangle_count_ > kMaxTriangles) return;
+    connect_mesh(placed, primitive, link);
+  }
+
+  /// Returns the geometry of a mesh in the nodes' own pose, and connects its object with it; Object::kNoGeometry if
+  /// there is none, or if the scene has too many triangles already.
+  uint32_t connect_mesh(const PlacedNode& placed, size_t primitive, ObjectLink& link) {
+    if (triangle_count_ > kMaxTriangles) return Object::kNoGeometry;
     const KnownMesh known = find_mesh(placed, primitive);
-    if (known.posed == Object::kNoGeometry) return;
+    if (known.posed == Object::kNoGeometry) return Object::kNoGeometry;
     connect(known, link);
     count_triangles(known.posed, placed);
+    return known.posed;
   }
 
   static std::string place_of(size_t mesh, size_t primitive) {

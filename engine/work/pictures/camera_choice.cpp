@@ -197,12 +197,16 @@ std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> 
       middle.x, middle.y, middle.z);
 }
 
+bool is_file_camera_unchanged(const Scene& scene, const ViewOptions& options) {
+  return !options.camera && !options.pose.any() && find_file_camera(scene, options) != nullptr;
+}
+
 std::string describe_file_camera(const Scene& scene, const ViewOptions& options, const View& view) {
   // The largest fraction of the picture for which a note says that the author's camera shows the model small.
   constexpr double kSmall = 0.4;
   // A model that covers more than this is one in which the camera stands, or of which it shows a detail.
   constexpr double kLarge = 1.5;
-  if (options.camera || options.pose.any() || find_file_camera(scene, options) == nullptr) return "";
+  if (!is_file_camera_unchanged(scene, options)) return "";
   const double share =
       covered_share(scene, view.camera, static_cast<float>(view.size.x) / static_cast<float>(view.size.y));
   if (bounds_of(scene).is_empty()) return "";

@@ -34,6 +34,8 @@ Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& 
 /// Returns a sentence if no camera sees anything of the scene in pictures of this size; `options` suggest options that
 /// would show the scene. Returns an empty text if a camera may see something.
 std::string describe_empty_pictures(const Scene& scene, std::span<const Camera> cameras, const uvec2& size);
+/// Returns whether the view is the first camera of the file, without a change by the user.
+bool is_file_camera_unchanged(const Scene& scene, const ViewOptions& options);
 /// Returns a sentence if the camera is the file's unchanged camera and shows the model small, or if the model is a
 /// little too large for the picture; otherwise an empty text.
 std::string describe_file_camera(const Scene& scene, const ViewOptions& options, const View& view);

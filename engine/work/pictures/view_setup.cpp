@@ -150,7 +150,7 @@ std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions&
   const LookOptions& look = options.look;
   std::vector<std::string> parts;
   if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(scene, options.pose));
-  if (scene.cameras.size() > 1 && !options.camera && !options.pose.any() && find_file_camera(scene, options) != nullptr)
+  if (scene.cameras.size() > 1 && is_file_camera_unchanged(scene, options))
     parts.push_back(fmt::format("the first of the file's {} cameras", scene.cameras.size()));
   if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
   if (light.has_background) parts.emplace_back("a grey background");
