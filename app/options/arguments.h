@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "promin/math.h"
+#include "work/spec/value_words.h"
 
 namespace CLI {
 class App;
@@ -44,6 +45,17 @@ class OptionValues {
   dvec3 vector(double max) const;
   /// Reads one of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
+
+  /// Reads the only word by a function that throws WrongValue.
+  template <typename Read>
+  auto read(const Read& read_word) const {
+    try {
+      return read_word(text());
+    } catch (const work::WrongValue& wrong) {
+      refuse_option(0);
+      refuse(std::string(option_).append(" ").append(wrong.what), wrong.near);
+    }
+  }
 
   /// Returns parts of the only word as words of the same option, so that each can be read. Messages about a part also
   /// quote the whole word.

@@ -5,23 +5,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "options/arguments.h"
 #include "promin/validate.h"
+#include "work/spec/value_words.h"
 
 namespace promin::app {
 namespace {
 
-constexpr std::array<std::string_view, 6> kAxes = {"x", "y", "z", "-x", "-y", "-z"};
-
 dvec3 read_up(const OptionValues& words) {
-  const auto found = std::ranges::find(kAxes, words.text());
-  if (found == kAxes.end()) return words.vector(kMaxCoordinate);
-  const auto place = static_cast<int>(found - kAxes.begin());
-  dvec3 axis(0.0);
-  axis[place % 3] = place < 3 ? 1.0 : -1.0;
-  return axis;
+  const std::optional<dvec3> axis = work::find_axis(words.text());
+  return axis ? *axis : words.vector(kMaxCoordinate);
 }
 
 /// Adds rows for former options, whose messages name the replacement.
@@ -71,7 +65,7 @@ void add_pose_options(OptionTable& table, PoseOptions& pose) {
       [&](const OptionValues& w) { pose.look_at = w.vector(kMaxCoordinate); });
   table.add("--direction", "X Y Z", "Direction of view; replaces that of the camera",
             [&](const OptionValues& w) { pose.direction = w.vector(kMaxCoordinate); });
-  table.add("--up", fmt::format("X Y Z|{}", fmt::join(kAxes, "|")),
+  table.add("--up", fmt::format("X Y Z|{}", fmt::join(work::axis_names(), "|")),
             "Direction that points up. With --from it is the upward direction of the scene [y]. Otherwise it is the "
             "upward direction of the picture [the camera's]",
             [&](const OptionValues& w) { pose.up = read_up(w); });

@@ -35,9 +35,6 @@
 namespace promin::app {
 namespace {
 
-constexpr std::string_view kEnvironment = "environment";
-constexpr std::string_view kLinear = "linear:";
-constexpr std::string_view kTransparent = "transparent";
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAverage = "average";
 constexpr std::string_view kCryptomatte = "cryptomatte";
@@ -82,55 +79,12 @@ Enum read_name(const OptionValues& words, std::span<const std::string_view> name
   return static_cast<Enum>(place - names.begin());
 }
 
-/// Reads "640x480", "640" (the width), "x480" (the height) or a name. A missing side is 0.
-uvec2 read_size(const OptionValues& words) {
-  constexpr std::string_view kTimes = "\u00d7";
-  std::string text = words.text();
-  if (const std::optional<uvec2> named = find_named_size(text)) return *named;
-  if (const size_t at = text.find(kTimes); at != std::string::npos) {
-    text[at] = 'x';
-    text.erase(at + 1, kTimes.size() - 1);
-  }
-  const size_t by = text.find_first_of("xX,*");
-  const bool has_digit = text.find_first_of("0123456789") != std::string::npos;
-  if (!has_digit || text.find_first_not_of("0123456789xX,*+-.") != std::string::npos) {
-    words.refuse(fmt::format("--size takes a size such as 640x480, a width, {}, not \"{}\"", list_choices(size_names()),
-                             words.text()),
-                 nearest_name(text, size_names()));
-  }
-  const std::string height = by == std::string::npos ? "" : text.substr(by + 1);
-  const OptionValues sides = words.with({text.substr(0, by), height});
-  const auto read_side = [&](size_t i) { return sides.all()[i].empty() ? 0 : sides.whole(i, 1, kMaxSide); };
-  return {read_side(0), read_side(1)};
-}
-
-/// Reads three numbers of at most `most`.
-vec3 read_color(const OptionValues& words, double most) {
-  return vec3(dvec3(words.real(0, 0.0, most), words.real(1, 0.0, most), words.real(2, 0.0, most)));
-}
-
-[[noreturn]] void refuse_background(const OptionValues& words) {
-  std::vector<std::string_view> known = color_names();
-  known.push_back(kEnvironment);
-  const std::string_view near = words.text() == kTransparent ? "--alpha" : nearest_name(words.text(), known);
-  words.refuse(
-      fmt::format("--background takes the name of a colour, #rrggbb, three numbers from 0 to 1, {}R,G,B or {}, "
-                  "not \"{}\"",
-                  kLinear, kEnvironment, words.text()),
-      near);
-}
-
 BackgroundChoice read_background(const OptionValues& words) {
+  // A colour that begins like a number has three words.
   const std::string& first = words.text();
-  if (first == kEnvironment) return {.is_environment = true};
-  if (const std::optional<vec3> color = find_color(first)) return {.color = *color};
-  if (first.starts_with(kLinear)) {
-    const std::vector<std::string> parts = split_list(first.substr(kLinear.size()));
-    if (parts.size() != 3) refuse_background(words);
-    return {.is_linear = true, .color = read_color(words.with(parts), kMaxBackground)};
-  }
-  if (first.front() == '#' || std::isalpha(static_cast<unsigned char>(first.front())) != 0) refuse_background(words);
-  return {.color = read_color(words, 1.0)};
+  const bool is_word = first.front() == '#' || std::isalpha(static_cast<unsigned char>(first.front())) != 0;
+  if (is_word) return words.read(work::read_background);
+  return {.color = vec3(dvec3(words.real(0, 0.0, 1.0), words.real(1, 0.0, 1.0), words.real(2, 0.0, 1.0)))};
 }
 
 /// Reads an error as "0.02" or "1/64".
@@ -194,7 +148,7 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
             "Light that is added if the scene has no light or no sky [studio; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
-  table.add("--background", fmt::format("R G B|COLOR|{}", kEnvironment),
+  table.add("--background", fmt::format("R G B|COLOR|{}", work::kEnvironmentShown),
             "Colour of the background in the picture: white, '#336699' or three numbers from 0 to 1. linear:R,G,B is "
             "linear light, which exposure and tone mapping change. environment shows the sky that lights the scene "
             "[the background of the file; if it has none, a grey gradient, or black for classic scenes]",
@@ -242,10 +196,10 @@ void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
 }
 
 void add_view_options(OptionTable& table, ViewOptions& view) {
-  table.add("--size", fmt::format("WxH|{}", fmt::join(size_names(), "|")),
+  table.add("--size", fmt::format("WxH|{}", fmt::join(work::size_names(), "|")),
             "Size of the picture in pixels. 640 alone is a width; the height then follows from the camera's aspect "
             "ratio [the size in the scene file; if it has none, a height of 720]",
-            [&](const OptionValues& w) { view.size = read_size(w); });
+            [&](const OptionValues& w) { view.size = w.read(work::read_size); });
   table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
             "Filter that weights samples by their distance from the pixel's centre [box]",
             [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
@@ -287,27 +241,11 @@ void add_fps_option(OptionTable& table, std::optional<double>& fps) {
 
 namespace {
 
-/// Reads a time with or without a unit.
-double read_seconds(const OptionValues& words) {
-  struct Unit {
-    std::string_view name;
-    double seconds;
-  };
-  constexpr Unit kUnits[] = {{"ms", 1e-3}, {"min", 60.0}, {"m", 60.0}, {"sec", 1.0}, {"s", 1.0}, {"h", 3600.0}};
-  const std::string& text = words.text();
-  for (const auto& [name, seconds] : kUnits) {
-    if (!text.ends_with(name)) continue;
-    const OptionValues number = words.with({text.substr(0, text.size() - name.size())});
-    return seconds * number.real(0, kMinTimeLimit / seconds, kMaxTimeLimit / seconds);
-  }
-  return words.real(0, kMinTimeLimit, kMaxTimeLimit);
-}
-
 void add_time_limit_option(OptionTable& table, ErrorOptions& error) {
   table.add("--time-limit", "SECONDS",
             "Replaces --spp: render the best picture that can be finished in this time, given as 20, 20s or 2min, and "
             "print the options that reproduce it",
-            [&](const OptionValues& w) { error.time_limit_s = read_seconds(w); });
+            [&](const OptionValues& w) { error.time_limit_s = w.read(work::read_seconds); });
 }
 
 }  // namespace

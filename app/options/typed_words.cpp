@@ -99,12 +99,6 @@ constexpr OtherName kNearOptions[] = {{"--aa", "--spp"},
 constexpr OtherName kNearCommands[] = {
     {"diff", "compare"}, {"gpus", "devices"}, {"inspect", "info"}, {"montage", "contact-sheet"}};
 
-/// Names of sizes. Users see the first three; the others are also accepted.
-constexpr std::string_view kSizeNames[] = {"hd", "fullhd", "4k", "720p", "1080p", "1440p", "2160p"};
-constexpr uvec2 kNamedSizes[] = {{1280, 720},  {1920, 1080}, {3840, 2160}, {1280, 720},
-                                 {1920, 1080}, {2560, 1440}, {3840, 2160}};
-static_assert(std::size(kSizeNames) == std::size(kNamedSizes));
-
 bool has_option(const CLI::App& command, std::string_view name) {
   return command.get_option_no_throw(std::string(name)) != nullptr;
 }
@@ -269,15 +263,6 @@ std::string find_command_by_meaning(const CLI::App& program, std::string_view ty
     return other.typed == typed && is_command(program, std::string(other.own));
   });
   return found == std::end(kNearCommands) ? "" : std::string(found->own);
-}
-
-std::optional<uvec2> find_named_size(std::string_view name) {
-  const auto* const found = std::ranges::find(kSizeNames, name);
-  return found == std::end(kSizeNames) ? std::nullopt : std::optional(kNamedSizes[found - kSizeNames]);
-}
-
-std::span<const std::string_view> size_names() {
-  return std::span(kSizeNames).first(3);
 }
 
 }  // namespace promin::app

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "promin/math.h"
 
 namespace CLI {
 class App;
@@ -30,11 +26,5 @@ std::string find_by_meaning(const CLI::App& command, std::string_view typed);
 
 /// Returns the command of a program that corresponds to another program's command of this name; empty if none is known.
 std::string find_command_by_meaning(const CLI::App& program, std::string_view typed);
-
-/// Returns the picture size for a name such as "hd".
-std::optional<uvec2> find_named_size(std::string_view name);
-
-/// Returns the names of picture sizes.
-std::span<const std::string_view> size_names();
 
 }  // namespace promin::app

@@ -7,6 +7,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <fmt/format.h>
+
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <regex>
@@ -26,6 +28,8 @@
 #include "records.h"
 #include "work/pictures/picture_run.h"
 #include "work/pictures/view_setup.h"
+#include "work/spec/spec_json.h"
+#include "work/spec/value_words.h"
 
 namespace nb = nanobind;
 
@@ -126,19 +130,30 @@ std::optional<Size> choose_size(const nb::dict& camera, const Size& sides) {
   return Size(size->x, size->y);
 }
 
-/// Returns the sides that a value of --size requests; a side of 0 is open.
+/// Reads one value in words. Throws UsageError, which names the keyword.
+template <typename Read>
+auto read_word(std::string_view keyword, const Read& read) {
+  try {
+    return read();
+  } catch (const work::WrongValue& wrong) {
+    throw UsageError({"spec.member.value", fmt::format("{} {}", keyword, wrong.what), "",
+                      wrong.near.empty() ? "" : fmt::format("did you mean {}?", wrong.near)});
+  }
+}
+
+/// Returns the sides that a size in words requests; a side of 0 is open.
 Size read_size(const std::string& word) {
-  const uvec2 size = *read_options({"--size=" + word}).view.size;
+  const uvec2 size = read_word("size", [&] { return work::read_size(word); });
   return {size.x, size.y};
 }
 
 double read_time_limit(const std::string& word) {
-  return *read_options({"--time-limit=" + word}).error.time_limit_s;
+  return read_word("time_limit", [&] { return work::read_seconds(word); });
 }
 
-/// Returns the fields of a view that a value of --quality stands for, for a view with this debug view.
-nb::dict read_quality(const std::string& word, const std::string& debug_view) {
-  work::RenderSpec options = read_options({"--quality=" + word, "--shading=" + debug_view});
+/// Returns the fields of a view that the quality of a specification stands for.
+nb::dict read_quality(const std::string& spec) {
+  work::RenderSpec options = read_spec(spec);
   work::apply_quality(options);
   nb::dict fields;
   fields["spp"] = options.view.samples_per_pixel.value_or(work::kDefaultSamples);
@@ -202,21 +217,16 @@ UsageError name_keywords(const UsageError& error) {
   return UsageError({problem.code, name_keywords(problem.what), "", name_keywords(problem.cure)});
 }
 
-work::RenderSpec read_options(const std::vector<std::string>& words) {
-  CLI::App command("", "promin");
-  work::RenderSpec options;
-  app::add_common_options(command);
-  app::add_render_options(command, options);
-  std::vector<const char*> all{"promin", "SCENE"};
-  for (const std::string& word : words) all.push_back(word.c_str());
+work::RenderSpec read_spec(const std::string& text) {
   try {
-    app::parse_arguments(command, static_cast<int>(all.size()), all.data());
-  } catch (const UsageError& error) {
-    Problem problem = name_keywords(error).problems().front();
-    if (!problem.cure.starts_with("did you mean")) problem.cure.clear();
-    throw UsageError(problem);
+    return work::parse_spec<work::RenderSpec>(text, {});
+  } catch (const InputError& error) {
+    Problem problem = error.problems().front();
+    // A keyword of Python's language has an underscore at its end.
+    const bool is_from = problem.what.starts_with("from ");
+    const std::string what = is_from ? fmt::format("from_{}", problem.what.substr(4)) : problem.what;
+    throw UsageError({problem.code, what, "", name_keywords(problem.cure)});
   }
-  return options;
 }
 
 Metadata describe_picture(const View& view, const DisplayTransform& display, const std::optional<PictureError>& error,
@@ -238,7 +248,7 @@ void bind_command_line(nb::module_& module) {
   module.def("choose_size", &choose_size, nb::arg("camera"), nb::arg("sides"));
   module.def("read_size", &read_size);
   module.def("read_time_limit", &read_time_limit);
-  module.def("read_quality", &read_quality, nb::arg("word"), nb::arg("debug_view"));
+  module.def("read_quality", &read_quality, nb::arg("spec"));
   module.def("spec_of_words", &spec_of_words, nb::arg("kind"), nb::arg("arguments"), nb::arg("names_outputs"));
   module.def("find_option", &find_option);
   module.def("error_target", &error_target, nb::arg("asked"), nb::arg("display"));

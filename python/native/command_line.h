@@ -21,8 +21,8 @@
 
 namespace promin::python {
 
-/// Returns the options of `promin render` that these words contain, read as on the command line. Throws UsageError.
-work::RenderSpec read_options(const std::vector<std::string>& words);
+/// Reads a specification of pictures, given as JSON. Throws UsageError, whose sentences have Python's keywords.
+work::RenderSpec read_spec(const std::string& text);
 
 /// Returns the sentence with Python's keywords in place of the options of `promin render`: look_at in place of
 /// --look-at.

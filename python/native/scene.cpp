@@ -120,11 +120,13 @@ LightChoice read_choice(const std::string& name) {
   return static_cast<LightChoice>(find_name(light_choice_names(), name, "light"));
 }
 
-/// Returns a copy of the scene with the light that `choice` adds, and with the surroundings and the background of these
-/// options.
-Scene light(const Scene& scene, const std::string& choice, const std::vector<std::string>& words) {
-  work::ViewOptions options = read_options(words).view;
+/// Returns a copy of the scene with the light that `choice` adds, and with the background and the surroundings of this
+/// specification. The file of the panorama has an argument of its own, because its name need not be UTF-8.
+Scene light(const Scene& scene, const std::string& choice, const std::string& spec,
+            const std::optional<std::filesystem::path>& panorama) {
+  work::ViewOptions options = read_spec(spec).view;
   options.look.light = read_choice(choice);
+  options.environment.panorama = panorama;
   Scene lit = scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
     const work::EnvironmentChoice surroundings(options.environment);
@@ -149,11 +151,11 @@ Camera pose_exactly(const Scene& scene, Camera camera, const work::PoseOptions& 
   return camera;
 }
 
-/// Returns the camera for a picture with these options. `given` replaces the scene's cameras and is not widened. If no
-/// sides are given, the camera is that of a picture with this aspect ratio, and no camera is widened.
-nb::dict choose_camera(const Scene& scene, const std::vector<std::string>& words, const std::optional<nb::dict>& given,
+/// Returns the camera for a picture with this specification. `given` replaces the scene's cameras and is not widened.
+/// If no sides are given, the camera is that of a picture with this aspect ratio, and no camera is widened.
+nb::dict choose_camera(const Scene& scene, const std::string& spec, const std::optional<nb::dict>& given,
                        const std::optional<std::pair<uint32_t, uint32_t>>& sides, float aspect_ratio) {
-  work::ViewOptions options = read_options(words).view;
+  work::ViewOptions options = read_spec(spec).view;
   if (sides && sides != std::pair(0U, 0U)) options.size = uvec2(sides->first, sides->second);
   return write(with_keywords([&] {
     work::check_pose_options(options.pose, given || options.camera);
@@ -222,8 +224,8 @@ void bind_scene(nb::module_& module) {
       .def("validate", &check)
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("set_center", [](Scene& s, double x, double y, double z) { s.center = dvec3(x, y, z); })
-      .def("lit", &light, nb::arg("choice"), nb::arg("words"))
-      .def("choose_camera", &choose_camera, nb::arg("words"), nb::arg("given").none(), nb::arg("sides").none(),
+      .def("lit", &light, nb::arg("choice"), nb::arg("spec"), nb::arg("panorama").none())
+      .def("choose_camera", &choose_camera, nb::arg("spec"), nb::arg("given").none(), nb::arg("sides").none(),
            nb::arg("aspect_ratio"))
       .def("describe_empty_picture", &describe_empty_picture, nb::arg("camera"), nb::arg("width"), nb::arg("height"))
       .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })

@@ -33,18 +33,18 @@ from promin._view import (
     Size,
     View,
     begins_with_target,
-    camera_words,
+    camera_spec,
     change_view,
     check_shading,
     has_target,
     limit_of,
     mode_of,
     of_view,
-    option_words,
     settle_quality,
     shows_light,
     size_of,
     to_record,
+    to_spec,
 )
 
 _ASPECT_RATIO = 16 / 9
@@ -166,13 +166,15 @@ class Renderer:
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
-        self._surroundings = [
-            *option_words("background", background),
-            *_panorama_words(environment),
-            *option_words("environment_rotation", environment_rotation),
-            *option_words("environment_intensity", environment_intensity),
-            *option_words("light_rotation", light_rotation),
-        ]
+        self._surroundings = to_spec(
+            {
+                "background": background,
+                "environment_rotation": environment_rotation,
+                "environment_intensity": environment_intensity,
+                "light_rotation": light_rotation,
+            }
+        )
+        self._panorama = _panorama_of(environment)
         self._has_background = background is not None
         self._exposure = _stops_of(exposure)
         self._builder = str(builder)
@@ -240,7 +242,7 @@ class Renderer:
         given = None
         if isinstance(view.camera, Camera):
             given = move_camera(view.camera, self._scene.native_center)
-        return self._scene.native().choose_camera(camera_words(view), given, sides, float(aspect_ratio))
+        return self._scene.native().choose_camera(camera_spec(view), given, sides, float(aspect_ratio))
 
     @names_keywords
     def render(
@@ -390,7 +392,7 @@ class Renderer:
 
     def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
         device = find_device(self._chosen)
-        lit = self._scene.native().lit(self._light, self._surroundings)
+        lit = self._scene.native().lit(self._light, self._surroundings, self._panorama)
         unasked = {"object"} if self._moves(aovs) else set()
         if lit.mixes_unlit():
             unasked.add("unlit")
@@ -468,12 +470,12 @@ def _names(aovs: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted({str(name) for name in aovs}))
 
 
-def _panorama_words(file: str | os.PathLike[str] | None) -> list[str]:
+def _panorama_of(file: str | os.PathLike[str] | None) -> str | None:
     if file is None:
-        return []
+        return None
     if isinstance(file, (str, os.PathLike)):
         # The path is absolute, because a process that unpickles the Renderer may have another current folder.
-        return ["--environment=" + os.path.abspath(os.fsdecode(file))]
+        return os.path.abspath(os.fsdecode(file))
     raise UsageError(f"environment is {file!r:.80}; give a panorama's file, or assign to scene.environment")
 
 

@@ -5,9 +5,10 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from operator import index
 from typing import Any, Union
 
@@ -163,7 +164,7 @@ def settle_quality(view: View) -> View:
     for name in _NUMBERS_OF_SAMPLES:
         if getattr(view, name) != getattr(View, name):
             raise UsageError(f"quality and {name} contradict each other; remove one of them")
-    fields = _promin.read_quality(str(view.quality) or "-", str(view.debug_view) or "-")
+    fields = _promin.read_quality(to_spec({"quality": str(view.quality), "shading": str(view.debug_view)}))
     if fields["target_error"] is None:
         fields["error_in"] = view.error_in
     return dataclasses.replace(view, quality=None, **fields)
@@ -193,7 +194,7 @@ def size_of(view: View) -> tuple[int, ...]:
     if view.size is None:
         return (0, 0)
     if isinstance(view.size, str):
-        return _promin.read_size(view.size or "-")
+        return _promin.read_size(view.size)
     if isinstance(view.size, (int, np.integer)):
         sides = _integers((view.size, 0), 2, "size")
         least = sides[0]
@@ -205,28 +206,32 @@ def size_of(view: View) -> tuple[int, ...]:
     return sides
 
 
-def option_words(name: str, value: object) -> list[str]:
-    """Returns the option of `promin render` for a keyword, with the words of its value; empty if the value is None.
-    Raises UsageError if the value is neither a text nor as many numbers as the option accepts."""
-    if value is None:
-        return []
-    option = "--" + name.rstrip("_").replace("_", "-")
+def member_of(name: str, value: object) -> object:
+    """Returns a value as it is written in a specification (docs/usage.md, "Specifications"): a text, a number or a list
+    of three. Raises UsageError if the value is neither a text nor as many numbers as the member accepts."""
+    if isinstance(value, str):
+        return value
     try:
-        is_text = isinstance(value, str)
-        words = str(value).split() or ["-"] if is_text else [repr(float(x)) for x in np.ravel(np.asarray(value))]
+        numbers = [float(x) for x in np.ravel(np.asarray(value))]
     except (TypeError, ValueError):
-        words = []
-    count = 3 if name in _VECTORS else 1
-    if any(word.startswith("--") for word in words) or (len(words) != count and not is_text):
+        numbers = []
+    if len(numbers) != (3 if name in _VECTORS else 1):
         raise UsageError(f"{name} is {value!r:.80}; give {_VECTORS.get(name, 'a number')}")
-    # A single word may begin with a dash.
-    return [f"{option}={words[0]}"] if len(words) == 1 else [option, *words]
+    # JSON has no numbers that are not finite; as texts they are refused with the range of the member.
+    written = [x if isfinite(x) else str(x) for x in numbers]
+    return written if name in _VECTORS else written[0]
 
 
-def camera_words(view: View) -> list[str]:
-    """Returns the options of `promin render` that choose and change the view's camera."""
-    words = [] if view.camera is None or isinstance(view.camera, Camera) else [f"--camera={view.camera}"]
-    return words + [word for name in POSE for word in option_words(name, getattr(view, name))]
+def to_spec(members: Mapping[str, object]) -> str:
+    """Returns the specification of pictures with these members, as JSON; members without a value are left out."""
+    given = {name.rstrip("_"): member_of(name, value) for name, value in members.items() if value is not None}
+    return json.dumps({"promin_render_spec": 1, **given})
+
+
+def camera_spec(view: View) -> str:
+    """Returns the specification of the view's camera."""
+    named = None if view.camera is None or isinstance(view.camera, Camera) else str(view.camera)
+    return to_spec({"camera": named, **{name: getattr(view, name) for name in POSE}})
 
 
 def limit_of(view: View) -> float | None:
@@ -235,7 +240,7 @@ def limit_of(view: View) -> float | None:
     if limit is None:
         return None
     if isinstance(limit, str):
-        return _promin.read_time_limit(limit or "-")
+        return _promin.read_time_limit(limit)
     if isinstance(limit, (int, float)) and 0 < limit < inf:
         return float(limit)
     raise UsageError(f"time_limit is {limit!r:.80}; give a positive number of seconds")

@@ -397,7 +397,7 @@ def test_no_time_gives_the_first_picture_alone(box: promin.Scene) -> None:
     frame = renderer.render(size=(8, 8), time_limit=1e-9)
     assert frame.error is None and frame.metadata["promin:spp"] == "1"
     assert (renderer.render(size=(8, 8), spp=1).rgb == frame.rgb).all()
-    with fails(promin.UsageError, "usage.option.value", "time_limit", "soon"):
+    with fails(promin.UsageError, "spec.member.value", "time_limit", "soon"):
         renderer.render(size=(8, 8), time_limit="soon")  # type: ignore[arg-type]
 
 

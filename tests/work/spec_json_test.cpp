@@ -185,6 +185,27 @@ TEST(SpecJsonTest, TheTextIsCanonical) {
             "{\n \"promin_render_spec\": 1,\n \"scene\": \"/a.gltf\",\n \"pieces\": 4\n}\n");
 }
 
+// A person may write these values as on a command line. They are written as numbers.
+TEST(SpecJsonTest, ValuesMayBeInWords) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"("size": "hd")", "\"size\": [1280,720]"},
+      {R"("size": "640")", "\"size\": [640,0]"},
+      {R"("size": "64\u00d748")", "\"size\": [64,48]"},
+      {R"("background": "environment")", "\"background\": \"environment\""},
+      {R"("background": "linear:0.5,2,8")", R"("background": {"linear":[0.5,2,8]})"},
+      {R"("time_limit": "2min")", "\"time_limit\": 120"},
+      {R"("time_limit": "500ms")", "\"time_limit\": 0.5"},
+      {R"("up": "-z")", "\"up\": [0,0,-1]"}};
+  for (const auto& [member, written] : cases) EXPECT_THAT(write_spec(parse(member)), HasSubstr(written)) << member;
+  EXPECT_THAT(refusal(R"("filter": "gaus")"), HasSubstr("did you mean gauss?"));
+  EXPECT_THAT(refusal(R"("size": "640:480")"), HasSubstr("size takes a size such as 640x480"));
+  EXPECT_THAT(refusal(R"("size": "64x0")"),
+              HasSubstr("size takes a whole number from 1 to 32768, not \"0\" in \"64x0\""));
+  EXPECT_THAT(refusal(R"("background": "linear:1,nan,2")"), HasSubstr("background takes a number from 0 to 1e+09"));
+  EXPECT_THAT(refusal(R"("time_limit": "2 parsecs")"), HasSubstr("time_limit takes a number from 0.001 to 1e+06"));
+  EXPECT_THAT(refusal(R"("up": "w")"), HasSubstr("up takes three numbers, x, y, z"));
+}
+
 TEST(SpecJsonTest, NumbersKeepTheirBits) {
   std::mt19937 random(7);
   for (int i = 0; i < 2000; ++i) {

@@ -113,8 +113,7 @@ void add_samples(Table<RenderSpec>& table) {
             {.usual = "normal", .replaces = {"spp", "target_error", "time_limit", "min_spp", "max_spp", "error_in"}});
   table.add_number("target_error", PROMIN_AT(error.target), static_cast<double>(kMinTargetError), 1.0,
                    {.replaces = {"spp", "quality"}});
-  table.add_number("time_limit", PROMIN_AT(error.time_limit_s), kMinTimeLimit, kMaxTimeLimit,
-                   {.replaces = {"spp", "quality"}});
+  table.add("time_limit", PROMIN_AT(error.time_limit_s), Seconds(), {.replaces = {"spp", "quality"}});
   table.add("min_spp", PROMIN_AT(error.min_samples), PowerOfTwo());
   table.add("max_spp", PROMIN_AT(error.max_samples), PowerOfTwo());
   table.add("error_in", PROMIN_AT(error.space), NameOf<ErrorSpace>{error_space_names()}, {.usual = "linear"});
@@ -176,7 +175,7 @@ void add_pose(Table<RenderSpec>& table) {
   table.add("eye", PROMIN_AT(view.pose.eye), Vector(), {.replaces = {"from", "fit", "path"}});
   table.add("look_at", PROMIN_AT(view.pose.look_at), Vector(), {.replaces = {"direction", "from", "fit", "path"}});
   table.add("direction", PROMIN_AT(view.pose.direction), Vector(), {.replaces = {"look_at", "from", "path"}});
-  table.add("up", PROMIN_AT(view.pose.up), Vector());
+  table.add("up", PROMIN_AT(view.pose.up), Direction());
   table.add_number("fov", PROMIN_AT(view.pose.fov_deg), kMinFovDeg, kMaxFovDeg);
   table.add_number("near", PROMIN_AT(view.pose.near), 0.0, kMaxCoordinate);
   table.add_number("aperture_radius", PROMIN_AT(view.aperture_radius), 0.0, kMaxCoordinate);

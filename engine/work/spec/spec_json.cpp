@@ -91,8 +91,9 @@ void read_member(const std::string& name, const nlohmann::json& parsed, const fs
   if (field->traits.is_file) change_paths(value, [&](const std::string& path) { return (folder / path).string(); });
   try {
     field->read(value, spec);
-  } catch (const fields::WrongValue& wrong) {
-    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), "", "correct it or remove it");
+  } catch (const WrongValue& wrong) {
+    report.refuse("spec.member.value", fmt::format("{} {}", name, wrong.what), "",
+                  wrong.near.empty() ? "correct it or remove it" : fmt::format("did you mean {}?", wrong.near));
   }
 }
 

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/json_text.h"
-#include "image/color_words.h"
 #include "promin/image.h"
 #include "promin/validate.h"
 #include "work/pictures/camera_path.h"
@@ -15,7 +14,6 @@ namespace promin::work::fields {
 namespace {
 
 constexpr const char* kStoredFrames = "stored";
-constexpr const char* kEnvironmentShown = "environment";
 constexpr const char* kLinearLight = "linear";
 
 template <typename Number>
@@ -39,8 +37,8 @@ vec3 read_color(const Json& json, double most) {
 
 }  // namespace
 
-void refuse_value(const std::string& takes, const Json& value) {
-  throw WrongValue{fmt::format("takes {}, not {}", takes, json_text(value))};
+void refuse_value(const std::string& takes, const Json& value, std::string_view near) {
+  throw WrongValue{fmt::format("takes {}, not {}", takes, json_text(value)), std::string(near)};
 }
 
 Json write_number(float value) {
@@ -96,15 +94,28 @@ dvec3 Vector::read(const Json& json) const {
   return {part(0), part(1), part(2)};
 }
 
+dvec3 Direction::read(const Json& json) const {
+  if (!json.is_string()) return Vector().read(json);
+  const std::optional<dvec3> axis = find_axis(json.get<std::string>());
+  if (!axis) refuse_value(fmt::format("three numbers, {}", list_choices(axis_names())), json);
+  return *axis;
+}
+
 uvec2 Pair::read(const Json& json) const {
   const Json& parts = read_array(json, 2, "two whole numbers");
   return {read_whole(parts[0], min, max), read_whole(parts[1], min, max)};
 }
 
 uvec2 Size::read(const Json& json) const {
+  if (json.is_string()) return read_size(json.get<std::string>());
   const uvec2 size = Pair{0, kMaxSide}.read(json);
   if (size == uvec2(0)) refuse_value("a width and a height, one of which may be 0 for the camera's choice", json);
   return size;
+}
+
+double Seconds::read(const Json& json) const {
+  if (json.is_string()) return read_seconds(json.get<std::string>());
+  return read_real(json, kMinTimeLimit, kMaxTimeLimit);
 }
 
 std::vector<std::string> Animations::read(const Json& json) const {
@@ -159,17 +170,12 @@ std::vector<uint32_t> Indices::read(const Json& json) const {
 }
 
 Json Background::write(const BackgroundChoice& value) const {
-  if (value.is_environment) return kEnvironmentShown;
+  if (value.is_environment) return std::string(kEnvironmentShown);
   return value.is_linear ? Json{{kLinearLight, write_color(value.color)}} : write_color(value.color);
 }
 
 BackgroundChoice Background::read(const Json& json) const {
-  if (json == kEnvironmentShown) return {.is_environment = true};
-  if (json.is_string()) {
-    const std::optional<vec3> color = find_color(json.get<std::string>());
-    if (!color) refuse_value("the name of a colour, #rrggbb, three numbers from 0 to 1 or environment", json);
-    return {.color = *color};
-  }
+  if (json.is_string()) return read_background(json.get<std::string>());
   if (json.is_object() && json.size() == 1 && json.contains(kLinearLight)) {
     return {.is_linear = true, .color = read_color(json[kLinearLight], kMaxBackground)};
   }

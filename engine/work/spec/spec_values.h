@@ -20,6 +20,7 @@
 #include "promin/math.h"
 #include "promin/view.h"
 #include "work/spec/render_spec.h"
+#include "work/spec/value_words.h"
 
 // Types that read and write the values of members of specifications. Each has `write`, which returns a value as JSON,
 // and `read`, which throws WrongValue.
@@ -27,11 +28,8 @@ namespace promin::work::fields {
 
 using Json = nlohmann::ordered_json;
 
-/// Thrown if a value is refused. The text is the end of a sentence about the member: "takes true or false, not 1".
-struct WrongValue {
-  std::string what;
-};
-[[noreturn]] void refuse_value(const std::string& takes, const Json& value);
+/// Throws WrongValue for a value in place of what the member takes. `near` is a word that the user may have meant.
+[[noreturn]] void refuse_value(const std::string& takes, const Json& value, std::string_view near = {});
 
 /// Returns a number with the fewest digits that reproduce it.
 Json write_number(float value);
@@ -98,13 +96,21 @@ struct NameOf {
   Enum read(const Json& json) const {
     const auto known = names.subspan(hidden);
     const auto found = json.is_string() ? std::ranges::find(known, json.get<std::string>()) : known.end();
-    if (found == known.end()) refuse_value(list_choices(known), json);
+    if (found == known.end()) {
+      refuse_value(list_choices(known), json, json.is_string() ? nearest_name(json.get<std::string>(), known) : "");
+    }
     return static_cast<Enum>(static_cast<size_t>(found - known.begin()) + hidden);
   }
 };
 
 struct Vector {
   Json write(const dvec3& value) const;
+  dvec3 read(const Json& json) const;
+};
+
+/// A direction as three numbers, or the name of an axis.
+struct Direction {
+  Json write(const dvec3& value) const { return Vector().write(value); }
   dvec3 read(const Json& json) const;
 };
 
@@ -117,10 +123,16 @@ struct Pair {
   uvec2 read(const Json& json) const;
 };
 
-/// Width and height. One of them may be 0.
+/// Width and height, one of which may be 0, or a size in words.
 struct Size {
   Json write(const uvec2& value) const { return {value.x, value.y}; }
   uvec2 read(const Json& json) const;
+};
+
+/// A time in seconds, or a time in words.
+struct Seconds {
+  Json write(double value) const { return write_number(value); }
+  double read(const Json& json) const;
 };
 
 /// The name or number of an animation, or a list of them.
@@ -157,8 +169,7 @@ struct Indices {
   std::vector<uint32_t> read(const Json& json) const;
 };
 
-/// A background: "environment", a displayed colour as a word or as three numbers, or linear light as
-/// {"linear": [R, G, B]}.
+/// A background in words, a displayed colour as three numbers, or linear light as {"linear": [R, G, B]}.
 struct Background {
   Json write(const BackgroundChoice& value) const;
   BackgroundChoice read(const Json& json) const;
