@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <variant>
 
@@ -22,7 +23,11 @@ bool is_finite(const Vector& v) {
 /// numbers of the same sign (Press et al., "Numerical Recipes", 5.6), which keeps both solutions accurate and works for
 /// a = 0.
 std::array<Real, 2> solve_quadratic(Real a, Real b, Real c) {
-  const Real q = -(b + std::copysign(std::sqrt(b * b - a * c), b));
+  constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
+  const Real discriminant = b * b - a * c;
+  // The C library takes long for the root of a negative number.
+  if (discriminant < 0) return {kNone, kNone};
+  const Real q = -(b + std::copysign(std::sqrt(discriminant), b));
   return {q / a, c / q};
 }
 

@@ -28,7 +28,7 @@ double smoothstep(double lo, double hi, double x) {
 }
 
 double elevation_of(const dvec3& d) {
-  return std::atan2(d.y, std::hypot(d.x, d.z));
+  return std::atan2(d.y, std::sqrt(d.x * d.x + d.z * d.z));
 }
 
 /// A lamp of the studio. Angles are in degrees, to the right as seen by the viewer.
@@ -48,44 +48,73 @@ double within(double angle, double size_deg) {
   return 1 - smoothstep(0.85 * half, 1.15 * half, std::abs(angle));
 }
 
+/// A lamp's place in the sky.
+struct LampFrame {
+  dvec3 middle;
+  dvec3 right;
+  dvec3 up;
+
+  LampFrame(const Lamp& lamp, double front) {
+    const double azimuth = front + radians(lamp.azimuth);
+    const double elevation = radians(lamp.elevation);
+    middle =
+        dvec3(std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation));
+    right = dvec3(std::cos(azimuth), 0, -std::sin(azimuth));
+    up = glm::cross(middle, right);
+  }
+};
+
 /// Returns the radiance from a direction of the sky before the sky is rotated: azimuth 0 is +Z, and +X is a quarter to
-/// the right for a viewer who stands at +Z and looks at the scene.
-struct SkyRadiance {
-  const dvec3& d;
+/// the right for a viewer who stands at +Z and looks at the scene. Each constructor prepares what does not depend on
+/// the direction.
+struct NoSky {
+  dvec3 operator()(const dvec3& /*d*/) const { return dvec3(0); }
+};
 
-  dvec3 operator()(const std::monostate&) const { return dvec3(0); }
+struct GradientRadiance {
+  const GradientSky& sky;
 
-  dvec3 operator()(const GradientSky& sky) const {
+  dvec3 operator()(const dvec3& d) const {
     const double e = std::abs(elevation_of(d)) / (kPi / 2);
     const double curve = static_cast<double>(d.y >= 0 ? sky.top_curve : sky.bottom_curve);
     const double way = 1 - std::pow(std::max(1 - e, 0.0), 1 / curve);
     return glm::mix(dvec3(sky.horizon), dvec3(d.y >= 0 ? sky.top : sky.bottom), way);
   }
+};
 
-  dvec3 operator()(const Studio& studio) const {
+struct StudioRadiance {
+  explicit StudioRadiance(const Studio& studio)
+      : front_sine(std::sin(static_cast<double>(studio.front))),
+        front_cosine(std::cos(static_cast<double>(studio.front))) {
+    for (const Lamp& lamp : kLamps) frames.emplace_back(lamp, static_cast<double>(studio.front));
+  }
+
+  dvec3 operator()(const dvec3& d) const {
     // `back` is 0 for the direction to the studio's front, and 1 for the opposite direction.
-    const double front = static_cast<double>(studio.front);
-    const double back = (1 - d.x * std::sin(front) - d.z * std::cos(front)) / 2;
+    const double back = (1 - d.x * front_sine - d.z * front_cosine) / 2;
     const double horizon = 0.20 + 0.16 * back;
     const double end = d.y >= 0 ? 0.16 : 0.05 + 0.19 * back;
     double sum = horizon + (end - horizon) * (d.y >= 0 ? smoothstep(0, 0.6, d.y) : smoothstep(0, 0.2, -d.y));
-    for (const Lamp& lamp : kLamps) {
-      const double azimuth = static_cast<double>(studio.front) + radians(lamp.azimuth);
-      const double elevation = radians(lamp.elevation);
-      const dvec3 middle(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                         std::cos(azimuth) * std::cos(elevation));
-      const dvec3 right(std::cos(azimuth), 0, -std::sin(azimuth));
-      const dvec3 up = glm::cross(middle, right);
-      const double ahead = glm::dot(d, middle);
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const double ahead = glm::dot(d, frames[i].middle);
       if (ahead <= 0) continue;
-      sum += lamp.radiance * within(std::atan2(glm::dot(d, right), ahead), lamp.width) *
-             within(std::atan2(glm::dot(d, up), ahead), lamp.height);
+      const double across = within(std::atan2(glm::dot(d, frames[i].right), ahead), kLamps[i].width);
+      if (across == 0) continue;
+      sum += kLamps[i].radiance * across * within(std::atan2(glm::dot(d, frames[i].up), ahead), kLamps[i].height);
     }
     return dvec3(sum);
   }
 
-  /// A pixel's value is the radiance at its centre. Between the centres the radiance is interpolated.
-  dvec3 operator()(const Panorama& panorama) const {
+  double front_sine;
+  double front_cosine;
+  std::vector<LampFrame> frames;
+};
+
+/// A pixel's value is the radiance at its centre. Between the centres the radiance is interpolated.
+struct PanoramaRadiance {
+  const Panorama& panorama;
+
+  dvec3 operator()(const dvec3& d) const {
     const Image& image = *panorama.image;
     const double column = (0.5 + std::atan2(d.x, -d.z) / (2 * kPi)) * image.size.x - 0.5;
     const double row = (0.5 - elevation_of(d) / kPi) * image.size.y - 0.5;
@@ -104,13 +133,34 @@ struct SkyRadiance {
   }
 };
 
-dvec3 radiance_of(const Environment& environment, const dvec3& direction) {
-  // The sky is rotated from +Z towards +X, so the direction is rotated by the same angle the other way.
-  const double sine = std::sin(static_cast<double>(environment.rotation));
-  const double cosine = std::cos(static_cast<double>(environment.rotation));
-  const dvec3 in_sky(direction.x * cosine - direction.z * sine, direction.y, direction.x * sine + direction.z * cosine);
-  return static_cast<double>(environment.intensity) * std::visit(SkyRadiance{in_sky}, environment.sky);
-}
+/// The radiance of an environment's sky by direction.
+class SkyRadiance {
+ public:
+  explicit SkyRadiance(const Environment& environment)
+      : sine_(std::sin(static_cast<double>(environment.rotation))),
+        cosine_(std::cos(static_cast<double>(environment.rotation))),
+        intensity_(static_cast<double>(environment.intensity)),
+        sky_(std::visit([](const auto& sky) { return prepare(sky); }, environment.sky)) {}
+
+  dvec3 operator()(const dvec3& direction) const {
+    // The sky is rotated from +Z towards +X, so the direction is rotated by the same angle the other way.
+    const dvec3 in_sky(direction.x * cosine_ - direction.z * sine_, direction.y,
+                       direction.x * sine_ + direction.z * cosine_);
+    return intensity_ * std::visit([&](const auto& sky) { return sky(in_sky); }, sky_);
+  }
+
+ private:
+  using Prepared = std::variant<NoSky, GradientRadiance, StudioRadiance, PanoramaRadiance>;
+  static Prepared prepare(const std::monostate& /*sky*/) { return NoSky(); }
+  static Prepared prepare(const GradientSky& sky) { return GradientRadiance{sky}; }
+  static Prepared prepare(const Studio& studio) { return StudioRadiance(studio); }
+  static Prepared prepare(const Panorama& panorama) { return PanoramaRadiance{panorama}; }
+
+  double sine_;
+  double cosine_;
+  double intensity_;
+  Prepared sky_;
+};
 
 /// Returns the functions of the bands, indexed like the coefficients, with the constants of docs/model.md.
 std::array<double, 9> band_functions(const dvec3& n) {
@@ -119,6 +169,24 @@ std::array<double, 9> band_functions(const dvec3& n) {
 constexpr double kBandFactors[] = {1 / (4 * kPi),   1 / (2 * kPi),  1 / (2 * kPi),   1 / (2 * kPi),  15 / (16 * kPi),
                                    15 / (16 * kPi), 5 / (64 * kPi), 15 / (16 * kPi), 15 / (64 * kPi)};
 
+// The quadrature over a lobe: rings of directions, a node each.
+constexpr double kLobePanels[] = {0, 0.17, 0.33, 0.5, 0.65, 0.8, 0.9, 0.98, 1};
+constexpr int kLobeNodes = 8;
+constexpr int kLobeAzimuths = 64;
+
+/// Returns cosine and sine of the azimuths of all rings. Each ring is rotated relative to the previous one.
+std::vector<dvec2> make_circle_of_lobe() {
+  std::vector<dvec2> turns;
+  const int rings = kLobeNodes * (static_cast<int>(std::size(kLobePanels)) - 1);
+  for (int ring = 1; ring <= rings; ++ring) {
+    for (int i = 0; i < kLobeAzimuths; ++i) {
+      const double azimuth = 2 * kPi * (i + 0.618 * ring) / kLobeAzimuths;
+      turns.emplace_back(std::cos(azimuth), std::sin(azimuth));
+    }
+  }
+  return turns;
+}
+
 }  // namespace
 
 Surroundings::Surroundings(const Environment& environment) : environment_(environment) {
@@ -126,17 +194,22 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
   std::array<dvec3, 9> sums{};
   double least = std::numeric_limits<double>::infinity();
   double most = 0;
+  const SkyRadiance sky(environment_);
   // Panels begin at the horizon, where skies have a crease.
   constexpr int kPanels = 64;
   constexpr int kAzimuths = 1024;
+  std::array<dvec2, kAzimuths> circle;
+  for (int i = 0; i < kAzimuths; ++i) {
+    const double azimuth = 2 * kPi * (i + 0.5) / kAzimuths;
+    circle[static_cast<size_t>(i)] = {std::sin(azimuth), std::cos(azimuth)};
+  }
   for (int panel = -kPanels; panel < kPanels; ++panel) {
     for (const QuadratureNode& y : gauss_nodes<8>(panel / Real{kPanels}, (panel + 1) / Real{kPanels})) {
       const auto height = static_cast<double>(y.place);
       const double across = std::sqrt(1 - height * height);
-      for (int i = 0; i < kAzimuths; ++i) {
-        const double azimuth = 2 * kPi * (i + 0.5) / kAzimuths;
-        const dvec3 direction(across * std::sin(azimuth), height, across * std::cos(azimuth));
-        const dvec3 radiance = radiance_of(environment_, direction);
+      for (const dvec2& turn : circle) {
+        const dvec3 direction(across * turn.x, height, across * turn.y);
+        const dvec3 radiance = sky(direction);
         const dvec3 light = static_cast<double>(y.weight) * 2 * kPi / kAzimuths * radiance;
         least = std::min({least, radiance.x, radiance.y, radiance.z});
         most = std::max({most, radiance.x, radiance.y, radiance.z});
@@ -150,7 +223,7 @@ Surroundings::Surroundings(const Environment& environment) : environment_(enviro
 }
 
 Vector Surroundings::radiance(const Vector& direction) const {
-  return has_sky() ? Vector(radiance_of(environment_, dvec3(direction))) : Vector(environment_.ambient);
+  return has_sky() ? Vector(SkyRadiance(environment_)(dvec3(direction))) : Vector(environment_.ambient);
 }
 
 Vector Surroundings::irradiance(const Vector& normal) const {
@@ -163,6 +236,7 @@ Vector Surroundings::irradiance(const Vector& normal) const {
 
 Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
   if (!has_sky() || roughness <= 0) return radiance(direction);
+  const SkyRadiance sky(environment_);
   const double alpha2 = std::pow(static_cast<double>(roughness), 4);
   const dvec3 axis(direction);
   const dvec3 aside =
@@ -172,27 +246,23 @@ Vector Surroundings::lobe_mean(const Vector& direction, Real roughness) const {
   // dw = 2 ds d(azimuth). D is alpha^2 / (pi (alpha^2 + (1 - alpha^2) s)^2), so its integral q over s, as a fraction of
   // the whole, is a quotient, and each node in q stands for the same fraction of D.
   const double end = alpha2 + (1 - alpha2) / 2;
-  constexpr double kPanels[] = {0, 0.17, 0.33, 0.5, 0.65, 0.8, 0.9, 0.98, 1};
-  constexpr int kAzimuths = 64;
+  static const std::vector<dvec2> circle = make_circle_of_lobe();
   dvec3 sum(0);
   double weights = 0;
-  int ring = 0;
-  for (size_t panel = 0; panel + 1 < std::size(kPanels); ++panel) {
-    for (const QuadratureNode& q : gauss_nodes<8>(kPanels[panel], kPanels[panel + 1])) {
+  size_t place_in_circle = 0;
+  for (size_t panel = 0; panel + 1 < std::size(kLobePanels); ++panel) {
+    for (const QuadratureNode& q : gauss_nodes<kLobeNodes>(kLobePanels[panel], kLobePanels[panel + 1])) {
       const auto place = static_cast<double>(q.place);
       const double s = alpha2 * place / (2 * (end - (1 - alpha2) / 2 * place));
       const double cosine = 1 - 2 * s;
       const double sine = std::sqrt(1 - cosine * cosine);
-      ++ring;
       dvec3 of_ring(0);
-      for (int i = 0; i < kAzimuths; ++i) {
-        // Each ring is rotated relative to the previous one.
-        const double azimuth = 2 * kPi * (i + 0.618 * ring) / kAzimuths;
-        const dvec3 way = cosine * axis + sine * (std::cos(azimuth) * aside + std::sin(azimuth) * other);
-        of_ring += radiance_of(environment_, way);
+      for (int i = 0; i < kLobeAzimuths; ++i) {
+        const dvec2& turn = circle[place_in_circle++];
+        of_ring += sky(cosine * axis + sine * (turn.x * aside + turn.y * other));
       }
       const double weight = static_cast<double>(q.weight) * cosine;
-      sum += weight / kAzimuths * of_ring;
+      sum += weight / kLobeAzimuths * of_ring;
       weights += weight;
     }
   }
