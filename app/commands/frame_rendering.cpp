@@ -48,8 +48,8 @@ bool is_traced_whole(const RenderSpec& options) {
 class FrameRendering {
  public:
   FrameRendering(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
-                 const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
-                 std::function<void(double)> on_progress)
+                 const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats, const Films& films,
+                 ProgressCallback on_progress)
       : planned_(planned),
         options_(options),
         limit_s_(limit_s),
@@ -57,6 +57,7 @@ class FrameRendering {
         scene_(scene),
         renderer_(renderer),
         stats_(stats),
+        films_(films),
         on_progress_(std::move(on_progress)),
         window_(window_of(*stats.view)),
         channels_(describe_aovs(scene, options.aovs, options.hides_unlit, stats.view->depth_kind).channels),
@@ -110,14 +111,14 @@ class FrameRendering {
     if (error_) stats_.errors.push_back(*error_);
     // Signals are deferred from here on until no temporary file remains.
     while_writing_.emplace();
-    files_.emplace(planned_.pictures, make_header(options_, scene_, planned_.number, stats_));
+    files_.emplace(planned_.pictures, make_header(options_, scene_, planned_.number, stats_), films_);
   }
 
   void write_while_tracing() {
     const auto rows = static_cast<double>(window_.hi.y - window_.lo.y);
     for (const PixelWindow& band : bands_) {
       PictureRows traced = trace_part(bands_.size() > 1 ? std::optional(band) : std::nullopt, [&](double fraction) {
-        on_progress_((band.lo.y - window_.lo.y + fraction * (band.hi.y - band.lo.y)) / rows);
+        if (!on_progress_((band.lo.y - window_.lo.y + fraction * (band.hi.y - band.lo.y)) / rows)) return false;
         return !while_writing_ || !while_writing_->is_pending();
       });
       const Stopwatch write;
@@ -132,15 +133,15 @@ class FrameRendering {
     std::optional<PictureSpool> spool;
     {
       const DeferredSignals while_making;
-      spool.emplace(planned_.pictures.front(), window_, channels_);
+      spool.emplace(planned_.pictures.empty() ? options_.pictures.front() : planned_.pictures.front(), window_,
+                    channels_);
     }
     double pixels_done = 0.0;
     const auto pixels = static_cast<double>(area_of(window_));
     for (const PixelWindow& part : parts_to_refine(window_)) {
       const auto part_pixels = static_cast<double>(area_of(part));
       const PictureRows traced = trace_part(part, [&](double fraction) {
-        on_progress_((1.0 - kWritingShare) * (pixels_done + fraction * part_pixels) / pixels);
-        return true;
+        return on_progress_((1.0 - kWritingShare) * (pixels_done + fraction * part_pixels) / pixels);
       });
       spool->write(part, traced.image, traced.channels);
       pixels_done += part_pixels;
@@ -170,7 +171,8 @@ class FrameRendering {
   const Scene& scene_;
   Renderer& renderer_;
   RunStats& stats_;
-  std::function<void(double)> on_progress_;
+  const Films& films_;
+  ProgressCallback on_progress_;
   PixelWindow window_;
   /// Channels in addition to R, G and B. They have no values.
   std::vector<Channel> channels_;
@@ -187,8 +189,8 @@ class FrameRendering {
 
 void render_frame(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
                   const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
-                  const std::function<void(double)>& on_progress) {
-  FrameRendering(planned, options, limit_s, device, scene, renderer, stats, on_progress).run();
+                  const Films& films, const ProgressCallback& on_progress) {
+  FrameRendering(planned, options, limit_s, device, scene, renderer, stats, films, on_progress).run();
 }
 
 }  // namespace promin::app

@@ -49,10 +49,11 @@ Command add_merge_command(CLI::App& program) {
   OptionTable table(command);
   table.add_required("DIR", "", "Folder that promin render --job or promin cast --job has created",
                      [=](const OptionValues& w) { options->folder = w.text(); });
-  table.add_required_repeated("-o,--output", "FILE",
-                              "File to write: .exr (linear float) or .png (sRGB, 8 bit) for pictures, .npy for hits. "
-                              "#### in a name stands for the frame number. You may repeat this option",
-                              [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
+  table.add_required_repeated(
+      "-o,--output", "FILE",
+      "File to write: .exr (linear float) or .png (sRGB, 8 bit) for pictures, .mp4, .webm, .gif "
+      "or .png for a film, .npy for hits. #### in a name stands for the frame number. You may repeat this option",
+      [=](const OptionValues& w) { options->files.assign(w.all().begin(), w.all().end()); });
   table.add("--offsets", "OFFSETS.npy",
             "For a job of promin cast --all: file for the indices at which the hits of each ray begin",
             [=](const OptionValues& w) { options->offsets = w.text(); });

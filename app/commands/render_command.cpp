@@ -29,6 +29,7 @@
 #include "promin/image.h"
 #include "trace/film/refinement.h"
 #include "work/jobs/render_job.h"
+#include "work/pictures/film_file.h"
 #include "work/pictures/frame_renderers.h"
 #include "work/pictures/picture_run.h"
 #include "work/pictures/tracing_run.h"
@@ -104,11 +105,32 @@ double writing_s(const View& view, size_t pictures) {
   return kSecondsPerPixel * static_cast<double>(area_of(window_of(view))) * static_cast<double>(pictures);
 }
 
+/// Returns the files that hold all frames.
+std::vector<std::filesystem::path> films_of(const RenderSpec& options, const std::vector<PlannedFrame>& frames) {
+  return films_among(options.pictures, frames.size() > 1);
+}
+
+FilmHeader describe_film(const RenderSpec& options, const std::vector<PlannedFrame>& frames,
+                         const PixelWindow& window) {
+  return {.size = window.hi - window.lo,
+          .has_alpha = options.aovs.alpha,
+          .fps = frame_rate_of(options, frames.front().path.get()),
+          .frame_count = frames.size()};
+}
+
 /// Renders all frames after loading the scene once. The message of an error names the frame. The pictures of earlier
-/// frames are complete then.
+/// frames are complete then. A film appears after its last frame.
 void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& options, const Stopwatch& total,
                    const gpu::Device& device, const Scene& scene, FrameRenderers& renderers, RunStats& stats,
                    const Console& console) {
+  // A film is incomplete until its last frame. Therefore a signal ends the program only when the film is removed.
+  std::optional<DeferredSignals> while_filming;
+  Films films;
+  if (const std::vector<std::filesystem::path> files = films_of(options, frames); !files.empty()) {
+    while_filming.emplace();
+    const FilmHeader header = describe_film(options, frames, window_of(*stats.view));
+    for (const std::filesystem::path& file : files) films.push_back(std::make_unique<FilmFile>(file, header));
+  }
   Progress progress(console.is_quiet());
   const View asked = *stats.view;
   const std::optional<double> limit_s = options.error.time_limit_s;
@@ -126,8 +148,9 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& op
     try {
       const auto on_progress = [&](double fraction) {
         progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
+        return !while_filming || !while_filming->is_pending();
       };
-      render_frame(frame, options, left_s, device, scene, renderer, stats, on_progress);
+      render_frame(frame, options, left_s, device, scene, renderer, stats, films, on_progress);
       if (limit_s) {
         progress.clear();
         tell_reached(stats, *limit_s, taken_s(), console);
@@ -140,6 +163,7 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& op
       throw RunError(problems);
     }
   }
+  for (const std::unique_ptr<FilmFile>& film : films) film->commit();
 }
 
 std::vector<std::filesystem::path> inputs_of(const RenderSpec& options) {
@@ -149,8 +173,9 @@ std::vector<std::filesystem::path> inputs_of(const RenderSpec& options) {
   return files;
 }
 
-std::vector<std::filesystem::path> pictures_of(const std::vector<PlannedFrame>& frames) {
-  std::vector<std::filesystem::path> files;
+/// Returns the files of a run.
+std::vector<std::filesystem::path> pictures_of(const RenderSpec& options, const std::vector<PlannedFrame>& frames) {
+  std::vector<std::filesystem::path> files = films_of(options, frames);
   for (const PlannedFrame& frame : frames) files.insert(files.end(), frame.pictures.begin(), frame.pictures.end());
   return files;
 }
@@ -197,9 +222,15 @@ bool has_work(const RenderSpec& given, const RenderSpec& options, std::vector<Pl
               const Console& console) {
   const TracingOptions& tracing = options.tracing;
   const bool goes_on = options.job.folder && is_file_there(*options.job.folder / "job.json");
-  if (given.pictures.empty() && !goes_on) check_default_names(pictures_of(frames), tracing.scene.filename().string());
+  const std::vector<std::filesystem::path> all = pictures_of(options, frames);
+  if (given.pictures.empty() && !goes_on) check_default_names(all, tracing.scene.filename().string());
+  if (options.skips_existing && !films_of(options, frames).empty()) {
+    throw UsageError({"usage.options.contradict",
+                      "--skip-existing and a film contradict each other, because a film needs all of its frames",
+                      films_of(options, frames).front().string(), "remove one of them"});
+  }
   const size_t skipped = options.skips_existing ? std::erase_if(frames, is_there) : 0;
-  check_outputs(inputs_of(options), pictures_of(frames), tracing.stats);
+  check_outputs(inputs_of(options), pictures_of(options, frames), tracing.stats);
   if (skipped > 0) {
     console.note(fmt::format("skipped {} of {}, whose pictures exist already", skipped,
                              count_of(skipped + frames.size(), "frame")));
@@ -220,8 +251,10 @@ void render_job(const RenderSpec& given, PictureRun run, const Console& console,
   run_job(*plan_pictures(given, std::move(run), console), options.job, steps, console);
 }
 
-void render(const RenderSpec& given, bool prints_spec) {
+void render(const RenderSpec& asked, bool prints_spec) {
   const Stopwatch total;
+  RenderSpec given = asked;
+  complete_film(given);
   const TracingOptions& tracing = given.tracing;
   const Console console(verbosity_of(given.tracing));
   check_render_spec(given);
@@ -232,7 +265,7 @@ void render(const RenderSpec& given, bool prints_spec) {
   RenderSpec options = given;
   const StandardOutput standard_output(options.pictures);
   options.pictures = name_pictures(options);
-  check_pictures(options.pictures);
+  check_frame_files(options.pictures);
   std::vector<PlannedFrame> frames = plan_frames(options);
   // The length of a whole film is known only after the scene is read.
   const bool is_known = !frames.empty();
@@ -244,7 +277,11 @@ void render(const RenderSpec& given, bool prints_spec) {
   stage.reset();
   if (!is_known && !has_work(given, options, run.frames, console)) return;
   options = run.options;
-  check_overwrites(files_of(run.sources), pictures_of(run.frames), tracing.stats);
+  check_overwrites(files_of(run.sources), pictures_of(options, run.frames), tracing.stats);
+  // A film that cannot be written is refused before any work.
+  for (const std::filesystem::path& film : films_of(options, run.frames)) {
+    check_film(film, frame_rate_of(options, run.frames.front().path.get()));
+  }
   const auto tell_names = [&] {
     if (!given.pictures.empty() || options.pictures.empty()) return;
     console.note(fmt::format("writing {} and {}", options.pictures[0].string(), options.pictures[1].string()));

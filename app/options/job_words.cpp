@@ -51,6 +51,12 @@ void refuse_given(const CLI::App& command, std::span<const SaidElsewhere> option
   }
 }
 
+/// Makes choices that depend on the names of outputs, because a job does not keep these names.
+void complete(RenderSpec& spec) {
+  work::complete_film(spec);
+}
+void complete(CastSpec& /*spec*/) {}
+
 /// Returns the text of the specification that these arguments of the command describe.
 template <typename Spec>
 std::string read_words(const std::string& name, void (*add_options)(CLI::App&, Spec&),
@@ -66,6 +72,7 @@ std::string read_words(const std::string& name, void (*add_options)(CLI::App&, S
   static_cast<void>(parse_arguments(program, static_cast<int>(words.size()), words.data()));
   if (outputs == OutputWords::kRefused) refuse_given(command, kOutputs);
   refuse_given(command, kSaidElsewhere);
+  complete(spec);
   return write_spec(spec);
 }
 

@@ -32,6 +32,7 @@ void arrange_help(CLI::App& program, CLI::App& render) {
   add_examples(
       render,
       {{"promin render model.glb -o picture.png --size hd --spp 16", "takes 16 samples per pixel at 1280x720"},
+       {"promin render fox.glb -o fox.mp4", "renders the animation as a film"},
        {"promin render model.glb -o best.png --time-limit 20", "renders the best picture that takes about 20 seconds"},
        {"promin render model.glb -o big.exr --job work",
         "saves its work, so the same command continues it after an interruption"}});

@@ -290,7 +290,9 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   add_scene_argument(table, options.tracing);
   table.add_repeated(
       "-o,--output", "FILE",
-      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit). The name - stands for a PNG "
+      "Picture to write: .exr or .hdr (linear), .png, .jpg, .webp or .tif (sRGB, 8 bit). One .mp4, .webm or .gif, or a "
+      ".png without #### for several frames, holds all frames of a film; this needs ffmpeg. The name - stands for a "
+      "PNG "
       "on the standard output. You may repeat this option [the scene's name with .exr and .png, in the current folder]",
       [&](const OptionValues& w) { options.pictures.assign(w.all().begin(), w.all().end()); });
   table.add("--explain", "X Y", "Print all rays of this pixel as JSON and write no picture. 0 0 is the top left pixel",

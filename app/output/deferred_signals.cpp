@@ -11,6 +11,8 @@ namespace {
 constexpr std::array kDeferred = {SIGINT, SIGTERM, SIGHUP};
 
 volatile std::sig_atomic_t pending_signal = 0;
+/// The number of objects that exist.
+int deferring_count = 0;
 std::array<struct sigaction, kDeferred.size()> old_actions;
 
 void remember(int signal) {
@@ -20,6 +22,7 @@ void remember(int signal) {
 }  // namespace
 
 DeferredSignals::DeferredSignals() {
+  if (deferring_count++ > 0) return;
   pending_signal = 0;
   for (size_t i = 0; i < kDeferred.size(); ++i) {
     // If the parent process ignores a signal (nohup, background jobs), it stays ignored.
@@ -33,6 +36,7 @@ DeferredSignals::DeferredSignals() {
 }
 
 DeferredSignals::~DeferredSignals() {
+  if (--deferring_count > 0) return;
   for (size_t i = 0; i < kDeferred.size(); ++i) sigaction(kDeferred[i], &old_actions[i], nullptr);
   if (pending_signal != 0) std::raise(pending_signal);
 }

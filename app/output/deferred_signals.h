@@ -6,7 +6,7 @@ namespace promin::app {
 
 /// While an object exists, SIGINT, SIGTERM and SIGHUP are deferred, so that a file being written is completed before a
 /// signal ends the program. At all other times no temporary file exists, and a signal ends the program immediately.
-/// Only one object may exist at a time.
+/// Within the life of an object, further objects have no effect.
 class DeferredSignals {
  public:
   DeferredSignals();

@@ -10,11 +10,11 @@
 
 #include "core/file.h"
 #include "core/parallel.h"
-#include "image/dither.h"
 #include "image/encode_by_plugin.h"
 #include "image/encode_exr.h"
 #include "image/encode_jpeg.h"
 #include "image/encode_png.h"
+#include "image/encode_shown.h"
 #include "image/picture_bytes.h"
 #include "image/picture_endings.h"
 #include "promin/error.h"
@@ -28,32 +28,6 @@ const Channel* find_channel(std::span<const Channel> channels, std::string_view 
   const auto found = std::ranges::find(channels, name, &Channel::name);
   return found == channels.end() ? nullptr : &*found;
 }
-
-/// The channels that are needed to make an 8-bit picture; missing channels are null.
-struct ShowingChannels {
-  const Channel* alpha;
-  /// The channels of Aovs::unlit.
-  std::array<const Channel*, 4> unlit;
-
-  explicit ShowingChannels(std::span<const Channel> channels)
-      : alpha(find_channel(channels, "A")),
-        unlit{find_channel(channels, "unlit.R"), find_channel(channels, "unlit.G"), find_channel(channels, "unlit.B"),
-              find_channel(channels, "unlit.A")} {}
-
-  ShowingChannels without_alpha() const {
-    ShowingChannels result = *this;
-    result.alpha = nullptr;
-    return result;
-  }
-
-  float alpha_at(size_t pixel) const { return alpha == nullptr ? 1.0F : std::bit_cast<float>(alpha->values[pixel]); }
-  vec4 unlit_at(size_t pixel) const {
-    vec4 result(0.0F);
-    if (std::ranges::find(unlit, nullptr) != unlit.end()) return result;
-    for (int i = 0; i < 4; ++i) result[i] = std::bit_cast<float>(unlit[static_cast<size_t>(i)]->values[pixel]);
-    return result;
-  }
-};
 
 /// The number of words of an EXR that the encoder receives at a time. It is many rows, or few if a picture is wide and
 /// has many channels.
@@ -73,43 +47,6 @@ std::vector<uint32_t> interleave(const Image& image, std::span<const Channel> ch
     }
   });
   return words;
-}
-
-/// Returns the colour of a PNG pixel that is partly covered: the light divided by the covered fraction.
-template <typename Light>
-Light unassociated(const Light& light, float alpha) {
-  return alpha > 0.0F ? light / alpha : Light(0.0F);
-}
-
-/// Returns the encoded pixels. `lo` is the position of the upper left pixel in the whole picture.
-std::vector<uint8_t> encode_pixels(const Image& image, const ShowingChannels& channels, const DisplayTransform& display,
-                                   const uvec2& lo) {
-  const bool has_alpha = channels.alpha != nullptr;
-  const size_t stride = has_alpha ? 4 : 3;
-  std::vector<uint8_t> bytes(image.pixels.size() * stride);
-  for_each_index(image.size.y, 0, [&](size_t y) {
-    uint8_t* next = &bytes[stride * y * image.size.x];
-    for (uint32_t x = 0; x < image.size.x; ++x) {
-      const size_t at = y * image.size.x + x;
-      const float covered = channels.alpha_at(at);
-      vec3 color = image.pixels[at];
-      vec4 unlit = channels.unlit_at(at);
-      if (has_alpha) {
-        color = unassociated(color, covered);
-        unlit = unassociated(unlit, covered);
-      }
-      const vec3 shown = apply(display, color, unlit);
-      for (int channel = 0; channel < 3; ++channel) {
-        float code = 255.0F * encode_srgb(shown[channel]);
-        if (display.dithers) {
-          code = dithered(code, lo.x + x, lo.y + static_cast<uint32_t>(y), static_cast<uint32_t>(channel));
-        }
-        *next++ = static_cast<uint8_t>(std::lround(code));
-      }
-      if (has_alpha) *next++ = static_cast<uint8_t>(std::lround(255.0F * std::clamp(covered, 0.0F, 1.0F)));
-    }
-  });
-  return bytes;
 }
 
 /// Returns the name of the picture's scene; empty if the metadata has no such entry.
@@ -202,8 +139,7 @@ class PictureWriter::Impl {
     } else {
       const uvec2 lo = (header_.crop ? header_.crop->lo : uvec2(0)) + uvec2(0, rows_written_);
       // A JPEG has no alpha, so the picture is stored in front of black.
-      const ShowingChannels showing = jpeg_ ? ShowingChannels(channels).without_alpha() : ShowingChannels(channels);
-      const std::vector<uint8_t> pixels = encode_pixels(rows, showing, header_.display, lo);
+      const std::vector<uint8_t> pixels = encode_shown(rows, channels, header_.display, lo, !jpeg_ && has_alpha());
       encode([&] {
         if (plugin_) return plugin_->write_rows(std::as_bytes(std::span(pixels)));
         jpeg_ ? jpeg_->write_rows(pixels) : png_->write_rows(pixels);

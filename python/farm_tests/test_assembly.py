@@ -106,3 +106,19 @@ def test_whole_frames_of_a_film_that_cannot_be_finished_are_there(farm: Farm) ->
     farm.out = farm.root / "out.####.exr"
     assert "frame000002_" in farm.render("--workers", "1", code=1)
     assert frames_of(farm) == ["out.0000.exr", "out.0001.exr", "out.0003.exr"]
+
+
+def test_a_film_in_one_file_is_written_at_the_end(farm: Farm) -> None:
+    job = write_film(farm)
+    merged: list[tuple[list[str], list[int] | None]] = []
+
+    def merge(outputs: list[str], *, allow_mixed: bool, frames: list[int] | None = None) -> None:
+        merged.append((outputs, frames))
+
+    job.merge = merge
+    numbered, film = str(farm.out), str(farm.root / "film.mp4")
+    assembly = Assembly(job, Settings(outputs=[numbered, film]))
+    with assembly.writing(range(8), lambda: False):
+        make(job, assembly, *range(8))
+    assembly.write_rest()
+    assert merged == [([numbered], [frame]) for frame in range(4)] + [([film], None)]

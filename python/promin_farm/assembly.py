@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a job's files from its pieces. Frames of a camera path are written while other frames are made, all other
-files at the end."""
+"""Writes a job's files from its pieces. Pictures of frames are written while other frames are made, all other files at
+the end."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from promin import jobs
 
@@ -22,6 +23,8 @@ class Assembly:
     def __init__(self, job: jobs.Job, settings: Settings) -> None:
         self._job = job
         self._outputs = settings.outputs
+        self._numbered = [output for output in settings.outputs if "#" in Path(output).name]
+        """The outputs that are a file for each frame."""
         self._allow_mixed = settings.allow_mixed
         self._missing: dict[int, set[int]] = {}
         """For each frame that is not written, the pieces that are missing."""
@@ -41,7 +44,7 @@ class Assembly:
         """A context in which frames are written on a separate thread. missing: the pieces to make. stop: a function
         that returns True if frames that have not been started must be left out. Waiting frames are also left out after
         an error."""
-        if not self._outputs or not self._frames:
+        if not self._numbered or not self._frames:
             yield
             return
         self._ready = queue.SimpleQueue()
@@ -84,13 +87,16 @@ class Assembly:
             self._job.merge(self._outputs, allow_mixed=self._allow_mixed)
             return
         rest = sorted(set(self._frames.values()) - self._written)
-        if rest:
-            self._job.merge(self._outputs, allow_mixed=self._allow_mixed, frames=rest)
+        if rest and self._numbered:
+            self._job.merge(self._numbered, allow_mixed=self._allow_mixed, frames=rest)
+        films = [output for output in self._outputs if output not in self._numbered]
+        if films:
+            self._job.merge(films, allow_mixed=self._allow_mixed)
 
     def _write_frames(self, stop: Callable[[], bool]) -> None:
         while (frame := self._ready.get()) is not None and not stop():
             try:
-                self._job.merge(self._outputs, allow_mixed=self._allow_mixed, frames=[frame])
+                self._job.merge(self._numbered, allow_mixed=self._allow_mixed, frames=[frame])
             except jobs.Error:
                 continue  # The frame is tried again at the end; an error is reported then.
             self._written.add(frame)

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/App.hpp>
+#include <cstdlib>
+#include <filesystem>
 
 #include "app/cli_fixture.h"
 #include "commands/bvh_commands.h"
@@ -14,6 +16,7 @@
 #include "messages/message_cases.h"
 #include "output/run_program.h"
 #include "support/moving_gltf.h"
+#include "work/pictures/film_file.h"
 
 namespace promin {
 namespace {
@@ -62,7 +65,7 @@ const WrongUsage kWrongUsages[] = {
      {"render", "square.gltf", "-o", "a.exr", "--target-error", "0.1", "--min-spp", "16", "--max-spp", "8"}},
     {"usage.option.unknown", {"render", "square.gltf", "--spq=3"}},
     {"usage.argument.unexpected", {"render", "square.gltf", "triangle.obj", "-o", "a.exr"}},
-    {"output.extension", {"render", "square.gltf", "-o", "a.gif"}},
+    {"output.extension", {"render", "square.gltf", "-o", "a.bmp"}},
     {"output.alpha.none", {"render", "square.gltf", "-o", "a.jpg", "--alpha"}},
     {"output.alpha.none", {"render", "square.gltf", "-o", "a.hdr", "--alpha"}},
     {"output.standard.taken", {"render", "square.gltf", "-o", "-", "-o", "-"}},
@@ -174,9 +177,14 @@ const WrongUsage kWrongUsages[] = {
     {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--bvh", "a.pbvh"}},
     {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--exposure", "average"}},
     {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "--explain", "1", "1"}},
-    {"output.frames.one", {"render", "walk.gltf", "--frames", "0-3", "-o", "a.png"}},
+    {"output.frames.one", {"render", "walk.gltf", "--frames", "0-3", "-o", "a.exr"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--frames", "0-3", "-o", "a.png", "--skip-existing"}},
     {"output.standard.taken", {"render", "walk.gltf", "--frames", "0-3", "-o", "-"}},
     {"film.frames.many", {"render", "long.gltf", "--fps", "1000"}},
+    {"film.fps.many", {"render", "walk.gltf", "--fps", "60", "-o", "a.gif"}},
+    {"film.fps.missing", {"render", "square.gltf", "--path", "path.json", "--fps", "stored", "-o", "a.webm"}},
+    {"output.film.number", {"render", "square.gltf", "--fps", "24", "-o", "a.####.mp4"}},
+    {"output.alpha.none", {"render", "square.gltf", "--fps", "24", "-o", "a.mp4", "--alpha"}},
     {"usage.option.value", {"render", "square.gltf", "--frames", "3-0"}},
     {"usage.option.needs", {"render", "square.gltf", "--depth", "plane"}},
     {"usage.option.value", {"render", "square.gltf", "--lights-off", "x"}},
@@ -265,6 +273,33 @@ void write_paths() {
   write_path("still.json", 1, frame("0", "[0, 0, 0]", lens));
 }
 
+/// Sets the folders in which programs are found, and restores them.
+class ProgramFolders {
+ public:
+  explicit ProgramFolders(const char* folders) : old_(std::getenv("PATH")) { setenv("PATH", folders, 1); }
+  ~ProgramFolders() { setenv("PATH", old_.c_str(), 1); }
+  ProgramFolders(const ProgramFolders&) = delete;
+  ProgramFolders& operator=(const ProgramFolders&) = delete;
+
+ private:
+  std::string old_;
+};
+
+std::vector<MessageCase> cases_of_films() {
+  return {{"film.ffmpeg.missing",
+           [] {
+             const ProgramFolders none("/nowhere");
+             work::check_film("a.mp4", 24.0);
+           }},
+          {"film.encode", [] {
+             write_case("ffmpeg", "#!/bin/sh\necho 'Unknown encoder' >&2\nexit 1\n");
+             std::filesystem::permissions("ffmpeg", std::filesystem::perms::all);
+             const ProgramFolders here(".");
+             work::FilmFile film("a.mp4", {.size = {2, 2}, .fps = 24.0, .frame_count = 1});
+             film.commit();
+           }}};
+}
+
 }  // namespace
 
 std::vector<MessageCase> cases_of_usage() {
@@ -287,6 +322,7 @@ std::vector<MessageCase> cases_of_usage() {
                        run("promin-bvh", {app::add_build_command, app::add_verify_command}, words);
                      }});
   }
+  for (const MessageCase& film : cases_of_films()) cases.push_back(film);
   return cases;
 }
 

@@ -5,17 +5,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "promin/error.h"
 #include "trace/film/refinement.h"
+#include "work/jobs/job_manifest.h"
 #include "work/jobs/missing_pieces.h"
 #include "work/jobs/picture_part.h"
 #include "work/jobs/picture_pieces.h"
+#include "work/pictures/camera_path.h"
+#include "work/pictures/film_file.h"
 #include "work/pictures/frame_plan.h"
 #include "work/pictures/picture_files.h"
 #include "work/pictures/run_stats.h"
 #include "work/spec/check_spec.h"
+#include "work/spec/spec_json.h"
 
 namespace promin::work {
 namespace {
@@ -95,10 +101,46 @@ std::optional<PictureError> sum_errors(const jobs::Job& job, std::span<const siz
   return whole;
 }
 
-/// Writes one picture from its pieces to files of these names, with the number of its frame. It writes row by row, and
-/// only one row of pieces is in memory at a time. Returns the accuracy of a picture with an error target.
+/// Returns the number of frames per second of a film of a job's frames. Throws UsageError if it is unknown.
+double find_frame_rate(const jobs::Job& job) {
+  const std::optional<std::string> text = read_job_spec(job);
+  const RenderSpec spec = text ? parse_spec<RenderSpec>(*text, spec_file(job)) : RenderSpec();
+  if (!spec.path) return frame_rate_of(spec, nullptr);
+  const PathPictures path(read_camera_path(*spec.path), spec.fps);
+  return frame_rate_of(spec, &path);
+}
+
+/// The files that receive all frames of a job. They begin with the first frame, whose size they have.
+class MergedFilms {
+ public:
+  MergedFilms(const jobs::Job& job, std::vector<fs::path> files, size_t frame_count)
+      : files_(std::move(files)), frame_count_(frame_count), fps_(files_.empty() ? 0.0 : find_frame_rate(job)) {}
+
+  /// Starts the films if they have not begun.
+  const Films& begin(const PictureHeader& frame) {
+    if (!films_.empty()) return films_;
+    const bool has_alpha = std::ranges::find(frame.channels, "A", &Channel::name) != frame.channels.end();
+    const FilmHeader header = {frame.size, has_alpha, fps_, frame_count_};
+    for (const fs::path& file : files_) films_.push_back(std::make_unique<FilmFile>(file, header));
+    return films_;
+  }
+  void commit() {
+    for (const std::unique_ptr<FilmFile>& film : films_) film->commit();
+  }
+
+ private:
+  std::vector<fs::path> files_;
+  size_t frame_count_;
+  double fps_;
+  Films films_;
+};
+
+/// Writes one picture from its pieces to files of these names, with the number of its frame, and adds it to the films.
+/// It writes row by row, and only one row of pieces is in memory at a time. Returns the accuracy of a picture with an
+/// error target.
 std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const size_t> pieces,
-                                         const std::vector<fs::path>& files, const ProgressCallback& progress) {
+                                         const std::vector<fs::path>& files, MergedFilms& films,
+                                         const ProgressCallback& progress) {
   PicturePart part = decode_part(job.read(pieces.front()), job.file_of(pieces.front()));
   const PicturePart first = without_values(part);
   PictureHeader header;
@@ -114,7 +156,7 @@ std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const s
 
   std::vector<fs::path> numbered;
   for (const fs::path& file : files) numbered.push_back(first.frame ? number_file(file, *first.frame) : file);
-  PictureFiles written(numbered, header);
+  PictureFiles written(numbered, header, films.begin(header));
   std::optional<RowOfParts> row;
   for (const size_t piece : pieces) {
     const double done = static_cast<double>(piece) / static_cast<double>(job.piece_count());
@@ -134,10 +176,15 @@ std::optional<PictureError> write_merged(const jobs::Job& job, std::span<const s
 }  // namespace
 
 void check_merged_pictures(const jobs::Job& job, const std::vector<fs::path>& files) {
-  check_pictures(files);
-  if (!has_several_frames(job)) return;
+  check_frame_files(files);
+  const bool has_several = has_several_frames(job);
+  if (const std::vector<fs::path> films = films_among(files, has_several); !films.empty()) {
+    const double fps = find_frame_rate(job);
+    for (const fs::path& film : films) check_film(film, fps);
+  }
+  if (!has_several) return;
   for (const fs::path& file : files) {
-    if (number_file(file, 0) != file) continue;
+    if (number_file(file, 0) != file || holds_all_frames(file, has_several)) continue;
     throw UsageError({"output.frames.one", "several frames would be written to one file", file.string(),
                       "put #### into its name, which stands for the frame number"});
   }
@@ -151,14 +198,19 @@ std::optional<PictureError> merge_pictures(const jobs::Job& job, const std::vect
   for (const std::vector<size_t>& pieces : pictures) chosen.insert(chosen.end(), pieces.begin(), pieces.end());
   check_done(job, chosen);
   std::optional<PictureError> all;
+  const bool has_several = has_several_frames(job);
+  std::vector<fs::path> of_frames = files;
+  std::erase_if(of_frames, [&](const fs::path& file) { return holds_all_frames(file, has_several); });
+  MergedFilms films(job, films_among(files, has_several), pictures.size());
   for (const std::vector<size_t>& pieces : pictures) {
-    const std::optional<PictureError> error = write_merged(job, pieces, files, progress);
+    const std::optional<PictureError> error = write_merged(job, pieces, of_frames, films, progress);
     if (error && all) {
       *all += *error;
     } else if (error) {
       all = error;
     }
   }
+  films.commit();
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <utility>
 
 #include "core/divide_up.h"
 #include "promin/error.h"
@@ -132,12 +133,18 @@ bool has_several_frames(const jobs::Job& job) {
 std::vector<fs::path> number_pictures(const jobs::Job& job, const std::vector<fs::path>& files,
                                       const std::optional<std::vector<uint32_t>>& frames) {
   std::vector<fs::path> numbered;
+  bool is_before_first = true;
   for (const std::vector<size_t>& pieces : choose_pictures(job, frames)) {
     const std::string frame = frame_prefix_of(job.manifest().pieces[pieces.front()]);
     if (frame.empty()) return files;
     uint32_t number = 0;
     std::from_chars(frame.data() + kOfFrame.size(), frame.data() + frame.size(), number);
-    for (const fs::path& file : files) numbered.push_back(number_file(file, number));
+    const bool is_first = std::exchange(is_before_first, false);
+    for (const fs::path& file : files) {
+      fs::path of_frame = number_file(file, number);
+      // A film is one file.
+      if (of_frame != file || is_first) numbered.push_back(std::move(of_frame));
+    }
   }
   return numbered;
 }

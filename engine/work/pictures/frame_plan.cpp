@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "promin/error.h"
+#include "work/pictures/film_file.h"
 #include "work/pictures/moving_scene.h"
 
 namespace promin::work {
@@ -22,10 +23,16 @@ FrameRange choose_frames(const RenderSpec& options, size_t count) {
   return range;
 }
 
-/// Throws UsageError if several frames would be written to one file.
-void check_numbers(const std::vector<PlannedFrame>& frames, const RenderSpec& options) {
+/// Names the pictures of each frame. Throws UsageError if several frames would be written to one file that is no film.
+void name_frames(std::vector<PlannedFrame>& frames, const RenderSpec& options) {
+  const bool has_several = frames.size() > 1;
   for (const std::filesystem::path& file : options.pictures) {
-    if (frames.size() == 1 || number_file(file, 0) != file) continue;
+    if (holds_all_frames(file, has_several)) continue;
+    const bool is_numbered = number_file(file, 0) != file;
+    if (!has_several || is_numbered) {
+      for (PlannedFrame& frame : frames) frame.pictures.push_back(number_file(file, *frame.number));
+      continue;
+    }
     throw UsageError({"output.frames.one", fmt::format("{} frames would be written to one file", frames.size()),
                       file.string(), "put #### into its name, which stands for the frame number"});
   }
@@ -35,11 +42,9 @@ std::vector<PlannedFrame> plan_range(const RenderSpec& options, const FrameRange
   const double fps = options.fps.value_or(kDefaultFps);
   std::vector<PlannedFrame> frames;
   for (uint32_t number = range.first; number <= range.last; ++number) {
-    PlannedFrame frame{number, std::nullopt, {}, number / fps};
-    for (const std::filesystem::path& file : options.pictures) frame.pictures.push_back(number_file(file, number));
-    frames.push_back(std::move(frame));
+    frames.push_back({number, std::nullopt, {}, number / fps});
   }
-  check_numbers(frames, options);
+  name_frames(frames, options);
   return frames;
 }
 
@@ -75,6 +80,13 @@ std::vector<PlannedFrame> plan_film(const RenderSpec& options, double duration_s
   return plan_range(options, {0, static_cast<uint32_t>(last)});
 }
 
+double frame_rate_of(const RenderSpec& options, const PathPictures* path) {
+  if (path == nullptr) return options.fps.value_or(kDefaultFps);
+  if (path->interval_s() > 0.0) return 1.0 / path->interval_s();
+  throw UsageError({"film.fps.missing", "the frames of the path have no rate, so they cannot become a film",
+                    options.path->string(), "give --fps, or write the frames as pictures, such as -o frame.####.png"});
+}
+
 std::vector<PlannedFrame> plan_frames(const RenderSpec& options) {
   if (options.makes_film()) {
     return options.frames ? plan_range(options, *options.frames) : std::vector<PlannedFrame>{};
@@ -87,10 +99,9 @@ std::vector<PlannedFrame> plan_frames(const RenderSpec& options) {
     PlannedFrame frame{number, path->camera(number), {}};
     frame.path = path;
     if (options.moves_scene()) frame.time_s = path->time_s(number);
-    for (const std::filesystem::path& file : options.pictures) frame.pictures.push_back(number_file(file, number));
     frames.push_back(std::move(frame));
   }
-  check_numbers(frames, options);
+  name_frames(frames, options);
   return frames;
 }
 

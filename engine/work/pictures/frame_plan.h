@@ -18,6 +18,7 @@ struct PlannedFrame {
   /// Index of the picture on a camera path or in a film; nullopt for a single picture.
   std::optional<uint32_t> number;
   std::optional<Camera> camera;
+  /// The files of this frame only; a film that holds all frames is not among them.
   std::vector<std::filesystem::path> pictures;
   /// The time of the scene in seconds; empty if all frames have the same pose.
   std::optional<double> time_s = std::nullopt;
@@ -34,6 +35,10 @@ std::vector<PlannedFrame> plan_frames(const RenderSpec& options);
 /// Returns all frames of a film of a scene whose animations last this long. Frame i has the time i / fps. Throws
 /// UsageError if there are too many, or if several frames would be written to one file.
 std::vector<PlannedFrame> plan_film(const RenderSpec& options, double duration_s);
+
+/// Returns the number of frames per second of a film of these options. `path` has the pictures of the camera path; it
+/// is null without a path. Throws UsageError if the path has no rate.
+double frame_rate_of(const RenderSpec& options, const PathPictures* path);
 
 /// Sets the cameras of a path's frames for a scene with this center (Scene::center).
 void move_frames(std::vector<PlannedFrame>& frames, const dvec3& center);

@@ -86,7 +86,10 @@ std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_cou
   return bands;
 }
 
-PictureFiles::PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header) {
+PictureFiles::PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header,
+                           const Films& films)
+    : display_(header.display), lo_(header.crop ? header.crop->lo : uvec2(0)) {
+  for (const std::unique_ptr<FilmFile>& film : films) films_.push_back(film.get());
   for (const std::filesystem::path& file : files) writers_.emplace_back(file, header);
 }
 
@@ -105,6 +108,7 @@ void PictureFiles::write_rows(Image rows, std::vector<Channel> channels) {
   // If no thread can be started, the function runs when its result is awaited.
   writing_ = std::async([this] {
     for (PictureWriter& writer : writers_) writer.write_rows(rows_, channels_);
+    for (FilmFile* film : films_) film->write_rows(rows_, channels_, display_, lo_);
     // The rows are freed, because the next band needs the same amount of memory.
     rows_ = {};
     channels_ = {};

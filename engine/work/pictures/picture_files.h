@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "promin/image.h"
 #include "promin/scene.h"
 #include "promin/view.h"
+#include "work/pictures/film_file.h"
 
 namespace promin::work {
 
@@ -31,23 +33,32 @@ AovHeader describe_aovs(const Scene& scene, const AovSet& choice, bool hides_unl
 /// of four-byte values of a pixel.
 std::vector<PixelWindow> cut_bands(const PixelWindow& window, size_t channel_count);
 
-/// The files of one picture. A band is written while the next band is traced. Without commit() no file remains.
+/// Films to which the same frames are added.
+using Films = std::vector<std::unique_ptr<FilmFile>>;
+
+/// The files of one picture, and the films of which it is the next frame. A band is written while the next band is
+/// traced. Without commit() no file remains.
 class PictureFiles {
  public:
-  /// Throws the same errors as write_image().
-  PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header);
+  /// The films must outlive this object. Throws the same errors as write_image().
+  PictureFiles(const std::vector<std::filesystem::path>& files, const PictureHeader& header, const Films& films = {});
   ~PictureFiles();
   PictureFiles(const PictureFiles&) = delete;
   PictureFiles& operator=(const PictureFiles&) = delete;
 
   /// Adds the next rows. Returns before they are written. Throws exceptions from writing earlier rows.
   void write_rows(Image rows, std::vector<Channel> channels);
+  /// Completes the files of this picture. Films remain open for further frames.
   void commit();
   /// Waits until all rows are written and their memory is free. Throws exceptions from writing them.
   void wait();
 
  private:
   std::vector<PictureWriter> writers_;
+  std::vector<FilmFile*> films_;
+  DisplayTransform display_;
+  /// The position of the picture's upper left pixel in the whole picture.
+  uvec2 lo_{0};
   Image rows_;
   std::vector<Channel> channels_;
   std::future<void> writing_;

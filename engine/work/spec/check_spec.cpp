@@ -16,6 +16,8 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "work/pictures/camera_path.h"
+#include "work/pictures/film_file.h"
+#include "work/pictures/frame_plan.h"
 
 namespace promin::work {
 namespace {
@@ -248,6 +250,9 @@ void check_alpha(const RenderSpec& options) {
             "write a .png or .exr");
   refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_radiance),
             "a .hdr cannot store the channel of --alpha", "write a .png or .exr");
+  const auto is_mp4 = [](const std::filesystem::path& file) { return is_film(file) && !film_stores_alpha(file); };
+  refuse_if("output.alpha.none", std::ranges::any_of(pictures, is_mp4), "an MP4 cannot store the channel of --alpha",
+            "write a .webm or .gif, or an animated .png");
 }
 
 /// Throws UsageError if options for a PNG are given without a PNG.
@@ -338,12 +343,29 @@ void check_cast_spec(const CastSpec& options) {
   check_arrays(options.outputs());
 }
 
+namespace {
+
+[[noreturn]] void refuse_ending(const std::filesystem::path& file, const std::string& cure) {
+  throw UsageError({"output.extension", "the output's extension \"" + file.extension().string() + "\" is unknown",
+                    file.string(), cure});
+}
+
+}  // namespace
+
 void check_pictures(const std::vector<std::filesystem::path>& pictures) {
   for (const std::filesystem::path& picture : pictures) {
-    if (!is_writable_format(picture)) {
-      throw UsageError({"output.extension",
-                        "the output's extension \"" + picture.extension().string() + "\" is unknown", picture.string(),
-                        kUseKnownEnding});
+    if (!is_writable_format(picture)) refuse_ending(picture, kUseKnownEnding);
+  }
+}
+
+void check_frame_files(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    if (!is_writable_format(file) && !is_film(file)) {
+      refuse_ending(file, std::string(kUseKnownEnding) + ", or .mp4, .webm or .gif for a film");
+    }
+    if (is_film(file) && number_file(file, 0) != file) {
+      throw UsageError({"output.film.number", "the name of a film has a # for the number of a frame", file.string(),
+                        "remove it, because a film holds all frames"});
     }
   }
 }

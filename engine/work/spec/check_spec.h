@@ -36,6 +36,8 @@ void check_no_camera(const ViewOptions& options, std::string_view name);
 void check_error_target(const ErrorTarget& target);
 /// Throws UsageError for a picture with an extension that write_image() does not support.
 void check_pictures(const std::vector<std::filesystem::path>& pictures);
+/// Throws UsageError for a file that is neither such a picture nor a film (film_file.h).
+void check_frame_files(const std::vector<std::filesystem::path>& files);
 /// Throws UsageError for a file with an extension other than .npy.
 void check_arrays(const std::vector<std::filesystem::path>& files);
 

@@ -11,6 +11,8 @@
 #include "core/count_of.h"
 #include "promin/error.h"
 #include "trace/film/refinement.h"
+#include "work/pictures/film_file.h"
+#include "work/pictures/moving_scene.h"
 
 namespace promin::work {
 
@@ -83,6 +85,14 @@ constexpr uint32_t kBestSamples = 128;
 constexpr float kBestError = 1.0F / 256.0F;
 
 }  // namespace
+
+bool RenderSpec::names_film() const {
+  return std::ranges::any_of(pictures, is_film);
+}
+
+void complete_film(RenderSpec& options) {
+  if (options.names_film() && !options.path && !options.frames && !options.fps) options.fps = kDefaultFps;
+}
 
 void apply_quality(RenderSpec& options) {
   std::optional<uint32_t>& samples = options.view.samples_per_pixel;

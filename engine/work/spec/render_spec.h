@@ -205,11 +205,16 @@ struct RenderSpec {
 
   /// Returns whether the pictures are frames of the scene's animation without a camera path.
   bool makes_film() const { return !path && (frames || fps); }
+  /// Returns whether one of the files is a film (film_file.h).
+  bool names_film() const;
   /// Returns whether the frames have different poses of the scene. A path shows an animation that the user names.
   bool moves_scene() const {
     return makes_film() || (path && !tracing.motion.animations.empty() && !tracing.motion.time_s);
   }
 };
+
+/// Chooses the frames of the whole animation if a film is named without frames.
+void complete_film(RenderSpec& options);
 
 /// Sets the number of samples or the error target of the quality.
 void apply_quality(RenderSpec& options);
