@@ -212,6 +212,7 @@ void check_standard_output(const RenderSpec& options) {
   };
   if (count > 1) refuse("-o - is given twice");
   if (options.path) refuse("-o - takes one picture, not the frames of --path");
+  if (options.turntable) refuse("-o - takes one picture, not the frames of --turntable");
   if (options.makes_film()) refuse("-o - takes one picture, not the frames of an animation");
   if (options.job.folder) refuse("-o - and --job contradict each other");
 }

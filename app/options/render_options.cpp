@@ -314,8 +314,13 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   table.add("--path", "FILE.json",
             "Render the frames of a camera path. #### in the name of -o stands for the frame number",
             [&](const OptionValues& w) { options.path = w.text(); });
+  table.add("--turntable", "N",
+            "Render N frames while the camera moves once around the scene, to the right. It shows the whole scene from "
+            "all sides, or starts from the file's camera. --animation plays an animation meanwhile",
+            [&](const OptionValues& w) { options.turntable = w.whole(0, kMinTurntable, kMaxFrame); });
   table.add("--frames", "A-B",
-            "Render only frames A to B of a camera path or of the scene's animation, including B. The first frame is "
+            "Render only frames A to B of a camera path, a turntable or the scene's animation, including B. The first "
+            "frame is "
             "0. Without --path, frame I has the time I / fps [all]",
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);

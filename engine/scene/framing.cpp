@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "core/rounding.h"
 #include "promin/error.h"
@@ -130,7 +131,8 @@ struct Opening {
 };
 
 /// Returns two planes that touch the hull from both sides. They diverge from the look direction with this slope.
-Opening touch(const SceneHull& hull, const dvec3& side, const dvec3& look, double slope) {
+template <typename Hull>
+Opening touch(const Hull& hull, const dvec3& side, const dvec3& look, double slope) {
   const auto reach = [&](const dvec3& direction) { return glm::dot(hull.farthest(direction), direction); };
   const double right = reach(side - slope * look);
   const double left = reach(-side - slope * look);
@@ -140,7 +142,8 @@ Opening touch(const SceneHull& hull, const dvec3& side, const dvec3& look, doubl
 /// Returns the coordinate across the look from which an eye at this depth sees the hull in the middle. The slope to the
 /// hull's edge is the root of a convex, decreasing function. Newton's method finds it: it ends, because there are
 /// finitely many vertices, and comes close to the root for round shapes.
-double find_middle(const SceneHull& hull, const dvec3& side, const dvec3& look, double slope, double depth) {
+template <typename Hull>
+double find_middle(const Hull& hull, const dvec3& side, const dvec3& look, double slope, double depth) {
   constexpr int kMostSteps = 32;
   constexpr double kTolerance = 1e-7;
   double right = 0.0;
@@ -164,11 +167,13 @@ struct Fitted {
 };
 
 /// Returns the smallest and the largest depth of the hull along the look, measured from the center.
-dvec2 depths_of(const SceneHull& hull, const dvec3& look) {
+template <typename Hull>
+dvec2 depths_of(const Hull& hull, const dvec3& look) {
   return {glm::dot(hull.farthest(-look), look), glm::dot(hull.farthest(look), look)};
 }
 
-Fitted fit_parallel(const SceneHull& hull, const Axes& axes, double aspect_ratio, double fit) {
+template <typename Hull>
+Fitted fit_parallel(const Hull& hull, const Axes& axes, double aspect_ratio, double fit) {
   const auto reach = [&](const dvec3& axis) { return glm::dot(hull.farthest(axis), axis); };
   const dvec2 most(reach(axes.right), reach(axes.up));
   const dvec2 least(-reach(-axes.right), -reach(-axes.up));
@@ -181,7 +186,8 @@ Fitted fit_parallel(const SceneHull& hull, const Axes& axes, double aspect_ratio
   return {middle.x * axes.right + middle.y * axes.up + depth * axes.look, half_height > 0.0 ? half_height : 1.0};
 }
 
-Fitted fit_perspective(const SceneHull& hull, const Axes& axes, double aspect_ratio, double tan_y, double fit) {
+template <typename Hull>
+Fitted fit_perspective(const Hull& hull, const Axes& axes, double aspect_ratio, double tan_y, double fit) {
   const double slope_x = fit * tan_y * aspect_ratio;
   const double slope_y = fit * tan_y;
   const Opening x = touch(hull, axes.right, axes.look, slope_x);
@@ -203,7 +209,8 @@ Fitted fit_perspective(const SceneHull& hull, const Axes& axes, double aspect_ra
   return {right * axes.right + up * axes.up + depth * axes.look};
 }
 
-Camera fit_to(const SceneHull& hull, Camera camera, double aspect_ratio, double fit) {
+template <typename Hull>
+Camera fit_to(const Hull& hull, Camera camera, double aspect_ratio, double fit) {
   const Axes axes = axes_of(camera);
   const bool is_perspective = camera.projection == Projection::kPerspective;
   const double tan_y = std::tan(0.5 * static_cast<double>(camera.yfov));
@@ -214,6 +221,42 @@ Camera fit_to(const SceneHull& hull, Camera camera, double aspect_ratio, double 
   camera.aspect_ratio = static_cast<float>(aspect_ratio);
   return camera;
 }
+
+/// The space that a scene covers while it turns around a vertical axis through its center, approximately: points at the
+/// edge of its outline. The largest distance is smaller by at most a thousandth.
+class TurnedHull {
+ public:
+  TurnedHull(const SceneHull& hull, const dvec3& axis) : axis_(axis), center_(hull.center()) {
+    constexpr double kStepDeg = 5.0;
+    const dmat3 turn = turn_up_to(axis);
+    for (double elevation = -90.0; elevation <= 90.0; elevation += kStepDeg) {
+      for (double azimuth = 0.0; azimuth < 360.0; azimuth += kStepDeg) {
+        const dvec2 around = turn_by(azimuth);
+        const dvec2 upwards = turn_by(elevation);
+        const dvec3 direction(upwards.y * around.x, upwards.x, upwards.y * around.y);
+        const dvec3 point = hull.farthest(turn * direction);
+        const double height = glm::dot(point, axis);
+        outline_.push_back({glm::length(point - height * axis), height});
+      }
+    }
+  }
+
+  const dvec3& center() const { return center_; }
+  dvec3 farthest(const dvec3& direction) const {
+    const double upwards = glm::dot(direction, axis_);
+    const dvec3 level = direction - upwards * axis_;
+    const double across = glm::length(level);
+    const auto reach = [&](const dvec2& point) { return point.x * across + point.y * upwards; };
+    const dvec2 most = *std::ranges::max_element(outline_, {}, reach);
+    return (across > 0.0 ? most.x / across * level : dvec3(0.0)) + most.y * axis_;
+  }
+
+ private:
+  dvec3 axis_;
+  dvec3 center_;
+  /// The distance from the axis and the height of each point.
+  std::vector<dvec2> outline_;
+};
 
 /// Returns a camera that looks from a viewpoint at a scene. `turn` rotates +Y to the scene's up axis.
 Camera look_from(const Viewpoint& from, const dmat3& turn) {
@@ -277,6 +320,13 @@ Camera fit_camera(const Scene& scene, const Camera& camera, float aspect_ratio, 
   check_aspect_ratio(aspect_ratio);
   check_fit(fit);
   return fit_to(SceneHull(scene), camera, static_cast<double>(aspect_ratio), static_cast<double>(fit));
+}
+
+Camera fit_turning_camera(const Scene& scene, const Camera& camera, const vec3& up, float aspect_ratio, float fit) {
+  check_aspect_ratio(aspect_ratio);
+  check_fit(fit);
+  return fit_to(TurnedHull(SceneHull(scene), normalize_up(up)), camera, static_cast<double>(aspect_ratio),
+                static_cast<double>(fit));
 }
 
 Camera orbit_camera(const Camera& camera, const dvec3& target, const Orbit& orbit, const vec3& up) {

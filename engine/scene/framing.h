@@ -15,6 +15,10 @@ AddedLights add_default_lights(std::vector<Light>& lights, Environment& environm
 /// finite, it is a box of size 2 around the first plane's point or the origin. Throws InputError as bounds_of() does.
 Bounds frame_of(const Scene& scene);
 
+/// Returns the camera moved along its picture's axes like fit_camera(), so that it shows the whole scene from there and
+/// from all positions around the axis `up` through the middle of frame_of(scene). Throws the same errors.
+Camera fit_turning_camera(const Scene& scene, const Camera& camera, const vec3& up, float aspect_ratio, float fit);
+
 /// Returns the middle of a box that is not empty, without the rounding of Bounds::center().
 inline dvec3 middle_of(const Bounds& bounds) {
   return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));

@@ -8,7 +8,9 @@
 
 #include "cli_fixture.h"
 #include "promin/device.h"
+#include "promin/framing.h"
 #include "promin/motion.h"
+#include "scene/framing.h"
 #include "support/moving_gltf.h"
 #include "work/pictures/frame_plan.h"
 #include "work/pictures/frame_renderers.h"
@@ -108,6 +110,49 @@ TEST_F(FilmCliTest, ACameraPathAndTheSceneShareTheTime) {
   EXPECT_EQ(read("rest.0.png"), read("rest.3.png")) << "without --animation the scene rests";
   render_path({"-o", "move.#.png", "--animation", "0"});
   EXPECT_NE(read("move.0.png"), read("move.3.png"));
+}
+
+TEST_F(FilmCliTest, ATurntableMovesTheCameraAroundTheScene) {
+  const auto turn = [&](OptionValues more) {
+    more.insert(more.begin(), {"render", "film.gltf", "--turntable", "4", "--size", "24x16", "-s", "1"});
+    const ProcessResult result = run(more);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  };
+  turn({"-o", "a.#.exr"});
+  EXPECT_THAT(files(), UnorderedElementsAre("film.gltf", "a.0.exr", "a.1.exr", "a.2.exr", "a.3.exr"));
+  turn({"-o", "b.#.exr", "--frames", "2"});
+  EXPECT_EQ(read("b.2.exr"), read("a.2.exr"));
+  EXPECT_NE(read("a.0.exr"), read("a.2.exr"));
+  turn({"--job", "job", "--frames", "2-3", "-o", "c.#.exr"});
+  EXPECT_EQ(read_image(folder() / "c.3.exr").pixels, read_image(folder() / "a.3.exr").pixels);
+  // An animation that the user names moves meanwhile.
+  turn({"-o", "d.#.exr", "--animation", "0", "--fps", "4"});
+  turn({"-o", "e.#.exr", "--animation", "0", "--time", "0.5"});
+  EXPECT_NE(read("d.1.exr"), read("e.1.exr"));
+  turn({"-o", "f.#.exr", "--animation", "0", "--fps", "4", "--frames", "3"});
+  EXPECT_EQ(read("f.3.exr"), read("d.3.exr"));
+}
+
+TEST_F(FilmCliTest, ATurntableKeepsTheDistance) {
+  work::RenderSpec spec;
+  spec.tracing.scene = folder() / "film.gltf";
+  spec.turntable = 8;
+  // The first frame shows the edge of the flat scene.
+  spec.view.pose.orbit.azimuth_deg = 90.0;
+  spec.pictures = {"f.#.png"};
+  const work::Messages messages;
+  const work::PictureRun run = work::prepare_pictures(spec, work::plan_frames(spec), messages);
+  ASSERT_EQ(run.frames.size(), 8U);
+  const dvec3 middle = middle_of(frame_of(run.scene));
+  const Camera& first = *run.frames[0].camera;
+  for (const work::PlannedFrame& frame : run.frames) {
+    const double degrees = 45.0 * *frame.number;
+    const Camera expected = orbit_camera(first, middle, {.azimuth_deg = degrees});
+    EXPECT_EQ(frame.camera->eye, expected.eye);
+    EXPECT_EQ(frame.camera->look, expected.look);
+    EXPECT_LT(covered_share(run.scene, *frame.camera, 16.0F / 9.0F), 1.0);
+    EXPECT_NEAR(glm::distance(dvec3(frame.camera->eye), middle), glm::distance(dvec3(first.eye), middle), 1e-5);
+  }
 }
 
 TEST_F(FilmCliTest, TheCameraOfTheFileMoves) {

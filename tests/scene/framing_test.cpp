@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "promin/error.h"
+#include "scene/framing.h"
 
 namespace promin {
 namespace {
@@ -171,6 +172,31 @@ TEST(FramingTest, AnyCameraIsFitted) {
       expect_framed(model, fit_camera(model.scene, camera, aspect_ratio, 1.0F), aspect_ratio, 1.0, "a wide lens");
       camera.projection = Projection::kOrthographic;
       expect_framed(model, fit_camera(model.scene, camera, aspect_ratio), aspect_ratio, 0.85, "far away");
+    }
+  }
+}
+
+TEST(FramingTest, ATurningCameraShowsTheSceneFromAllSidesAtOneDistance) {
+  constexpr int kSteps = 60;
+  for (const Model& model : make_models()) {
+    for (const float aspect_ratio : kAspectRatios) {
+      for (const vec3 up : {vec3(0, 1, 0), vec3(0, 0, 1), vec3(1, 2, -1)}) {
+        const Camera first =
+            fit_turning_camera(model.scene, frame_scene(model.scene, aspect_ratio, {.up = up}), up, aspect_ratio, 0.9F);
+        const dvec3 middle = middle_of(frame_of(model.scene));
+        Extent all;
+        for (int i = 0; i < kSteps; ++i) {
+          const Camera camera = orbit_camera(first, middle, {.azimuth_deg = 360.0 * i / kSteps}, up);
+          const Extent one = project(model.points, camera, aspect_ratio);
+          all.is_behind |= one.is_behind;
+          all.lo = glm::min(all.lo, one.lo);
+          all.hi = glm::max(all.hi, one.hi);
+        }
+        EXPECT_FALSE(all.is_behind) << model.name;
+        EXPECT_NEAR(all.longer_side(), 0.9, 0.01) << model.name << " at " << aspect_ratio;
+        EXPECT_NEAR(all.middle().x, 0.0, 0.005) << model.name << " at " << aspect_ratio;
+        EXPECT_NEAR(all.middle().y, 0.0, 0.005) << model.name << " at " << aspect_ratio;
+      }
     }
   }
 }

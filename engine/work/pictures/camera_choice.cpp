@@ -121,9 +121,9 @@ Camera stand_at_eye(const Scene& scene, const PoseOptions& pose) {
   return camera;
 }
 
-/// Returns a camera that frames the scene.
-Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio) {
-  const bool is_turned = pose.looks() || pose.orbit != Orbit() || pose.fov_deg;
+/// Returns a camera that frames the scene, with `shows_all_sides` from all positions around it.
+Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio, bool shows_all_sides) {
+  const bool is_turned = pose.looks() || pose.orbit != Orbit() || pose.fov_deg || shows_all_sides;
   FrameOptions options{.from = pose.from, .fit = pose.fit.value_or(kDefaultFit)};
   if (is_turned || pose.fit) options.from = choose_framing(scene, pose);
   if (pose.up) options.up = vec3(*pose.up);
@@ -132,7 +132,10 @@ Camera frame(const Scene& scene, const PoseOptions& pose, float aspect_ratio) {
   if (pose.direction) face(camera, pose.direction, pose.up);
   if (!pose.look_at) camera = turn(scene, camera, pose);
   if (pose.fov_deg) camera.yfov = to_yfov(*pose.fov_deg);
-  if (options.from != Framing::kInside) camera = fit_camera(scene, camera, aspect_ratio, options.fit);
+  if (options.from != Framing::kInside) {
+    camera = shows_all_sides ? fit_turning_camera(scene, camera, options.up, aspect_ratio, options.fit)
+                             : fit_camera(scene, camera, aspect_ratio, options.fit);
+  }
   if (!pose.look_at) return camera;
   face(camera, find_direction(pose, camera, scene.center), pose.up);
   return turn(scene, camera, pose);
@@ -162,9 +165,18 @@ bool is_camera_assumed(const Scene& scene, const ViewOptions& options) {
 Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_ratio) {
   if (options.given_camera) return *options.given_camera;
   const PoseOptions& pose = options.pose;
-  Camera camera = pose.eye ? stand_at_eye(scene, pose) : frame(scene, pose, aspect_ratio);
+  Camera camera = pose.eye ? stand_at_eye(scene, pose) : frame(scene, pose, aspect_ratio, options.shows_all_sides);
   if (pose.near) camera.near = static_cast<float>(*pose.near);
   return zoom(camera, pose.zoom);
+}
+
+Camera turn_around(const Scene& scene, const ViewOptions& options, const Camera& camera, double degrees) {
+  const PoseOptions& pose = options.pose;
+  const bool is_framed = !pose.eye && find_file_camera(scene, options) == nullptr;
+  const dvec3 target = pose.look_at ? *pose.look_at - scene.center
+                       : is_framed  ? middle_of(frame_of(scene))
+                                    : orbit_target(scene, camera);
+  return orbit_camera(camera, target, {.azimuth_deg = degrees}, vec3(pose.up.value_or(dvec3(0.0, 1.0, 0.0))));
 }
 
 Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pose, const uvec2& size,

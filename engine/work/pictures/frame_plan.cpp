@@ -13,12 +13,14 @@
 namespace promin::work {
 namespace {
 
+/// Returns the frames to render of a path or a turntable with this number of frames.
 FrameRange choose_frames(const RenderSpec& options, size_t count) {
   const auto last = static_cast<uint32_t>(count - 1);
   const FrameRange range = options.frames.value_or(FrameRange{0, last});
   if (range.last > last) {
-    throw UsageError({"path.frame.missing", fmt::format("the path has no frame {}", range.last), options.path->string(),
-                      fmt::format("choose frames from 0 to {}", last)});
+    throw UsageError({"path.frame.missing",
+                      fmt::format("the {} has no frame {}", options.path ? "path" : "turntable", range.last),
+                      options.path ? options.path->string() : "", fmt::format("choose frames from 0 to {}", last)});
   }
   return range;
 }
@@ -43,6 +45,7 @@ std::vector<PlannedFrame> plan_range(const RenderSpec& options, const FrameRange
   std::vector<PlannedFrame> frames;
   for (uint32_t number = range.first; number <= range.last; ++number) {
     frames.push_back({number, std::nullopt, {}, number / fps});
+    if (!options.moves_scene()) frames.back().time_s.reset();
   }
   name_frames(frames, options);
   return frames;
@@ -91,6 +94,7 @@ std::vector<PlannedFrame> plan_frames(const RenderSpec& options) {
   if (options.makes_film()) {
     return options.frames ? plan_range(options, *options.frames) : std::vector<PlannedFrame>{};
   }
+  if (options.turntable) return plan_range(options, choose_frames(options, *options.turntable));
   if (!options.path) return {{std::nullopt, std::nullopt, options.pictures}};
   const auto path = std::make_shared<const PathPictures>(read_camera_path(*options.path), options.fps);
   const FrameRange range = choose_frames(options, path->count());

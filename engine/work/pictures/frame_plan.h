@@ -26,10 +26,11 @@ struct PlannedFrame {
   std::shared_ptr<const PathPictures> path = nullptr;
 };
 
-/// Returns the frames that the options request: one frame, frames of the path, or frames of a film. Returns no frames
+/// Returns the frames that the options request: one frame, frames of the path or of the turntable, or frames of a film.
+/// The frames of a turntable get their cameras later (turn_frames). Returns no frames
 /// for a film without a range of frames, because its length is known only after the scene is read (plan_film). Throws
-/// InputError for an invalid path. Throws UsageError if the path does not have a frame, or if several frames would be
-/// written to one file.
+/// InputError for an invalid path. Throws UsageError if the path or the turntable does not have a frame, or if several
+/// frames would be written to one file.
 std::vector<PlannedFrame> plan_frames(const RenderSpec& options);
 
 /// Returns all frames of a film of a scene whose animations last this long. Frame i has the time i / fps. Throws

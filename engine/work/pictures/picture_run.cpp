@@ -29,14 +29,24 @@ std::vector<Camera> cameras_of(const PictureRun& run) {
   return cameras;
 }
 
+/// Sets the cameras of a turntable, which move once around the scene. `camera` is the camera of the first frame.
+void turn_frames(std::vector<PlannedFrame>& frames, uint32_t count, const Scene& scene, const ViewOptions& view,
+                 const Camera& camera) {
+  constexpr double kTurnDeg = 360.0;
+  for (PlannedFrame& frame : frames) {
+    frame.camera = turn_around(scene, view, camera, kTurnDeg * *frame.number / count);
+  }
+}
+
 /// Returns the scene of a film. Throws UsageError if the scene has no animations.
 std::shared_ptr<MovingScene> make_moving(Scene scene, const RenderSpec& options) {
   MotionOptions motion = options.tracing.motion;
   if (!motion.time_s) motion.time_s = 0.0;
   PoseChoice clip = choose_pose(scene, motion);
   if (clip.animations.empty()) {
-    throw UsageError({"animation.missing", "the scene has no animation to show", scene.file.string(),
-                      options.path ? "remove --animation" : "give --path for a flight of the camera"});
+    throw UsageError(
+        {"animation.missing", "the scene has no animation to show", scene.file.string(),
+         options.moves_camera() ? "remove --animation" : "give --turntable N or --path to move the camera"});
   }
   return std::make_shared<MovingScene>(std::move(scene), std::move(clip));
 }
@@ -67,7 +77,9 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   }
   ViewOptions view = options.view;
   view.given_camera = run.frames.front().camera;
+  view.shows_all_sides = options.turntable.has_value();
   stats.view = make_view(scene, view, console);
+  if (options.turntable) turn_frames(run.frames, *options.turntable, scene, view, stats.view->camera);
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
   warn_of_empty_pictures(scene, cameras_of(run), stats.view->size, console);

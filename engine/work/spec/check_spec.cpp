@@ -120,6 +120,7 @@ void check_explanation(const RenderSpec& options) {
   if (!options.explained_pixel) return;
   refuse_beside("--explain", {{!options.pictures.empty(), "--output"},
                               {options.path.has_value(), "--path"},
+                              {options.turntable.has_value(), "--turntable"},
                               {options.frames.has_value(), "--frames"},
                               {options.fps.has_value(), "--fps"},
                               {options.aovs.any(), "--aov"},
@@ -210,7 +211,10 @@ void check_frames(const RenderSpec& options) {
             "give --path as well");
   if (!options.moves_scene()) return;
   const MotionOptions& motion = options.tracing.motion;
-  const std::string_view name = options.frames ? "--frames" : options.fps ? "--fps" : "--path";
+  const std::string_view name = options.frames      ? "--frames"
+                                : options.fps       ? "--fps"
+                                : options.turntable ? "--turntable"
+                                                    : "--path";
   refuse_beside(name, {{motion.time_s.has_value(), "--time"},
                        {motion.chooses_none(), "--animation none"},
                        {options.tracing.bvh.has_value(), "--bvh"}});
@@ -280,6 +284,7 @@ void check_render_spec(const RenderSpec& options) {
   check_tracing_options(options.tracing, options.moves_scene());
   check_pose_options(options.view.pose, options.view.camera.has_value());
   if (options.path) check_no_camera(options.view, "--path");
+  if (options.turntable) refuse_beside("--turntable", {{options.path.has_value(), "--path"}});
   check_lens(options.view);
   check_explanation(options);
   check_quality(options);

@@ -91,7 +91,7 @@ bool RenderSpec::names_film() const {
 }
 
 void complete_film(RenderSpec& options) {
-  if (options.names_film() && !options.path && !options.frames && !options.fps) options.fps = kDefaultFps;
+  if (options.names_film() && !options.moves_camera() && !options.frames && !options.fps) options.fps = kDefaultFps;
 }
 
 void apply_quality(RenderSpec& options) {
@@ -122,7 +122,7 @@ void apply_quality(RenderSpec& options) {
 std::vector<std::filesystem::path> name_pictures(const RenderSpec& options) {
   if (!options.pictures.empty() || options.explained_pixel || options.job.share) return options.pictures;
   const std::string stem =
-      options.tracing.scene.stem().string() + (options.path || options.makes_film() ? ".####" : "");
+      options.tracing.scene.stem().string() + (options.moves_camera() || options.makes_film() ? ".####" : "");
   return {stem + ".exr", stem + ".png"};
 }
 

@@ -22,6 +22,8 @@ namespace promin::work {
 // Ranges of members, for both options and JSON.
 
 inline constexpr uint32_t kMaxFrame = 9999999;
+/// The smallest number of frames of a turntable.
+inline constexpr uint32_t kMinTurntable = 2;
 inline constexpr double kMaxBackground = 1e9;
 /// The largest exposure in stops. With larger values, floats would overflow.
 inline constexpr double kMaxExposureEv = 64.0;
@@ -107,6 +109,8 @@ struct ViewOptions {
   std::optional<std::string> camera;
   /// True if a camera frames the scene. The scene's cameras are then ignored, unless one is named.
   bool frames_scene = false;
+  /// True if a camera that frames the scene must show it from all sides at the same distance, for a turntable.
+  bool shows_all_sides = false;
   /// A camera that replaces those of the scene.
   std::optional<Camera> given_camera;
   PoseOptions pose;
@@ -193,8 +197,10 @@ struct RenderSpec {
   ExrOptions exr;
   /// True if the user has chosen the compression of EXRs, even if it is the default.
   bool names_compression = false;
-  /// A camera path, and the frames to render; if `frames` is empty, all frames. Without a path they are frames of the
-  /// scene's animation.
+  /// The number of frames of a turntable, whose camera moves once around the scene.
+  std::optional<uint32_t> turntable;
+  /// A camera path, and the frames to render; if `frames` is empty, all frames. Without a path and a turntable they are
+  /// frames of the scene's animation.
   std::optional<std::filesystem::path> path;
   std::optional<FrameRange> frames;
   /// The number of pictures per second, in the form that PathPictures takes.
@@ -203,13 +209,16 @@ struct RenderSpec {
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;
 
-  /// Returns whether the pictures are frames of the scene's animation without a camera path.
-  bool makes_film() const { return !path && (frames || fps); }
+  /// Returns whether the camera moves from frame to frame along a path or around the scene.
+  bool moves_camera() const { return path || turntable; }
+  /// Returns whether the pictures are frames of the scene's animation, and the camera does not move.
+  bool makes_film() const { return !moves_camera() && (frames || fps); }
   /// Returns whether one of the files is a film (film_file.h).
   bool names_film() const;
-  /// Returns whether the frames have different poses of the scene. A path shows an animation that the user names.
+  /// Returns whether the frames have different poses of the scene. A path or a turntable shows an animation that the
+  /// user names.
   bool moves_scene() const {
-    return makes_film() || (path && !tracing.motion.animations.empty() && !tracing.motion.time_s);
+    return makes_film() || (moves_camera() && !tracing.motion.animations.empty() && !tracing.motion.time_s);
   }
 };
 

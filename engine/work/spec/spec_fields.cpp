@@ -253,7 +253,8 @@ Table<RenderSpec> make_table(const RenderSpec* /*kind*/) {
   table.add("crop", PROMIN_AT(view.crop), Window());
   table.add_file("path", PROMIN_AT(path),
                  {.replaces = {"camera", "from", "fit", "azimuth", "elevation", "roll", "zoom", "eye", "look_at",
-                               "direction", "up", "fov", "near"}});
+                               "direction", "up", "fov", "near", "turntable"}});
+  table.add_number("turntable", PROMIN_AT(turntable), kMinTurntable, kMaxFrame, {.replaces = {"path"}});
   table.add("frames", PROMIN_AT(frames), Frames());
   table.add("fps", PROMIN_AT(fps), Fps());
   table.add_number("pieces", PROMIN_AT(job.pieces), 1, kMaxSide, {.affects_bits = false, .replaces = {"tiles"}});
