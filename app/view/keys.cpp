@@ -50,6 +50,12 @@ constexpr std::array kKeys = {
     KeyBinding{GLFW_KEY_PERIOD, ". and ,", "select the next or previous camera of the scene", {}, Press::kNextCamera},
     KeyBinding{GLFW_KEY_COMMA, "", "", {}, Press::kPreviousCamera},
     KeyBinding{GLFW_KEY_B, "B", "bookmark the camera", {}, Press::kBookmark},
+    KeyBinding{GLFW_KEY_SPACE, "Space", "play or stop the animation", {}, Press::kPlay},
+    KeyBinding{GLFW_KEY_LEFT, "Left, Right", "stop, and step back or ahead by 1/24 s", {}, Press::kStepBack},
+    KeyBinding{GLFW_KEY_RIGHT, "", "", {}, Press::kStepAhead},
+    KeyBinding{GLFW_KEY_DOWN, "Down, Up", "play at half or twice the speed", {}, Press::kSlower},
+    KeyBinding{GLFW_KEY_UP, "", "", {}, Press::kFaster},
+    KeyBinding{GLFW_KEY_N, "N", "show the next animation", {}, Press::kNextAnimation},
     KeyBinding{GLFW_KEY_F1, "F1, F2, ...", kDebugViewHelp, {}, debug_view(0)},
 // F1 shows light, F2 the first debug view, and so on. F12 makes a screenshot.
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \

@@ -27,6 +27,12 @@ enum class Press {
   kTop,
   kPreviousCamera,
   kNextCamera,
+  kPlay,
+  kStepBack,
+  kStepAhead,
+  kSlower,
+  kFaster,
+  kNextAnimation,
   /// Light and the debug views, in the order of DebugView's values.
   kFirstDebugView
 };

@@ -154,6 +154,7 @@ void Viewer::show_scene(OpenedScene opened) {
   const bool is_first = !opened_.scene;
   opened_ = std::move(opened);
   const View& view = opened_.view;
+  clock_ = AnimationClock(*opened_.scene, opened_.motion);
   control_ = CameraControl(view.camera, opened_.bounds, start_.up);
   camera_index_ = -1;
   replay_.reset();
@@ -182,8 +183,12 @@ PictureRequest Viewer::request() const {
   // before it is shown.
   const bool has_draft = asked_mode().debug_view == DebugView::kNone && !opened_.replay && !start_.record;
   const bool needs_draft = !traced_ || (is_draft_ && !traced_->picture().shown());
-  return {switches_.scene, switches_.surroundings, asked_mode(), glm::max(swapchain_.size(), uvec2(1)),
-          has_draft && needs_draft};
+  return {.choice = switches_.scene,
+          .surroundings = switches_.surroundings,
+          .mode = asked_mode(),
+          .motion = clock_.pose(),
+          .size = glm::max(swapchain_.size(), uvec2(1)),
+          .is_draft = has_draft && needs_draft};
 }
 
 void Viewer::move_camera(bool is_of_flight) {
@@ -247,17 +252,23 @@ void Viewer::update_picture() {
   // A pixel query uses the lights that would change. Compilation also uses them if the scene is not on a separate
   // device.
   const bool is_free = !traced_ || !traced_->picture().is_compiling() || sets_apart(*device_);
-  if (preparer_->is_ready() && !query_.is_busy() && !on_copied_ && is_free) {
+  if (preparer_->is_ready() && !query_.is_busy() && !on_copied_ && is_free && has_shown_pose()) {
     try {
       show_picture(std::move(*preparer_->take()));
     } catch (const std::exception& error) {
       if (!traced_) throw;
       // After any error, also a lack of memory, the old picture stays.
+      clock_.stop();
       report_failure(error.what());
     }
   }
   // Compilation may run on the devices to which the environment is copied, so only one of the two may run.
-  if (traced_ && !putting_.is_busy() && preparer_->update(scene_, request(), Window::now())) draw_again();
+  if (!traced_ || putting_.is_busy() || preparer_->is_busy()) return;
+  // The pose rests while a screenshot waits.
+  const double now_s = Window::now();
+  if (!wants_screenshot_ && !on_copied_) move_time(now_s);
+  const bool is_playing = clock_.is_playing();
+  if (preparer_->update(scene_, traced_->scene().device, request(), now_s) && !is_playing) draw_again();
 }
 
 bool Viewer::may_put_surroundings() const {
@@ -265,6 +276,18 @@ bool Viewer::may_put_surroundings() const {
   return traced_ && !putting_.is_busy() && scene_->surroundings != switches_.surroundings &&
          scene_->takes(switches_.surroundings) && !preparer_->is_busy() && !query_.is_busy() && !on_copied_ &&
          !traced_->picture().is_compiling() && std::all_of(retired_.begin(), retired_.end(), is_idle);
+}
+
+void Viewer::move_time(double now_s) {
+  clock_.advance(now_s);
+  if (clock_.is_playing() == playing_since_s_.has_value()) return;
+  if (playing_since_s_) {
+    console_.detail(fmt::format("played {} poses in {:.1f} s", played_poses_, now_s - *playing_since_s_));
+    playing_since_s_.reset();
+  } else {
+    playing_since_s_ = now_s;
+    played_poses_ = 0;
+  }
 }
 
 void Viewer::update_surroundings() {
@@ -287,9 +310,11 @@ void Viewer::update_surroundings() {
 void Viewer::show_picture(ReadyPicture ready) {
   ready.take_lights();
   const bool is_first = !scene_;
-  const bool is_new = scene_ && scene_->scene != ready.scene->scene;
-  if (is_new && scene_->scene != opened_.scene) move_cameras(scene_->scene->center - ready.scene->scene->center);
+  const bool is_new = scene_ && scene_->base != ready.scene->base;
+  if (is_new && scene_->base != opened_.scene) move_cameras(scene_->scene->center - ready.scene->scene->center);
   if (scene_ != ready.scene) explanation_.close();
+  if (scene_ && scene_->motion != ready.scene->motion) ++played_poses_;
+  if (traced_ && !is_new) ready.picture->picture().take_pace(traced_->picture());
   if (traced_) retired_.push_back(std::move(traced_));
   traced_ = std::move(ready.picture);
   scene_ = std::move(ready.scene);
@@ -401,7 +426,7 @@ void Viewer::log_shown() {
 bool Viewer::has_tracing() const {
   if (is_replaying() && !switches_.is_paused) return is_picture_due();
   // The window applies the pause switch to the picture at the end of a frame.
-  if (switches_.is_paused != traced_->picture().is_paused()) return true;
+  if (holds_refinement() != traced_->picture().is_paused()) return true;
   return window_.is_moving() || window_.has_turned() || wants_screenshot_ || traced_->has_work() ||
          traced_->display().exposure_ev != display().exposure_ev ||
          !shows_same(current_view(), traced_->picture().wanted());
@@ -416,7 +441,7 @@ void Viewer::begin_frame() {
   picture.fix_scale(switches_.scale);
   picture.want(current_view());
   // While paused, only pictures that a screenshot needs are traced.
-  picture.pause(switches_.is_paused && !(wants_screenshot_ && !picture.is_complete()));
+  picture.pause(holds_refinement() && !(wants_screenshot_ && !picture.is_complete()));
   traced_->begin_frame(is_of_flight, Window::now(),
                        [this](const vk::raii::CommandBuffer& commands) { record_screenshot(commands); });
 }
@@ -440,6 +465,7 @@ void Viewer::record_screenshot(const vk::raii::CommandBuffer& commands) {
     stats.errors.clear();
     if (error) stats.errors.push_back(*error);
     stats.display = traced_->display();
+    stats.motion = scene_->motion;
     screenshot_.write(describe_picture(stats), stats.display, file);
   };
   wants_screenshot_ = false;
@@ -490,6 +516,7 @@ void Viewer::build_overlay() {
     content.message = message_;
     content.is_failure = is_failure_;
     content.bookmarks = bookmarks_;
+    if (!replay_) content.clock = &clock_;
     content.entry = path_entry_ ? &*path_entry_ : nullptr;
     const OverlayAnswer answer = show_overlay(content, switches_);
     // The panel gets the height of its text in the next frame.
@@ -539,7 +566,7 @@ View Viewer::current_view() const {
   view.max_depth = switches_.effective_depth();
   view.mode = mode_;
   // A flight is never at rest, and a draft is soon replaced by a better picture.
-  if (mode_.debug_view == DebugView::kNone && !is_replaying() && !is_draft_) {
+  if (mode_.debug_view == DebugView::kNone && !is_replaying() && !is_draft_ && !clock_.is_playing()) {
     view.error_target = start_.error_target;
     fit_to_display(*view.error_target, display());
   }

@@ -11,6 +11,7 @@
 #include "output/console.h"
 #include "output/deferred_signals.h"
 #include "promin/framing.h"
+#include "view/animation_clock.h"
 #include "view/camera_control.h"
 #include "view/display/display_pass.h"
 #include "view/display/frame_queue.h"
@@ -81,6 +82,8 @@ class Viewer {
   void handle_input();
   void handle_press(Press press);
   void handle_clicks();
+  /// Carries out a key that plays the animation.
+  void move_clock(Press press);
   void print_command();
   /// Returns the pixel of the full picture at a position in the window, which is given in the window's pixels.
   uvec2 pixel_at(const dvec2& place) const;
@@ -123,6 +126,12 @@ class Viewer {
   void show_picture(ReadyPicture ready);
   /// Reports the answers to pixel queries.
   void update_answers();
+  /// Returns whether only the first picture of a view is traced.
+  bool holds_refinement() const { return switches_.is_paused || clock_.is_playing(); }
+  /// Returns whether the next pose may replace the shown picture.
+  bool has_shown_pose() const { return !clock_.is_playing() || !traced_ || traced_->picture().shown(); }
+  /// Moves the clock, and logs how many poses it has shown when it stops, if verbose.
+  void move_time(double now_s);
   RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
   PictureRequest request() const;
   /// Returns whether promin is making a picture in a mode that differs from the mode of the shown picture.
@@ -194,6 +203,11 @@ class Viewer {
   /// True if the center is that of the picture. On a miss, the middle of the scene replaces it.
   bool is_of_middle_ = false;
   CameraControl control_{Camera(), Bounds(), vec3(0.0F, 1.0F, 0.0F)};
+  AnimationClock clock_;
+  /// The number of poses that were shown since the clock began to play, and the time in seconds of the first one. It is
+  /// empty while the clock stands.
+  int played_poses_ = 0;
+  std::optional<double> playing_since_s_;
   Background<Camera> framing_;
   int camera_index_ = -1;
   std::vector<Camera> bookmarks_;

@@ -89,10 +89,11 @@ void Viewer::frame_from(std::optional<Framing> from) {
   const dvec2 size(glm::max(swapchain_.size(), uvec2(1)));
   const auto aspect_ratio = static_cast<float>(size.x / size.y);
   // Framing takes some time, because it reads every vertex.
-  framing_.start([scene = opened_.scene, camera = control_.camera(), up = start_.up, from, aspect_ratio] {
-    return from ? frame_scene(*scene, aspect_ratio, {.from = from, .up = up})
-                : fit_camera(*scene, camera, aspect_ratio);
-  });
+  framing_.start(
+      [scene = scene_ ? scene_->scene : opened_.scene, camera = control_.camera(), up = start_.up, from, aspect_ratio] {
+        return from ? frame_scene(*scene, aspect_ratio, {.from = from, .up = up})
+                    : fit_camera(*scene, camera, aspect_ratio);
+      });
 }
 
 void Viewer::show_camera(int step) {
@@ -136,6 +137,13 @@ void Viewer::handle_press(Press press) {
       return show_camera(1);
     case Press::kPreviousCamera:
       return show_camera(-1);
+    case Press::kPlay:
+    case Press::kStepBack:
+    case Press::kStepAhead:
+    case Press::kSlower:
+    case Press::kFaster:
+    case Press::kNextAnimation:
+      return move_clock(press);
     case Press::kBookmark:
       bookmarks_.push_back(control_.camera());
       bookmarks_.back().name = fmt::format("bookmark {}", bookmarks_.size());
@@ -154,6 +162,20 @@ void Viewer::handle_press(Press press) {
       break;
   }
   switches_.debug_view = static_cast<DebugView>(static_cast<int>(press) - static_cast<int>(Press::kFirstDebugView));
+}
+
+void Viewer::move_clock(Press press) {
+  if (!opened_.scene) return;
+  if (clock_.clips().empty()) return report_failure("the scene has no animation");
+  if (replay_) return report_failure("an animation does not play during the replay of a flight");
+  constexpr double kFactor = 2.0;
+  if (press == Press::kPlay) clock_.toggle();
+  if (press == Press::kStepBack) clock_.step(-1);
+  if (press == Press::kStepAhead) clock_.step(1);
+  if (press == Press::kSlower) clock_.set_speed(clock_.speed() / kFactor);
+  if (press == Press::kFaster) clock_.set_speed(clock_.speed() * kFactor);
+  if (press == Press::kNextAnimation) clock_.choose_next();
+  draw_again();
 }
 
 View Viewer::view_of_middle() const {
@@ -180,9 +202,11 @@ void Viewer::print_command() {
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   LookOptions look = start_.look;
+  // The automatic exposure is that of the pose in which the scene was opened.
+  const bool has_other_pose = scene_->motion != opened_.motion;
   const Surroundings& surroundings = scene_->surroundings;
   if (surroundings.background) look.background = BackgroundChoice{.color = *surroundings.background};
-  if (look.averages_exposure || switches_.exposure_ev) look.exposure_ev = display().exposure_ev;
+  if (look.averages_exposure || switches_.exposure_ev || has_other_pose) look.exposure_ev = display().exposure_ev;
   DescribedScene described;
   described.file = file_;
   described.has_shadows = mode_.has_shadows;
@@ -192,7 +216,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.environment.light_rotation_deg = surroundings.light_rotation_deg;
   described.variant = opened_.load.material_variant;
   described.root = opened_.load.root;
-  described.motion = opened_.motion;
+  described.motion = scene_->motion;
   described.center = scene_->scene->center;
   described.camera_index = find_half_height(*scene_->scene, view.camera);
   described.builder = on.builder;

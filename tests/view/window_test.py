@@ -6,6 +6,7 @@
 window_test.py TEST BIN SCENES: TEST is a function below, BIN the folder of the programs.
 """
 
+import base64
 import json
 import math
 import os
@@ -14,6 +15,7 @@ import re
 import shlex
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -334,6 +336,65 @@ def plays_what_it_recorded(bin_folder, scenes, folder):
         (folder / "last.png").read_bytes() == (folder / "promin-0002.png").read_bytes(),
         "the flight does not end where the camera did",
     )
+
+
+def write_moving(file):
+    """Writes a scene with a light whose triangle moves to the right and back in two seconds."""
+    times, places = (0.0, 1.0, 2.0), ((0, 0, 0), (1, 0, 0), (0, 0, 0))
+    corners = ((-1, -1, 0), (1, -1, 0), (0, 1, 0))
+    data = struct.pack("<9f3f9f", *sum(corners, ()), *times, *sum(places, ()))
+    view = lambda start, size: {"buffer": 0, "byteOffset": start, "byteLength": size}
+    numbers = lambda view, kind, **more: {"bufferView": view, "componentType": 5126, "count": 3, "type": kind, **more}
+    lights = "KHR_lights_punctual"
+    document = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": [lights],
+        "extensions": {lights: {"lights": [{"type": "directional", "intensity": 3}]}},
+        "buffers": [{"byteLength": len(data), "uri": "data:;base64," + base64.b64encode(data).decode()}],
+        "bufferViews": [view(0, 36), view(36, 12), view(48, 36)],
+        "accessors": [
+            numbers(0, "VEC3", min=[-1, -1, 0], max=[1, 1, 0]),
+            numbers(1, "SCALAR", min=[0], max=[2]),
+            numbers(2, "VEC3"),
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}, {"extensions": {lights: {"light": 0}}}],
+        "scenes": [{"nodes": [0, 1]}],
+        "scene": 0,
+        "animations": [
+            {
+                "name": "slide",
+                "samplers": [{"input": 1, "output": 2}],
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+            }
+        ],
+    }
+    file.write_text(json.dumps(document))
+
+
+def plays_an_animation(bin_folder, scenes, folder):
+    write_moving(folder / "moving.gltf")
+    work = folder / "work"
+    work.mkdir()
+    session = Session(bin_folder, folder, work, "-v", files=("moving.gltf",), PROMIN_VALIDATION="core")
+    with session as viewer:
+        viewer.press("Tab")
+        viewer.wait_for_line("shown: a picture", 1, "picture")
+        expect("--time" not in session.print_command(), "it does not begin with the pose of the nodes")
+        viewer.press("space")
+        time.sleep(1.5)
+        viewer.press("space")
+        line = viewer.wait_for_line(r"played \d+ poses", 1, "report of the animation")
+        expect(int(re.search(r"played (\d+)", line).group(1)) >= 2, line)
+        stopped = session.print_command()
+        session.expect_shown(1, "--animation 'slide'")
+        viewer.press("Right")
+        wait_for(lambda: session.print_command() != stopped, "step")
+        session.expect_shown(2, "--animation 'slide'")
+        viewer.press("n")
+        wait_for(lambda: "--time 0 " in session.print_command(), "start of the animation")
+        session.expect_shown(3, "--animation 'slide'")
+        session.quit()
 
 
 def stops_at_a_signal(bin_folder, scenes, folder):

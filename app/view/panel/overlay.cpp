@@ -24,6 +24,7 @@ constexpr float kFontSize = 14.0F;
 constexpr float kMargin = 10.0F;
 constexpr float kPanelWidth = 290.0F;
 constexpr float kFieldWidth = 160.0F;
+constexpr float kSpeedWidth = 100.0F;
 constexpr float kEffectColumn = 100.0F;
 constexpr float kBarHeight = 4.0F;
 constexpr float kRounding = 4.0F;
@@ -174,6 +175,38 @@ void show_switches(const OverlayContent& content, Switches& switches) {
   }
 }
 
+void choose_clip(AnimationClock& clock) {
+  constexpr const char* kNoClip = "none";
+  const std::vector<AnimationClock::Clip>& clips = clock.clips();
+  const std::string current = clock.clip() < 0 ? kNoClip : clips[static_cast<size_t>(clock.clip())].name;
+  if (!ImGui::BeginCombo("animation", current.c_str())) return;
+  if (ImGui::Selectable(kNoClip, clock.clip() < 0)) clock.choose(-1);
+  for (int i = 0; i < static_cast<int>(clips.size()); ++i) {
+    const std::string label = fmt::format("{}##{}", clips[static_cast<size_t>(i)].name, i);
+    if (ImGui::Selectable(label.c_str(), i == clock.clip())) clock.choose(i);
+  }
+  ImGui::EndCombo();
+}
+
+void show_clock(AnimationClock& clock) {
+  if (clock.clips().empty()) return;
+  choose_clip(clock);
+  auto time_s = static_cast<float>(clock.time_s());
+  const auto duration_s = static_cast<float>(clock.duration_s());
+  if (ImGui::SliderFloat("time", &time_s, 0.0F, duration_s, "%.2f s") && duration_s > 0.0F) {
+    clock.seek(static_cast<double>(time_s));
+  }
+  if (ImGui::Button(clock.is_playing() ? "Stop" : "Play")) clock.toggle();
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(scaled(kSpeedWidth));
+  auto speed = static_cast<float>(clock.speed());
+  if (ImGui::SliderFloat("##speed of the animation", &speed, static_cast<float>(AnimationClock::kMinSpeed),
+                         static_cast<float>(AnimationClock::kMaxSpeed), "speed %.3g", ImGuiSliderFlags_Logarithmic)) {
+    clock.set_speed(static_cast<double>(speed));
+  }
+  ImGui::Separator();
+}
+
 void show_details(const OverlayContent& content, Switches& switches, OverlayAnswer& answer) {
   if (!ImGui::TreeNode("details")) return;
   choose_scale(switches.scale);
@@ -276,6 +309,7 @@ OverlayAnswer show_overlay(const OverlayContent& content, Switches& switches) {
   show_message(content);
   if (content.scene != nullptr) {
     ImGui::Separator();
+    if (content.clock != nullptr) show_clock(*content.clock);
     show_switches(content, switches);
     answer.camera = choose_camera(content);
     show_details(content, switches, answer);

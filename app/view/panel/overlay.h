@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trace/film/progressive_picture.h"
+#include "view/animation_clock.h"
 #include "view/display/finished_frame.h"
 #include "view/panel/overlay_scale.h"
 #include "view/panel/screen_cover.h"
@@ -79,6 +80,8 @@ struct OverlayContent {
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
+  /// The clock of the scene's animations, which the user can change; null if there is none.
+  AnimationClock* clock = nullptr;
   /// The path that the user is typing; null if there is none.
   PathEntry* entry = nullptr;
 };

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 
+#include "core/divide_up.h"
 #include "device/device.h"
 #include "formats/source_file.h"
 #include "promin/error.h"
+#include "promin/motion.h"
 #include "promin/validate.h"
 #include "scene/features.h"
 #include "work/pictures/load_posed.h"
@@ -27,6 +29,12 @@ constexpr float kMeteredSide = 320.0F;
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
   std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
   return lights;
+}
+
+/// Returns a lit scene in another pose. Lights without motion stay.
+std::shared_ptr<const Scene> put_into_pose(const Scene& scene, const MotionOptions& motion) {
+  if (scene.motion == nullptr) return std::make_shared<const Scene>(scene);
+  return std::make_shared<const Scene>(scene_at(scene, choose_pose(scene, motion)));
 }
 
 /// Returns the features without those that compile slowly, with as little visible effect as possible.
@@ -110,7 +118,7 @@ SceneOn ShownScene::set_apart() const {
 }
 
 void ReadyPicture::take_lights() {
-  scene->put();
+  if (!has_lights) scene->put();
   picture->picture().take_scene_change();
 }
 
@@ -134,15 +142,19 @@ ScenePreparer::~ScenePreparer() {
 
 void ScenePreparer::begin(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
   asked_ = request;
-  pack(std::move(scene));
+  base_ = scene;
+  pack(std::move(scene), true);
 }
 
-bool ScenePreparer::update(const std::shared_ptr<ShownScene>& shown, const PictureRequest& request, double time_s) {
+bool ScenePreparer::update(const std::shared_ptr<ShownScene>& shown, const std::shared_ptr<const gpu::Device>& device,
+                           const PictureRequest& request, double time_s) {
   if (is_busy()) return false;
   const PictureRequest last = std::exchange(asked_, request);
   const bool has_another_tree = last.choice.builder != request.choice.builder || last.choice.bvh != request.choice.bvh;
   if (has_another_tree) {
-    pack(shown->scene);
+    pack(base_, false);
+  } else if (last.motion != request.motion) {
+    pose(*shown, device);
   } else if (last.choice != request.choice || last.mode != request.mode || last.is_draft != request.is_draft ||
              (last.surroundings != request.surroundings && !shown->takes(request.surroundings))) {
     compile(shown);
@@ -163,20 +175,40 @@ std::optional<ReadyPicture> ScenePreparer::take() {
 
 void ScenePreparer::read() {
   step_ = Step::kReading;
+  is_posing_ = false;
   work_.start([this, request = asked_] {
-    const auto scene = std::make_shared<Scene>(load_posed(file_, load_, motion_, sources_));
+    const auto scene = std::make_shared<Scene>(load_posed(file_, load_, request.motion, sources_));
     light_up(*scene, look_, environment_);
+    base_ = scene;
     return make_first(scene, request);
   });
 }
 
-void ScenePreparer::pack(std::shared_ptr<const Scene> scene) {
+void ScenePreparer::pack(std::shared_ptr<const Scene> scene, bool is_posed) {
   step_ = Step::kBuilding;
-  work_.start([this, scene = std::move(scene), request = asked_] { return make_first(scene, request); });
+  is_posing_ = false;
+  work_.start([this, scene = std::move(scene), is_posed, request = asked_] {
+    return make_first(is_posed ? scene : put_into_pose(*scene, request.motion), request);
+  });
+}
+
+void ScenePreparer::pose(const ShownScene& shown, std::shared_ptr<const gpu::Device> device) {
+  step_ = Step::kBuilding;
+  is_posing_ = true;
+  // Kernels are compiled for multiples of this number of entries.
+  constexpr uint32_t kStackStep = 8;
+  stack_size_ = std::max(stack_size_, divide_up(shown.host->packed.stack_size, kStackStep) * kStackStep);
+  work_.start([this, device = std::move(device), request = asked_] {
+    ReadyPicture ready = make_first(put_into_pose(*base_, request.motion), request, device);
+    ready.scene->put();
+    ready.has_lights = true;
+    return ready;
+  });
 }
 
 void ScenePreparer::compile(std::shared_ptr<ShownScene> scene) {
   step_ = Step::kCompiling;
+  is_posing_ = false;
   work_.start([this, scene = std::move(scene), request = asked_] {
     ShownScene chosen = *scene;
     chosen.copies = std::make_shared<SceneCopies>();
@@ -188,7 +220,7 @@ void ScenePreparer::compile(std::shared_ptr<ShownScene> scene) {
 }
 
 std::string ScenePreparer::describe() const {
-  if (!is_busy()) return "";
+  if (!is_busy() || is_posing_) return "";
   switch (step_) {
     case Step::kReading:
       return "reading the scene";
@@ -212,19 +244,23 @@ void ScenePreparer::enter(Step step) {
 }
 
 std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const Scene> scene,
-                                                         const PictureRequest& request) {
+                                                         const PictureRequest& request,
+                                                         std::shared_ptr<const gpu::Device> device) {
   built_ = 0.0;
   enter(Step::kBuilding);
   ShownScene shown;
   shown.scene = scene;
+  shown.base = base_;
+  shown.motion = request.motion;
   shown.choice = request.choice;
   shown.surroundings = request.surroundings;
-  shown.display = choose_display(*scene, look_, DebugView::kNone);
-  shown.first.device = open_same_device(*device_);
+  shown.display = choose_display(*base_, look_, DebugView::kNone);
+  shown.first.device = device ? std::move(device) : open_same_device(*device_);
   shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
   TunedRendererOptions options;
   options.builder = request.choice.builder;
-  options.bvh = request.choice.bvh;
+  if (request.motion == motion_) options.bvh = request.choice.bvh;
+  options.more_features = features_;
   options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
@@ -236,13 +272,18 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   host->scene = world::flatten(*scene);
   host->scene.environment = shown.environment();
   host->glass_solids = std::make_shared<const GlassSolids>(host->scene);
-  options.repack = [&host](PackedScene packed) {
+  options.repack = [&host, least = stack_size_](PackedScene packed) {
+    packed.stack_size = std::max(packed.stack_size, least);
     host->packed = packed;
     return packed;
   };
   gpu::translate_vulkan_errors([&] {
     shown.on_device = std::make_shared<SceneOnDevice>(*shown.first.device, host->scene, options, shown.setup_stats);
   });
+  if (base_->motion != nullptr && !base_->motion->animations.empty()) {
+    // Lights and modes keep their own features.
+    features_ |= shown.on_device->features_with({}, {}, {DebugView::kNone, false});
+  }
   shown.host = std::move(host);
   shown.first.scene = shown.on_device->device_scene();
   if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode.has_shadows);
@@ -265,8 +306,9 @@ float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOption
   return average_exposure_ev(metered.image.pixels, metered.aovs.object, metered.aovs.unlit);
 }
 
-ReadyPicture ScenePreparer::make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
-  std::shared_ptr<ShownScene> shown = put_on_device(std::move(scene), request);
+ReadyPicture ScenePreparer::make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request,
+                                       std::shared_ptr<const gpu::Device> device) {
+  std::shared_ptr<ShownScene> shown = put_on_device(std::move(scene), request, std::move(device));
   SceneOn first = shown->first;
   return make(std::move(shown), std::move(first), request);
 }

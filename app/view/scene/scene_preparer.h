@@ -77,6 +77,9 @@ struct ShownScene {
   /// The tree, and the lights that are on, as on the device.
   SceneChoice choice;
   Surroundings surroundings = {};
+  /// The scene of the file, of which this is a pose.
+  std::shared_ptr<const Scene> base = nullptr;
+  MotionOptions motion = {};
   /// The display transform of the scene.
   DisplayTransform display;
   /// The first device that has the scene.
@@ -111,8 +114,10 @@ struct ReadyPicture {
   RenderMode mode;
   bool is_draft = false;
   std::unique_ptr<TracedPicture> picture;
+  /// True if the devices have the lights.
+  bool has_lights = false;
 
-  /// Copies the lights that are on to the devices. Nothing may be traced there meanwhile.
+  /// Copies the lights that are on to the devices, if they do not have them. Nothing may be traced there meanwhile.
   void take_lights();
 };
 
@@ -121,6 +126,8 @@ struct PictureRequest {
   SceneChoice choice;
   Surroundings surroundings;
   RenderMode mode;
+  /// The pose of the scene.
+  MotionOptions motion;
   /// The size of the window for which memory is allocated.
   uvec2 size{1};
   /// True if the picture is a draft, which is shown until a better one is compiled. It leaves out features that compile
@@ -145,8 +152,10 @@ class ScenePreparer {
   /// Prepares the first picture of a scene that is read and lit.
   void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
   /// Starts to prepare another picture if the request differs from the last one, or if files of the scene have changed.
-  /// Returns whether it has started. Work that failed is not repeated.
-  bool update(const std::shared_ptr<ShownScene>& shown, const PictureRequest& request, double time_s);
+  /// Returns whether it has started. Work that failed is not repeated. Another pose is put on the device of the shown
+  /// picture, which has the kernels.
+  bool update(const std::shared_ptr<ShownScene>& shown, const std::shared_ptr<const gpu::Device>& device,
+              const PictureRequest& request, double time_s);
   /// Returns whether a picture in this mode is being prepared and not shown yet.
   bool will_show(const RenderMode& mode) const { return is_busy() || asked_.mode != mode; }
   /// Abandons the current work as soon as possible, without waiting.
@@ -164,16 +173,21 @@ class ScenePreparer {
 
   // The following functions start the work. They must not be called while busy.
   void read();
-  void pack(std::shared_ptr<const Scene> scene);
+  void pack(std::shared_ptr<const Scene> scene, bool is_posed);
+  /// Prepares a picture of another pose.
+  void pose(const ShownScene& shown, std::shared_ptr<const gpu::Device> device);
   /// Prepares a picture with other lights or another mode of a scene that is on the device.
   void compile(std::shared_ptr<ShownScene> scene);
 
   // The following functions are parts of the work.
   void enter(Step step);
-  std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request,
+                                            std::shared_ptr<const gpu::Device> device);
   /// Returns the average exposure, computed for the first view.
   float meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const;
-  ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  /// Returns the picture of a scene, on a new device if there is none.
+  ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request,
+                          std::shared_ptr<const gpu::Device> device = nullptr);
   /// Returns the picture, which is traced on the device `on`.
   ReadyPicture make(std::shared_ptr<ShownScene> scene, SceneOn on, const PictureRequest& request);
 
@@ -181,6 +195,9 @@ class ScenePreparer {
   double budget_ms_;
   std::filesystem::path file_;
   LoadOptions load_;
+  /// The scene as it was read, in any pose.
+  std::shared_ptr<const Scene> base_;
+  /// The pose in which the scene was opened. The file of a tree fits this pose.
   MotionOptions motion_;
   LookOptions look_;
   EnvironmentChoice environment_;
@@ -188,6 +205,11 @@ class ScenePreparer {
   SceneWatch watch_;
   double next_look_at_files_s_ = 0.0;
   PictureRequest asked_;
+  /// The size of the traversal stack and the features of all poses so far, so that poses share kernels.
+  uint32_t stack_size_ = 0;
+  FeatureMask features_;
+  /// True if the current work is another pose.
+  std::atomic<bool> is_posing_ = false;
   std::atomic<Step> step_ = Step::kReading;
   std::atomic<double> built_ = 0.0;
   std::atomic<bool> is_given_up_ = false;

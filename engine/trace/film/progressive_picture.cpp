@@ -275,6 +275,13 @@ void ProgressivePicture::take_finished(const Finished& finished) {
   refuse_cut_loops(finished.has_cut_loops);
 }
 
+void ProgressivePicture::take_pace(const ProgressivePicture& other) {
+  if (!other.is_warm_) return;
+  pacer_ = other.pacer_;
+  budget_ms_ = other.budget_ms_;
+  is_warm_ = true;
+}
+
 void ProgressivePicture::take_scene_change() {
   for (Film& film : films_) film.bind_scene();
   if (list_film_to_come_.valid()) list_film_ = list_film_to_come_.get();

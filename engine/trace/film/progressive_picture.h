@@ -110,6 +110,9 @@ class ProgressivePicture {
   /// Adjusts the next budget to the time of the pieces. Throws RunError if the driver has cut loops.
   void take_finished(const Finished& finished);
   void set_budget(double budget_ms);
+  /// Takes over what another picture has learned about the time of pieces, so that the first picture has a similar
+  /// size.
+  void take_pace(const ProgressivePicture& other);
 
   /// Restarts tracing after a change of the scene that needs no other pipeline. The device must not be using the films.
   void take_scene_change();
