@@ -14,6 +14,7 @@
 #include "oracle/lobe.h"
 #include "oracle/normal_error.h"
 #include "oracle/samples.h"
+#include "oracle/sky_light.h"
 #include "oracle/surface.h"
 #include "oracle/verdict.h"
 #include "scene/light_kinds.h"
@@ -362,11 +363,12 @@ struct Way {
 class Tracer {
  public:
   /// `has_lens` is true if the first pair of dimensions of each sample belongs to the camera's lens.
-  Tracer(const world::Scene& scene, bool has_lens)
+  Tracer(const world::Scene& scene, bool has_lens, Integrator integrator)
       : scene_(scene),
         has_lens_(has_lens),
         textures_(scene),
-        surroundings_(scene.environment),
+        surroundings_(scene.environment, integrator == Integrator::kDirect),
+        sky_light_(scene.environment),
         has_glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const Material& m) { return glass_of(m).is_clear; })) {}
 
@@ -568,7 +570,8 @@ class Tracer {
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
     // Each light has its own pair of dimensions for each ray of the sample.
-    auto pair = static_cast<uint32_t>(way.step * scene_.lights.size() + (has_lens_ ? 1 : 0));
+    const size_t sources = scene_.lights.size() + (surroundings_.is_source() && sky_light_.exists() ? 1 : 0);
+    auto pair = static_cast<uint32_t>(way.step * sources + (has_lens_ ? 1 : 0));
     for (const Light& light : scene_.lights) {
       const Illumination illumination =
           has_size(light) ? illuminate_sized(light, point.position, sample_pair(way.sample, pair), lobe)
@@ -580,9 +583,43 @@ class Tracer {
       const ArrivingShare share = arriving_share(point, light, illumination, error, way.media);
       if (share.value == Vector(0) && share.error == 0) continue;
       arriving.push_back({&light, illumination.to_light, illumination.distance, share.value * illumination.strength,
-                          share.error * illumination.strength});
+                          share.error * illumination.strength, std::nullopt});
     }
     return arriving;
+  }
+
+  /// Adds the environment as a source: the light of one direction, divided by the sum of the densities of all ways to
+  /// choose it.
+  void add_sky(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
+               const Way& way, std::vector<ArrivingLight>& arriving) const {
+    if (!surroundings_.is_source() || !sky_light_.exists()) return;
+    const SkyWays ways = sky_ways(point, texels, direction, error, surroundings_);
+    const size_t lights = scene_.lights.size();
+    const auto pair = static_cast<uint32_t>(way.step * (lights + 1) + lights + (has_lens_ ? 1 : 0));
+    std::array<Real, 2> u = sample_pair(way.sample, pair);
+    const Real of_lobes = ways.coat.share + ways.material.share;
+    const Real of_back = (1 - of_lobes) * ways.behind;
+    // The shares of u[0]: the coat, the material, the back and the front.
+    const std::array<Real, 5> ends = {0, ways.coat.share, of_lobes, of_lobes + of_back, 1};
+    size_t chosen = 0;
+    while (chosen < 3 && u[0] >= ends[chosen + 1]) ++chosen;
+    u[0] = (u[0] - ends[chosen]) / (ends[chosen + 1] - ends[chosen]);
+    const bool is_behind = chosen == 2;
+    const SmoothLobe coat{ways.coat.normal, -direction, ways.coat.alpha};
+    const SmoothLobe material{ways.material.normal, -direction, ways.material.alpha};
+    const Vector normal = is_behind ? -ways.normal : ways.normal;
+    const Vector to_light = chosen == 0   ? coat.place(u)
+                            : chosen == 1 ? material.place(u)
+                                          : sky_light_.choose(normal, u).direction;
+    Real density = (is_behind ? of_back : 1 - of_lobes - of_back) * sky_light_.density(normal, to_light);
+    if (!is_behind && ways.coat.share > 0) density += ways.coat.share * coat.density(to_light);
+    if (!is_behind && ways.material.share > 0) density += ways.material.share * material.density(to_light);
+    if (!(density > 0)) return;
+    static const Light kAtInfinity = {.name = "", .kind = LightKind::kDirectional};
+    const ArrivingShare share = arriving_share(point, kAtInfinity, {to_light}, error, way.media);
+    if (share.value == Vector(0) && share.error == 0) return;
+    arriving.push_back({&kAtInfinity, to_light, kInfinity, share.value / density, share.error / density,
+                        sky_light_.radiance(to_light)});
   }
 
   /// The response of a surface to light, with the errors that its textures cause. The error of each texture is computed
@@ -602,7 +639,8 @@ class Tracer {
       texels[slot] = shown.value;
       errors[slot] = shown.error;
     }
-    const std::vector<ArrivingLight> lights = arriving_lights(point, error, way, lobe_of(point, texels, direction));
+    std::vector<ArrivingLight> lights = arriving_lights(point, error, way, lobe_of(point, texels, direction));
+    add_sky(point, texels, direction, error, way, lights);
     BoundedResponse bounded{respond(point, texels, direction, error, lights, surroundings_)};
     if (point.face) add_errors_of_face(point, texels, direction, error, bounded);
     for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -853,6 +891,7 @@ class Tracer {
   bool has_lens_;
   Textures textures_;
   Surroundings surroundings_;
+  SkyLight sky_light_;
   bool has_glass_;
 };
 
@@ -961,7 +1000,7 @@ Picture render(const world::Scene& scene, const View& view,
     light.kind = LightKind::kDirectional;
     light.direction = view.camera.look;
   }
-  const Tracer tracer(lit, has_lens(view.camera));
+  const Tracer tracer(lit, has_lens(view.camera), view.mode.integrator);
   Way of_camera;
   of_camera.bounces = view.max_depth;
   of_camera.cone = camera_cone(view.camera, view.size);

@@ -189,7 +189,8 @@ std::vector<dvec2> make_circle_of_lobe() {
 
 }  // namespace
 
-Surroundings::Surroundings(const Environment& environment) : environment_(environment) {
+Surroundings::Surroundings(const Environment& environment, bool is_source)
+    : environment_(environment), is_source_(is_source) {
   if (!has_sky()) return;
   std::array<dvec3, 9> sums{};
   double least = std::numeric_limits<double>::infinity();

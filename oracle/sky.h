@@ -11,9 +11,11 @@ namespace promin::oracle {
 
 class Surroundings {
  public:
-  /// The environment must outlive this object.
-  explicit Surroundings(const Environment& environment);
+  /// The environment must outlive this object. `is_source` is true if objects block the environment's light. Surfaces
+  /// then receive its light only as a source (oracle/sky_light.h).
+  explicit Surroundings(const Environment& environment, bool is_source = false);
 
+  bool is_source() const { return is_source_; }
   bool has_sky() const { return environment_.has_sky(); }
 
   /// Returns the unfiltered radiance L from a direction. All directions here are unit vectors.
@@ -39,6 +41,7 @@ class Surroundings {
   const Environment& environment_;
   std::array<Vector, 9> bands_{};
   Real range_ = 0;
+  bool is_source_;
 };
 
 }  // namespace promin::oracle

@@ -166,15 +166,20 @@ class PhongSurface {
     }
   }
 
-  Radiance own() const { return {at_.emission() + ambient_ * at_.surroundings.irradiance(normal_)}; }
+  Radiance own() const {
+    if (at_.surroundings.is_source()) return {at_.emission()};
+    return {at_.emission() + ambient_ * at_.surroundings.irradiance(normal_)};
+  }
+  SkyWays sky_ways() const { return {{}, {}, normal_, 0}; }
 
   Radiance contribution(const ArrivingLight& arriving) const {
     const Real cosine = glm::dot(normal_, arriving.to_light);
     if (!(cosine > 0)) return {};
-    Vector share = diffuse_ * Vector(arriving.light->diffuse) * cosine;
+    if (arriving.radiance) return {ambient_ / std::numbers::pi_v<Real> * *arriving.radiance * cosine};
+    Vector share = diffuse_ * arriving.diffuse() * cosine;
     const Real highlight = glm::dot(2 * cosine * normal_ - arriving.to_light, at_.to_eye());
     if (shininess_ > 0 && highlight > 0) {
-      share += specular_ * Vector(arriving.light->specular) * std::pow(highlight, shininess_);
+      share += specular_ * arriving.specular() * std::pow(highlight, shininess_);
     }
     return {share};
   }
@@ -203,6 +208,7 @@ class UnlitSurface {
                Vector(at.point.material->emissive)) {}
 
   Radiance own() const { return {color_}; }
+  static SkyWays sky_ways() { return {{}, {}, Vector(0, 1, 0), 0}; }
   Radiance contribution(const ArrivingLight&) const { return {}; }
   Response finish(const Radiance& sent) const {
     return {sent, Vector(0), Vector(0), 0, {}, Vector(0), {}, Vector(0), false, 0};
@@ -313,8 +319,32 @@ class MetallicRoughnessSurface {
                          sheen_.left() * albedo_from_behind() * at.surroundings.irradiance(-normal_));
   }
 
+  /// Lobes choose samples in proportion to the light that they reflect of a uniform environment, without the part of
+  /// the mirror ray. The sky chooses at least half of the samples.
+  SkyWays sky_ways() const {
+    const Real diffuse_here = largest(albedo()) + largest(sheen_.reflectance());
+    const Real diffuse_behind = largest(albedo_from_behind());
+    const Real of_material = (1 - coat_.weight()) * (1 - sharpness_below()) * largest(reflectance());
+    const Real of_coat = coat_.weight() * (1 - coat_.sharpness()) * coat_.reflectance();
+    const Real sum = (1 - coat_.weight()) * (diffuse_here + diffuse_behind) + 2 * (of_material + of_coat);
+    SkyWays ways;
+    ways.normal = normal_;
+    if (!(sum > 0)) return ways;
+    const Real alpha = grain_ ? std::max({grain_->alphas.along, grain_->alphas.across, 0.002L})
+                              : std::max(Real(material_.roughness) * Real(material_.roughness), 0.002L);
+    const Real coat_roughness = material_.clearcoat_roughness;
+    ways.material = {normal_, alpha, of_material / sum};
+    ways.coat = {coat_normal_, std::max(coat_roughness * coat_roughness, 0.002L), has_coat_ ? of_coat / sum : Real(0)};
+    if (diffuse_behind > 0) ways.behind = diffuse_behind / (diffuse_here + diffuse_behind);
+    return ways;
+  }
+
   Radiance own() const {
     Radiance sum;
+    if (at_.surroundings.is_source()) {
+      sum.add(Vector(1 - coat_.weight()), {at_.emission()});
+      return sum;
+    }
     sum.add(Vector(1 - coat_.weight()), {at_.emission() + body_});
     sum.add((1 - coat_.weight()) * (1 - sharpness_below()) * reflectance(), below_);
     sum.add(Vector(coat_.weight() * (1 - coat_.sharpness()) * coat_.reflectance()), above_);
@@ -322,7 +352,9 @@ class MetallicRoughnessSurface {
   }
 
   Radiance contribution(const ArrivingLight& arriving) const {
-    const Light& light = *arriving.light;
+    // A mirror ray contributes the sharp part of each lobe's reflection of the environment.
+    const Real of_lobe = arriving.radiance ? 1 - sharpness_below() : Real(1);
+    const Real of_coat = arriving.radiance ? 1 - coat_.sharpness() : Real(1);
     Radiance coated;
     const Real cosine = glm::dot(normal_, arriving.to_light);
     // If the light comes from behind, as seen from the eye, there is no half vector.
@@ -332,23 +364,23 @@ class MetallicRoughnessSurface {
     // Light from the other side is scattered through the surface and has no highlight.
     if (material_.diffuse_transmission > 0 && glm::dot(at_.point.geometric_normal, arriving.to_light) < 0) {
       coated.add(Vector(1 - coat_.weight()), {sheen_.left() * albedo_from_behind() / std::numbers::pi_v<Real> *
-                                              Vector(light.diffuse) * std::max(-cosine, Real(0))});
+                                              arriving.diffuse() * std::max(-cosine, Real(0))});
       return coated;
     }
     if (cosine > 0) {
-      Radiance sum{albedo() / std::numbers::pi_v<Real> * Vector(light.diffuse) * cosine};
+      Radiance sum{albedo() / std::numbers::pi_v<Real> * arriving.diffuse() * cosine};
       const LobeAngles at = angles(normal_, arriving);
-      if (has_highlight) sum.add(Vector(light.specular), highlight(at, arriving, error));
+      if (has_highlight) sum.add(of_lobe * arriving.specular(), highlight(at, arriving, error));
       if (has_highlight && sheen_.exists()) {
         Radiance below;
         below.add(Vector(sheen_.left(cosine)), sum);
-        below.add(Vector(light.specular), bound_sheen(sheen_, at, error));
+        below.add(arriving.specular(), bound_sheen(sheen_, at, error));
         sum = below;
       }
       coated.add(Vector(1 - coat_.weight()), sum);
     }
     if (has_coat_ && has_highlight && glm::dot(coat_normal_, arriving.to_light) > 0) {
-      coated.add(coat_.weight() * Vector(light.specular),
+      coated.add(of_coat * coat_.weight() * arriving.specular(),
                  bound_highlight(coat_, angles(coat_normal_, arriving), error));
     }
     return coated;
@@ -515,6 +547,12 @@ Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Rea
   const Real away = glm::dot(bent, direction);
   if (away > 0) bent = glm::normalize(bent - away * direction);
   return bent;
+}
+
+SkyWays sky_ways(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
+                 const Surroundings& surroundings) {
+  const Glimpse at{point, texels, direction, error, surroundings};
+  return std::visit([&](const auto& model) { return make_surface(model, at).sky_ways(); }, point.material->model);
 }
 
 Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,

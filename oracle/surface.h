@@ -95,6 +95,28 @@ struct ArrivingLight {
   /// device.
   Vector strength{1};
   Real strength_error = 0;
+  /// The radiance of the environment if it is the source. Its light has no other power.
+  std::optional<Vector> radiance = std::nullopt;
+
+  Vector diffuse() const { return radiance ? *radiance : Vector(light->diffuse); }
+  Vector specular() const { return radiance ? *radiance : Vector(light->specular); }
+};
+
+/// A lobe from which directions to light are chosen.
+struct ChosenLobe {
+  Vector normal{0};
+  Real alpha = 1;
+  /// The share of the samples that choose from this lobe.
+  Real share = 0;
+};
+
+/// The ways in which samples of the environment's light choose directions at a point.
+struct SkyWays {
+  ChosenLobe coat;
+  ChosenLobe material;
+  /// The normal of the point, and the share of all other samples that light its other side.
+  Vector normal{0};
+  Real behind = 0;
 };
 
 /// The response of a surface to light.
@@ -120,6 +142,9 @@ struct Response {
 /// Returns the normal that a normal texture's texel describes, seen along `direction`. It rotates the point's normal in
 /// the frame of its tangent, if it has one.
 Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Real scale, const Vector& direction);
+
+SkyWays sky_ways(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
+                 const Surroundings& surroundings);
 
 /// Returns the response for a ray along the unit vector `direction`.
 Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,

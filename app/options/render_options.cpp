@@ -212,6 +212,10 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
       fmt::format("Property that the picture shows: {}. full is the light [full]", fmt::join(debug_view_names(), ", ")),
       [&](const OptionValues& w) { view.debug_view = read_shading(w); });
   table.add_flag("--no-shadows", "Do not trace shadow rays, so nothing casts a shadow", view.has_no_shadows);
+  table.add("--integrator", fmt::format("{}", fmt::join(integrator_names(), "|")),
+            "Method that computes light. whitted: the light of the environment reaches every point. direct: objects "
+            "also block the light of the environment, which gives soft shadows and takes more samples [whitted]",
+            [&](const OptionValues& w) { view.integrator = read_name<Integrator>(w, integrator_names()); });
   table.add("--lights-off", "INDICES", "Indices of lights to switch off, counted from 0 and separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
   add_look_options(table, view.look);

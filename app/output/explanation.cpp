@@ -51,8 +51,9 @@ OrderedJson json_of_part(const Hit& hit) {
 }
 
 OrderedJson json_of_part(const ExplainedSource& source, const Scene& scene) {
-  OrderedJson json = {{"light", source.light},
-                      {"name", scene.lights[source.light].name},
+  const bool is_sky = source.light == ExplainedSource::kSky;
+  OrderedJson json = {{"light", is_sky ? OrderedJson("environment") : OrderedJson(source.light)},
+                      {"name", is_sky ? std::string() : scene.lights[source.light].name},
                       {"visible", source.is_visible()},
                       {"contribution", json_of_part(source.contribution)},
                       {"shadow_ray", nullptr}};
@@ -122,7 +123,9 @@ std::string text_of(const Hit& hit, const Scene& scene) {
 }
 
 std::string text_of(const ExplainedSource& source, const Scene& scene) {
-  const std::string name = with_name(fmt::format("light {}", source.light), scene.lights[source.light].name);
+  const bool is_sky = source.light == ExplainedSource::kSky;
+  const std::string name = is_sky ? std::string("the environment")
+                                  : with_name(fmt::format("light {}", source.light), scene.lights[source.light].name);
   if (source.is_visible()) return fmt::format("{}: visible, adds {}", name, text_of(source.contribution));
   if (!source.shadow_ray) return name + ": adds nothing from where it is";
   return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));

@@ -165,6 +165,7 @@ void Viewer::show_scene(OpenedScene opened) {
   if (is_first) {
     switches_.has_shadows = view.mode.has_shadows;
     switches_.debug_view = view.mode.debug_view;
+    switches_.integrator = view.mode.integrator;
     window_.resize(view.size);
   } else {
     switches_.scene.lights_off.clear();

@@ -132,7 +132,7 @@ class Viewer {
   bool has_shown_pose() const { return !clock_.is_playing() || !traced_ || traced_->picture().shown(); }
   /// Moves the clock, and logs how many poses it has shown when it stops, if verbose.
   void move_time(double now_s);
-  RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows}; }
+  RenderMode asked_mode() const { return {switches_.debug_view, switches_.has_shadows, switches_.integrator}; }
   PictureRequest request() const;
   /// Returns whether promin is making a picture in a mode that differs from the mode of the shown picture.
   bool awaits_mode() const;

@@ -9,6 +9,7 @@
 #include "device/device.h"
 #include "device_scene/lobe_table.h"
 #include "promin/error.h"
+#include "promin/explain.h"
 #include "scene/layers.h"
 
 namespace promin {
@@ -68,6 +69,11 @@ std::vector<uvec4> make_tables(std::span<const Material> materials) {
 
 bool are_skies_equal(const Environment& a, const Environment& b) {
   return a.sky == b.sky && a.rotation == b.rotation && a.intensity == b.intensity;
+}
+
+/// Returns whether the environment lights objects.
+bool gives_light(const Environment& environment) {
+  return environment.has_sky() ? environment.intensity > 0.0F : environment.ambient != vec3(0.0F);
 }
 
 /// At least the largest alignment that Vulkan allows a device to require for a texel view, in bytes.
@@ -140,6 +146,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   Tail tail{std::make_shared<const PackedMaterials>(pack_materials(shading.materials)),
             lobe_tables_for(shading.materials), std::make_shared<const PackedSky>(pack_sky(shading.environment)),
             pack_lights(shading.lights)};
+  put_sky_light(tail, shading.environment);
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : {surfaces, normals, colors, uvs, tangents, image_words}) write(*shading_, placed);
   write_tail(std::move(tail));
@@ -156,13 +163,16 @@ void DeviceScene::set_materials(std::span<const Material> materials) {
 void DeviceScene::set_lights(std::span<const Light> lights) {
   Tail tail = tail_;
   tail.lights = pack_lights(lights);
+  put_sky_light(tail, environment_);
   write_tail(std::move(tail));
 }
 
 void DeviceScene::set_environment(const Environment& environment) {
-  if (!are_skies_equal(environment, environment_)) {
+  const bool is_new_sky = !are_skies_equal(environment, environment_);
+  if (is_new_sky || gives_light(environment) != gives_light(environment_)) {
     Tail tail = tail_;
-    tail.sky = std::make_shared<const PackedSky>(pack_sky(environment));
+    if (is_new_sky) tail.sky = std::make_shared<const PackedSky>(pack_sky(environment));
+    put_sky_light(tail, environment);
     write_tail(std::move(tail));
   }
   take_colors(environment);
@@ -173,6 +183,19 @@ std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_tables_for(std::span
   // The tables are the same for all scenes, so existing tables are not written again.
   if (tables == *tail_.lobe_tables) return tail_.lobe_tables;
   return std::make_shared<const std::vector<uvec4>>(std::move(tables));
+}
+
+void DeviceScene::put_sky_light(Tail& tail, const Environment& environment) {
+  PackedLights& lights = tail.lights;
+  if (!lights.numbers.empty() && lights.numbers.back() == ExplainedSource::kSky) {
+    lights.records.pop_back();
+    lights.numbers.pop_back();
+  }
+  if (!gives_light(environment)) return;
+  layout::LightRecord record{};
+  record.kind = uvec4(layout::LIGHT_SKY, tail.sky->pyramid_levels, 0, tail.sky->first_of_pyramid);
+  lights.records.push_back(record);
+  lights.numbers.push_back(ExplainedSource::kSky);
 }
 
 void DeviceScene::take_colors(const Environment& environment) {
@@ -275,7 +298,9 @@ void DeviceScene::write_tail(Tail tail) {
     constants_.media.push_back(is_medium ? number : 0);
   }
   constants_.irradiance = tail.sky->irradiance;
-  constants_.light_count = static_cast<uint32_t>(tail.lights.records.size());
+  constants_.source_count = static_cast<uint32_t>(tail.lights.records.size());
+  const bool has_sky_light = !tail.lights.numbers.empty() && tail.lights.numbers.back() == ExplainedSource::kSky;
+  constants_.light_count = constants_.source_count - (has_sky_light ? 1 : 0);
   tail_ = std::move(tail);
 }
 

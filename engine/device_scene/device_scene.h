@@ -43,7 +43,8 @@ class DeviceScene {
 
   /// Returns the constants of pictures and casts that depend on the scene.
   const SceneConstants& constants() const { return constants_; }
-  /// Returns the index in Scene::lights of each light on the device.
+  /// Returns the index in Scene::lights of each source of light on the device; ExplainedSource::kSky for the
+  /// environment, which comes last.
   const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
   uint32_t stack_size() const { return stack_size_; }
   /// Returns whether the tree has more solids than triangles.
@@ -85,6 +86,8 @@ class DeviceScene {
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
   PackedMaterials pack_materials(std::span<const Material> materials) const;
+  /// Adds the environment to the lights as a source, or removes it.
+  static void put_sky_light(Tail& tail, const Environment& environment);
   std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
   /// Copies the changed parts of the tail to the device, or the whole tail to a larger buffer if needed. If this buffer
   /// cannot be created, nothing changes.

@@ -12,8 +12,8 @@
 namespace promin {
 namespace {
 
-uvec4 counts_of(const SceneConstants& scene) {
-  return {scene.first_unbounded, scene.unbounded_count, scene.light_count, layout::LOOP_CHECK_TURNS};
+uvec4 counts_of(const SceneConstants& scene, uint32_t sources) {
+  return {scene.first_unbounded, scene.unbounded_count, sources, layout::LOOP_CHECK_TURNS};
 }
 
 /// Returns the media around the eye, in the form in which shaders/shade/glass.glsl stores the media that contain a ray.
@@ -79,12 +79,13 @@ layout::ViewConstants make_cast_constants(const SceneConstants& scene) {
 layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,
                                     const TileRange& range) {
   const uvec2 size = window.hi - window.lo;
+  const bool is_direct = view.mode.integrator == Integrator::kDirect;
   const uint32_t is_orthographic = view.camera.projection == Projection::kOrthographic ? 1 : 0;
   return {.range = uvec4(range.first_block, range.end_block, range.sample, view.max_depth),
           .window = uvec4(window.lo, size),
           .sampling = uvec4(view.samples_per_pixel, std::bit_cast<uint32_t>(range.sample_point.x),
                             divide_up(size.x, layout::BLOCK_SIZE), is_orthographic),
-          .counts = counts_of(scene),
+          .counts = counts_of(scene, is_direct ? scene.source_count : scene.light_count),
           // Kernels with glass may also trace scenes without glass, which have no limits.
           .outcome = uvec4(0, scene.has_glass ? layout::MOST_TREE_RAYS : ~0U,
                            std::bit_cast<uint32_t>(scene.has_glass ? layout::LEAST_TREE_WEIGHT : 0.0F),
@@ -95,7 +96,7 @@ layout::Dispatch make_cast_dispatch(const SceneConstants& scene, uint32_t first_
   return {.range = uvec4(first_ray, end_ray, 0, 0),
           .window = uvec4(0),
           .sampling = uvec4(0),
-          .counts = counts_of(scene),
+          .counts = counts_of(scene, 0),
           .outcome = uvec4(0)};
 }
 

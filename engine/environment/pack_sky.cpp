@@ -12,6 +12,7 @@
 #include "environment/octahedron.h"
 #include "environment/shrink_panorama.h"
 #include "environment/sky_map.h"
+#include "environment/sky_pyramid.h"
 #include "environment/sky_radiance.h"
 #include "shared/layout.h"
 
@@ -53,6 +54,15 @@ uint32_t side_of(const Environment& environment) {
     }
   };
   return std::visit(Side(), environment.sky);
+}
+
+/// Returns the number of levels of the pyramid. Smooth skies need squares of a few degrees. A panorama may have a sun,
+/// so its squares are its texels.
+uint32_t pyramid_levels_of(const Environment& environment) {
+  constexpr uint32_t kSmoothLevels = 6;
+  const auto side_bits = static_cast<uint32_t>(std::bit_width(side_of(environment)));
+  if (side_bits == 0) return 0;
+  return std::holds_alternative<Panorama>(environment.sky) ? side_bits - 1 : kSmoothLevels;
 }
 
 /// Returns the mean radiance of each texel, from `count` x `count` lookups in the texel.
@@ -225,6 +235,10 @@ PackedSky pack_sky(const Environment& environment, unsigned thread_count) {
     const std::vector<LobeSample> lobe = sample_lobe(kLevels[level].roughness, factor * kLobeSamples[level], maps);
     append(blur(maps, side_of_level(packed.side, level), lobe, thread_count), packed.texels);
   }
+  packed.first_of_pyramid = static_cast<uint32_t>(packed.texels.size());
+  packed.pyramid_levels = pyramid_levels_of(environment);
+  const std::vector<uvec4> pyramid = make_sky_pyramid(maps.front(), packed.pyramid_levels);
+  packed.texels.insert(packed.texels.end(), pyramid.begin(), pyramid.end());
   return packed;
 }
 
@@ -236,6 +250,8 @@ uint64_t packed_sky_bytes(const Environment& environment) {
     const uint64_t side = side_of_level(sharpest, level);
     entries += (side + 1) * (side + 2);
   }
+  // A pyramid of n levels has 1 + 4 + ... + 4^(n - 1) entries.
+  entries += ((uint64_t{1} << (2 * pyramid_levels_of(environment))) - 1) / 3;
   return entries * sizeof(uvec4);
 }
 

@@ -15,10 +15,14 @@ namespace promin {
 struct PackedSky {
   /// Side of the sharpest level in texels, a power of two from 128 to 512; 0 if there is no sky.
   uint32_t side = 0;
-  /// The levels of shaders/shade/sky_levels.def, one after the other. A level has side + 2 rows of side + 1 entries:
-  /// its texels with a border of one texel (environment/sky_map.h). An entry has two neighbouring texels of a row. A
-  /// texel is three half floats, stored from the lowest bits on.
+  /// The levels of shaders/shade/sky_levels.def, one after the other, then the pyramid. A level has side + 2 rows of
+  /// side + 1 entries: its texels with a border of one texel (environment/sky_map.h). An entry has two neighbouring
+  /// texels of a row. A texel is three half floats, stored from the lowest bits on.
   std::vector<glm::uvec4> texels;
+  /// The pyramid that follows the levels in `texels` (environment/sky_pyramid.h): its first entry and its number of
+  /// levels.
+  uint32_t first_of_pyramid = 0;
+  uint32_t pyramid_levels = 0;
   /// Coefficients of the irradiance divided by pi; w is 0. For the unit normal (x, y, z) they are the coefficients of
   /// 1, y, z, x, xy, yz, 3zz - 1, zx and xx - yy.
   std::array<vec4, 9> irradiance{};

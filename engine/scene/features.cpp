@@ -197,15 +197,19 @@ std::vector<bool> find_shown_materials(std::span<const world::Object> objects, s
   return is_shown;
 }
 
-FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, FeatureMask environment,
-                             uint64_t primitive_count) {
-  FeatureMask features = geometry | materials | lights | environment;
-  if (lights.is_empty()) return features.without(FEATURE_SPECULAR);
+bool casts_shadows(FeatureMask geometry, uint64_t primitive_count) {
   // A single flat primitive casts no shadow. A solid casts shadows on its own inside.
   FeatureMask solids;
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) solids |= FEATURE_##FEATURE;
 #include "promin/kinds/primitives.def"
-  if (primitive_count > 1 || geometry.has_any(solids)) features |= FEATURE_SHADOWS;
+  return primitive_count > 1 || geometry.has_any(solids);
+}
+
+FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, FeatureMask environment,
+                             uint64_t primitive_count) {
+  FeatureMask features = geometry | materials | lights | environment;
+  if (lights.is_empty()) return features.without(FEATURE_SPECULAR);
+  if (casts_shadows(geometry, primitive_count)) features |= FEATURE_SHADOWS;
   return features;
 }
 

@@ -33,6 +33,9 @@ std::vector<bool> find_shown_materials(std::span<const world::Object> objects, s
 FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, FeatureMask lights, FeatureMask environment,
                              uint64_t primitive_count);
 
+/// Returns whether this geometry may cast a shadow on itself.
+bool casts_shadows(FeatureMask geometry, uint64_t primitive_count);
+
 /// Returns the features that a picture of this scene needs, without those of its camera and depth.
 FeatureMask features_of(const world::Scene& scene);
 

@@ -37,6 +37,11 @@ std::span<const std::string_view> depth_kind_names() {
   return kNames;
 }
 
+std::span<const std::string_view> integrator_names() {
+  static constexpr std::array kNames = {std::string_view("whitted"), std::string_view("direct")};
+  return kNames;
+}
+
 float default_width(PixelFilter filter) {
   static constexpr std::array kWidths = {
 #define PROMIN_PIXEL_FILTER(ENUMERATOR, NAME, WIDTH) static_cast<float>(WIDTH),

@@ -47,6 +47,7 @@ inline Names names_of(DepthKind /*any*/) { return depth_kind_names(); }
 inline Names names_of(ToneMapping /*any*/) { return tone_mapping_names(); }
 inline Names names_of(PixelFilter /*any*/) { return pixel_filter_names(); }
 inline Names names_of(DebugView /*any*/) { return debug_view_names(); }
+inline Names names_of(Integrator /*any*/) { return integrator_names(); }
 inline Names names_of(ExrCompression /*any*/) { return exr_compression_names(); }
 // clang-format on
 
@@ -119,7 +120,7 @@ PROMIN_MEMBERS(DisplayTransform, exposure_ev, tone_mapping, dithers)
 PROMIN_MEMBERS(ExrOptions, is_half, compression)
 PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, display, max_samples)
 PROMIN_MEMBERS(PixelWindow, lo, hi)
-PROMIN_MEMBERS(RenderMode, debug_view, has_shadows)
+PROMIN_MEMBERS(RenderMode, debug_view, has_shadows, integrator)
 PROMIN_MEMBERS(View, camera, size, crop, samples_per_pixel, error_target, depth_kind, filter, filter_width, max_depth,
                seed, mode)
 PROMIN_MEMBERS(Sphere, center, radius)

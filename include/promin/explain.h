@@ -12,7 +12,10 @@ namespace promin {
 
 /// A light's contribution at a hit point.
 struct ExplainedSource {
-  /// Index into Scene::lights.
+  /// The value of `light` for the light of the environment, with Integrator::kDirect.
+  static constexpr uint32_t kSky = 0xFFFFFFFF;
+
+  /// Index into Scene::lights, or kSky.
   uint32_t light = 0;
   /// The ray from the hit point to the light. Empty if the light contributes nothing even when nothing blocks it, or if
   /// nothing in the scene can cast a shadow.

@@ -23,12 +23,22 @@ struct PixelWindow {
   uvec2 hi{0};
 };
 
+/// The method that computes the light of a picture. kWhitted is Whitted's: lights cast shadows, and the light of the
+/// environment reaches every point. With kDirect objects also block the light of the environment (docs/model.md, "Skies
+/// with shadows").
+enum class Integrator : uint32_t { kWhitted, kDirect };
+
+/// Returns the names to display, indexed by Integrator. The first name is "whitted".
+PROMIN_EXPORT std::span<const std::string_view> integrator_names();
+
 /// The settings of a picture that are compiled into a pipeline. Each mode has its own pipeline.
 struct RenderMode {
   /// The property that the picture shows; light by default.
   DebugView debug_view = DebugView::kNone;
   /// True if lights cast shadows. Without shadows every light reaches every point that faces it.
   bool has_shadows = true;
+  /// The method that computes light.
+  Integrator integrator = Integrator::kWhitted;
 
   /// Returns whether both modes need the same pipeline.
   bool operator==(const RenderMode&) const = default;

@@ -49,6 +49,7 @@ nb::dict list_choices() {
   choices["attenuation"] = write_names(names_of(Attenuation()));
   choices["builder"] = write_names(builder_names());
   choices["compression"] = write_names(names_of(ExrCompression()));
+  choices["integrator"] = write_names(names_of(Integrator()));
   choices["debug_view"] = write_names(names_of(DebugView()));
   choices["depth"] = write_names(names_of(DepthKind()));
   choices["error_in"] = write_names(work::error_space_names());

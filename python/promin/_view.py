@@ -30,6 +30,7 @@ Size = Union[tuple[int, int], Sequence[int], int, str, None]
 Numbers = Union[Sequence[float], NDArray[Any]]
 """Three numbers."""
 
+INTEGRATORS = _promin.list_choices()["integrator"]
 _ERROR_SPACES = _promin.list_choices()["error_in"]
 
 
@@ -80,6 +81,9 @@ class View:
     "steps"."""
     shadows: bool = True
     """True if lights cast shadows."""
+    integrator: str | None = None
+    """The method that computes light: "whitted", or "direct", with which objects also block the light of the
+    environment. None: "whitted"."""
 
     # The following fields change the camera, as the options of `promin render` with the same names do.
 
@@ -186,7 +190,8 @@ def begins_with_target(view: View) -> bool:
 
 def mode_of(view: View) -> dict[str, Any]:
     """Returns the settings of the view that are compiled into the pipeline."""
-    return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows)}
+    integrator = INTEGRATORS[0] if view.integrator is None else view.integrator
+    return {"debug_view": view.debug_view, "has_shadows": bool(view.shadows), "integrator": integrator}
 
 
 def size_of(view: View) -> tuple[int, ...]:

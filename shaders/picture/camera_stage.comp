@@ -164,6 +164,48 @@ void arrive() {
   } while (at < PACKET_SIZE);
 }
 
+// With FEATURE_SKY_LIGHT: does the same as aim_at_source() for one pixel after the other, like arrive(), because
+// choosing a direction of the sky takes a loop.
+void aim_one_by_one(LightRecord light, uint source) {
+  uint at = 0u;
+  do {
+    Path path = paths[0];
+    ShadingPoint point = points[0];
+    bool takes_part = is_lit[0];
+    uvec2 id = sample_ids[0];
+    Ray ray = packet[0];
+    [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
+      if (i != at) continue;
+      path = paths[i];
+      point = points[i];
+      takes_part = is_lit[i];
+      id = sample_ids[i];
+      ray = packet[i];
+    }
+    ray.tmax = -1.0;
+    vec3 contribution = vec3(0.0);
+    if (takes_part) {
+      choose_sample(id, FIRST_LIGHT_PAIR + source);
+      LightRecord sampled_light = light;
+      LightSample sampled = sample_light_or_lobe(point, -path.direction, sampled_light);
+      contribution = unshadowed_contribution(point, -path.direction, sampled_light, sampled);
+      if (has(FEATURE_SHADOWS) && max_abs(contribution) > 0.0) {
+        ray = shadow_ray(point, sampled_light, sampled);
+        ++ray_count.y;
+      }
+    }
+    [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+      if (i != at) continue;
+      contributions[i] = contribution;
+      packet[i] = ray;
+      ways[i] = light_way(path.media);
+      blockers[i].primitive = NO_PRIMITIVE;
+      forget_passed(i);
+    }
+    ++at;
+  } while (at < PACKET_SIZE);
+}
+
 // Computes the contributions of one light source, and the packet of the shadow rays for it.
 void aim_at_source(LightRecord light, uint source) {
   [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
@@ -375,7 +417,11 @@ void trace_pixels() {
   bool aims = false;
   do {
     do {
-      if (aims) aim_at_source(load_light(VIEW.first_index.y + source), source);
+      if (has(FEATURE_SKY_LIGHT)) {
+        if (aims) aim_one_by_one(load_light(VIEW.first_index.y + source), source);
+      } else {
+        if (aims) aim_at_source(load_light(VIEW.first_index.y + source), source);
+      }
       aims = false;
       // If surfaces blend, shadow rays also need the nearest hit.
       trace_packet(!is_first_turn && PASSES == 0u);

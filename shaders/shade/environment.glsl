@@ -87,8 +87,10 @@ vec3 environment_radiance(vec3 direction, float roughness) {
 }
 
 // Returns the light of all directions, weighted by the cosine to the unit normal and divided by pi. The result is
-// clamped to 0, because the few coefficients oscillate around a sun.
+// clamped to 0, because the few coefficients oscillate around a sun. With FEATURE_SKY_LIGHT this light is that of a
+// source.
 vec3 ambient_at(vec3 normal) {
+  if (has(FEATURE_SKY_LIGHT)) return vec3(0.0);
   if (!has(FEATURE_SKY)) return VIEW.ambient.xyz;
   precise float xy = normal.x * normal.y;
   precise float yz = normal.y * normal.z;

@@ -65,5 +65,5 @@ Ray shadow_ray(vec3 origin, LightRecord light) {
 }
 
 uint source_count() {
-  return LIGHT_KIND_COUNT > 0u ? light_count() : 0u;
+  return LIGHT_KIND_COUNT + FEATURE_BIT(FEATURE_SKY_LIGHT) > 0u ? light_count() : 0u;
 }

@@ -11,6 +11,16 @@
 //   mirror_normal     the unit normal for the direction of the mirror ray
 //   mirror_roughness  the roughness at which a mirror ray that hits nothing sees the environment, or NO_ENVIRONMENT
 
+const float INVERSE_PI = 0.318309886;
+
+// With FEATURE_SKY_LIGHT: the parts of the lobes of the material and of its coat that the current source lights. For the
+// environment, the rest is the part of the mirror ray; for all other sources they are 1. Set by sample_light_or_lobe().
+float lobe_share;
+float coat_share;
+
+// Returns whether a source is the environment.
+bool is_of_sky(LightRecord light) { return LIGHT_KIND_COUNT == 0u || light.kind.x == LIGHT_SKY; }
+
 #include "shade/materials/phong.glsl"
 #include "shade/materials/metallic_roughness.glsl"
 #include "shade/materials/unlit.glsl"

@@ -480,11 +480,18 @@ vec3 choose_from_lobe(vec3 normal, float alpha, vec3 to_eye, vec2 u) {
   return normalize3(direction);
 }
 
+#include "shade/sky_light.glsl"
+
 // Returns a point of a light as sample_light() does. A lobe that is narrower than a round light reflects an image of it,
 // which light sampling alone would see in few samples of large weight. Half of the samples then choose a direction from
 // the lobe. The strength is 1 / density of the mixture (Veach and Guibas, 1995: the balance heuristic), and 0 if the
-// direction misses the light.
-LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, LightRecord light) {
+// direction misses the light. If the light is the environment, its powers are set to the radiance of the direction.
+LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRecord light) {
+  if (has(FEATURE_SKY_LIGHT)) {
+    lobe_share = 1.0;
+    coat_share = 1.0;
+    if (is_of_sky(light)) return sample_sky(point, to_eye, light);
+  }
   if (!has(FEATURE_METALLIC_ROUGHNESS) || model_of(point) != MATERIAL_METALLIC_ROUGHNESS || !is_round(light)) {
     return sample_light(light, point.position);
   }

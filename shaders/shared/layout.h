@@ -218,6 +218,9 @@ LAYOUT_FLOAT LARGEST_SHEEN_SHARE = 2.0f;
 // Number of texels along a side of the coarsest levels of a sky (sky_levels.def, environment.glsl).
 LAYOUT_CONSTANT LEAST_SKY_SIDE = 32u;
 
+// The environment as a source of light, with FEATURE_SKY_LIGHT. Its record follows those of the lights.
+LAYOUT_CONSTANT LIGHT_SKY = 6u;
+
 struct LightRecord {
   vec4 position;   // w = 1 / range
   vec4 direction;  // the direction in which the light travels; w = cosine of a spot light's outer angle
@@ -226,7 +229,9 @@ struct LightRecord {
   uvec4 kind;  // x = LIGHT_*, y = 1 if the power decreases with distance; z = bits of the size: the radius of a
                // point or spot light, the squared sine of half the angle of a directional light; 0 for a light without
                // size. Flat lights (lights/area.glsl): z = bits of the z of the direction of the width, whose x and y
-               // are diffuse.w and specular.w; direction.w and position.w = half of the width and of the height
+               // are diffuse.w and specular.w; direction.w and position.w = half of the width and of the height.
+               // LIGHT_SKY uses no other member: y = number of levels of the sky's pyramid, w = its first entry after
+               // that of the sky
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 

@@ -116,9 +116,10 @@ class KernelTest : public testing::TestWithParam<Kernel> {};
 // of their hash.
 TEST(KernelsTest, OnlyFeaturesWithSamplePointsHaveTheirHash) {
   constexpr uint32_t kOfHash = 0xB82F1E52;
-  constexpr uint64_t kSamples = uint64_t{1} << 55 | uint64_t{1} << 39;
+  constexpr uint64_t kSamples = uint64_t{1} << 55 | uint64_t{1} << 39 | uint64_t{1} << 24;
   static_assert(static_cast<uint32_t>(layout::FEATURE_SAMPLED_LIGHT) == 55);
   static_assert(static_cast<uint32_t>(layout::FEATURE_LENS) == 39);
+  static_assert(static_cast<uint32_t>(layout::FEATURE_SKY_LIGHT) == 24);
   const auto has_hash = [&](std::span<const uint32_t> spirv, uint64_t mask) {
     const std::vector<uint32_t> module = specialize(spirv, constants_of(mask, 1, 0));
     return std::ranges::count(module, kOfHash) > 0;
@@ -129,6 +130,16 @@ TEST(KernelsTest, OnlyFeaturesWithSamplePointsHaveTheirHash) {
     EXPECT_FALSE(has_hash(spirv, ~kSamples));
   }
   EXPECT_FALSE(has_hash(k_trace_shadow_rays_spirv, ~uint64_t{0}));
+}
+
+// A kernel for Integrator::kWhitted has nothing of the choice of directions to the sky: not the bits of 4.25.
+TEST(KernelsTest, OnlySkiesWithShadowsChooseDirections) {
+  constexpr uint32_t kOfChoice = 0x40880000;
+  for (const auto& spirv :
+       {std::span<const uint32_t>(k_camera_stage_spirv), std::span<const uint32_t>(k_follow_paths_spirv)}) {
+    EXPECT_GT(std::ranges::count(specialize(spirv, constants_of(~uint64_t{0}, 1, 0)), kOfChoice), 0);
+    EXPECT_EQ(std::ranges::count(specialize(spirv, constants_of(~(uint64_t{1} << 24), 1, 0)), kOfChoice), 0);
+  }
 }
 
 // Variables of code that is never reached are not left in a module.
@@ -188,14 +199,14 @@ TEST(SpecializeTest, UsesOfOneSceneShareTheKernelsThatDoNotDiffer) {
   for (uint64_t debug_view = 1; debug_view <= layout::DEBUG_VIEW_STEPS; ++debug_view) {
     masks.push_back(kScene | debug_view << (32 + layout::DEBUG_VIEW_SHIFT));
   }
-  ASSERT_EQ(masks.size(), 16U);
+  ASSERT_EQ(masks.size(), 17U);
   const auto count_kernels = [&](std::span<const uint32_t> spirv) {
     std::set<std::vector<uint32_t>> kernels;
     for (const uint64_t mask : masks) kernels.insert(specialize(spirv, constants_of(mask, 1, 0)));
     return kernels.size();
   };
-  EXPECT_EQ(count_kernels(k_camera_stage_spirv), 16U);
-  EXPECT_EQ(count_kernels(k_follow_paths_spirv), 7U);
+  EXPECT_EQ(count_kernels(k_camera_stage_spirv), 17U);
+  EXPECT_EQ(count_kernels(k_follow_paths_spirv), 8U);
   EXPECT_EQ(count_kernels(k_trace_shadow_rays_spirv), 3U);
   EXPECT_EQ(count_kernels(k_list_rays_spirv), 1U);
   EXPECT_EQ(count_kernels(k_place_rays_spirv), 1U);

@@ -105,6 +105,12 @@ FAULTS = {
     "flat_cosine_left_out": {"shade/lights/area.glsl": [(r"area \* z / \(d2 \* sqrt\(d2\)\)", "area / d2")]},
     "flat_angle_off": {"shade/lights/area.glsl": [(r"strength = solid_angle;", "strength = 1.02 * solid_angle;")]},
     "lobe_density_off": {"shade/shading.glsl": [(r"6\.28318531 \* seen\.cap", "6.4 * seen.cap")]},
+    # These are faults of the environment as a source (tests/gpu/sky_light_test.cpp).
+    "sky_density_off": {"shade/sky_light.glsl": [(r"/ \(4\.0 \* side", "/ (4.08 * side")]},
+    "dome_density_off": {"shade/sky_light.glsl": [(r"by_sky \* INVERSE_PI", "1.02 * \\g<0>")]},
+    "sky_lobes_left_out": {"shade/sky_light.glsl": [(r"density \+= of_material;", ";")]},
+    "sky_squares_swapped": {"shade/sky_light.glsl": [(r"\(is_right \? 1u : 0u\)", "(is_right ? 0u : 1u)")]},
+    "sky_horizon_hard": {"shade/sky_light.glsl": [(r"SHARE_OF_WIDEST \* widest", "0.0"), (r"USUAL_SQUARE\)", "1e-9)")]},
     "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},
     # These are faults of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},

@@ -93,6 +93,9 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
     command += fmt::format(" --shading {}", debug_view_names()[static_cast<size_t>(view.mode.debug_view)]);
   }
   if (!scene.has_shadows) command += " --no-shadows";
+  if (view.mode.integrator != Integrator::kWhitted) {
+    command += fmt::format(" --integrator {}", integrator_names()[static_cast<size_t>(view.mode.integrator)]);
+  }
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));
   command += options_of(scene.look) + options_of(scene.environment);
   if (scene.motion.time_s) command += fmt::format(" --time {}", *scene.motion.time_s);

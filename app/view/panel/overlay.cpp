@@ -162,6 +162,10 @@ void show_switches(const OverlayContent& content, Switches& switches) {
   ImGui::Checkbox("mirrors", &switches.has_mirrors);
   ImGui::SameLine();
   ImGui::Checkbox("pause", &switches.is_paused);
+  bool is_direct = switches.integrator == Integrator::kDirect;
+  if (ImGui::Checkbox("shadows of the sky", &is_direct)) {
+    switches.integrator = is_direct ? Integrator::kDirect : Integrator::kWhitted;
+  }
   auto depth = static_cast<int>(switches.max_depth);
   if (ImGui::SliderInt("mirrors in mirrors", &depth, 0, 20)) {
     switches.max_depth = static_cast<uint32_t>(std::max(0, depth));

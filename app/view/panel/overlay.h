@@ -44,6 +44,7 @@ struct Switches {
   bool has_mirrors = true;
   bool has_shadows = true;
   DebugView debug_view = DebugView::kNone;
+  Integrator integrator = Integrator::kWhitted;
   /// The exposure in stops; empty if the user has not chosen one, and the scene's own is used.
   std::optional<float> exposure_ev;
   /// The scale, in the form that ProgressivePicture::fix_scale() takes.

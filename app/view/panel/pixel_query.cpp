@@ -21,7 +21,8 @@ Explanation PixelQuery::explain(Place& place, const ShownScene& scene, const Vie
   const std::lock_guard lock(place.one_at_a_time);
   if (!place.apart.scene) place.apart = scene.set_apart();
   const SceneOnDevice& on_device = *scene.on_device;
-  const FeatureMask features = on_device.features({.has_shadows = view.mode.has_shadows});
+  const FeatureMask features =
+      on_device.features({.has_shadows = view.mode.has_shadows, .integrator = view.mode.integrator});
   Explanation explanation;
   gpu::translate_vulkan_errors([&] {
     explanation = explain_pixel(*place.apart.device, place.apart.scene, on_device.numbers(), features, view, pixel);

@@ -77,7 +77,9 @@ class ExplanationTree {
   }
 
   void show_source(const ExplainedSource& source) const {
-    const std::string name = name_or(scene_.lights[source.light].name, "light", source.light);
+    const bool is_sky = source.light == ExplainedSource::kSky;
+    const std::string name =
+        is_sky ? std::string("the environment") : name_or(scene_.lights[source.light].name, "light", source.light);
     if (source.is_visible()) return show_row(name, source.contribution);
     if (!source.shadow_ray) return show_row(name + " does not reach it", source.contribution);
     const auto blocker = static_cast<uint32_t>(std::max(source.blocker.object, 0));

@@ -286,12 +286,13 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   }
   shown.host = std::move(host);
   shown.first.scene = shown.on_device->device_scene();
-  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode.has_shadows);
+  if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode);
   return std::make_shared<ShownScene>(std::move(shown));
 }
 
-float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOptions options, bool has_shadows) const {
-  options.mode = {.has_shadows = has_shadows};
+float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOptions options,
+                                    const RenderMode& mode) const {
+  options.mode = {.has_shadows = mode.has_shadows, .integrator = mode.integrator};
   options.aovs.object = true;
   options.aovs.unlit = mixes_unlit(*shown.scene, shown.environment());
   options.repack = {};
@@ -318,10 +319,13 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, 
   const std::vector<Light> lights = scene->lights();
   const Environment environment = scene->environment();
   std::unique_ptr<TracedPicture> picture;
+  RenderMode mode = request.mode;
+  // A draft has no shadows, so a sky of single samples would only be noise.
+  if (request.is_draft) mode.integrator = Integrator::kWhitted;
   gpu::translate_vulkan_errors([&] {
     FeatureMask features =
-        scene->on_device->features_with(light_features(lights), environment_features(environment), request.mode);
-    if (shows_unlit(features, request.mode.debug_view) &&
+        scene->on_device->features_with(light_features(lights), environment_features(environment), mode);
+    if (shows_unlit(features, mode.debug_view) &&
         shows_unlit_apart(*scene->scene, environment, look_, scene->display)) {
       features |= layout::FEATURE_UNLIT_SHARE;
     }
@@ -329,14 +333,14 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, 
     FilmOptions film_options;
     // A draft is replaced so soon that longer compilation is not worthwhile.
     if (request.is_draft) film_options.expected_samples = 0;
-    const bool is_light = request.mode.debug_view == DebugView::kNone;
+    const bool is_light = mode.debug_view == DebugView::kNone;
     picture = std::make_unique<TracedPicture>(
         std::move(on), features, budget_ms_, is_light ? scene->display : DisplayTransform(),
         [scene] { return scene->set_apart(); }, film_options);
     picture->resize(request.size);
     picture->warm_up();
   });
-  return {std::move(scene), request.mode, request.is_draft, std::move(picture)};
+  return {std::move(scene), mode, request.is_draft, std::move(picture)};
 }
 
 }  // namespace promin::app

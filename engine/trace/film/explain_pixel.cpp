@@ -23,7 +23,7 @@ constexpr uint64_t kMostLogBytes = 64U << 20;
 uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View& view) {
   const uint32_t layers = features.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
   const uint64_t steps = most_steps(view.max_depth, refracted_rays(features), layers);
-  const uint64_t entries = (1 + steps) * (uint64_t{1} + scene.constants().light_count);
+  const uint64_t entries = (1 + steps) * (uint64_t{1} + scene.constants().source_count);
   if (entries > kMostLogBytes / sizeof(layout::RayLog)) {
     throw RunError({"explain.rays.many",
                     "a pixel may need " + std::to_string(entries) + " rays and light sources, too many to explain", "",

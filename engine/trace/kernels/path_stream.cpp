@@ -51,15 +51,15 @@ void wait_for_last(const vk::raii::CommandBuffer& commands) {
 
 }  // namespace
 
-StreamShape StreamShape::of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth) {
+StreamShape StreamShape::of(uint32_t source_count, FeatureMask features, uint32_t most_paths, uint32_t depth) {
   StreamShape shape;
   shape.has_glass = features.has_any(layout::FEATURE_GLASS);
   shape.scatters_through = features.has_any(layout::FEATURE_DIFFUSE_TRANSMISSION);
   shape.samples_lights = features.has_any(layout::FEATURE_SAMPLED_LIGHT);
   // At each bounce the mirror ray is followed first, so only refracted rays wait.
   shape.waiting_rays = std::min(refracted_rays(features) * depth, layout::MOST_TREE_RAYS);
-  shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(light_count, layout::STREAM_SOURCES) : 0;
-  shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(light_count, shape.sources);
+  shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(source_count, layout::STREAM_SOURCES) : 0;
+  shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(source_count, shape.sources);
   const auto fitting = static_cast<uint32_t>(kMostBytes / shape.path_bytes());
   shape.most_paths = std::min(most_paths, fitting) / kLanes * kLanes;
   return shape;

@@ -19,7 +19,7 @@ namespace promin {
 struct StreamShape {
   /// Returns the stream for a scene with this number of lights and at most this number of paths, within kMostBytes.
   /// With glass it is for pictures of this depth.
-  static StreamShape of(uint32_t light_count, FeatureMask features, uint32_t most_paths, uint32_t depth);
+  static StreamShape of(uint32_t source_count, FeatureMask features, uint32_t most_paths, uint32_t depth);
 
   /// Returns the number of bytes of a path: its records, its shadow rays, and its entries in the lists.
   uint64_t path_bytes() const;

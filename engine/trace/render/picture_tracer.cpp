@@ -327,7 +327,7 @@ WorkDone PictureTracer::work_done() const {
 }
 
 Explanation PictureTracer::explain(const View& view, const uvec2& pixel) const {
-  FeatureMask features = scene_.features({.has_shadows = view.mode.has_shadows});
+  FeatureMask features = scene_.features({.has_shadows = view.mode.has_shadows, .integrator = view.mode.integrator});
   if (has_lens(view.camera)) features |= layout::FEATURE_LENS;
   return explain_pixel(device_, scene_.device_scene(), scene_.numbers(), features, view, pixel);
 }

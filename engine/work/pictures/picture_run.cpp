@@ -127,7 +127,7 @@ TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t e
   if (options.has_all_features) result.more_features = all_features();
   // A run with a time limit begins with a picture of one sample per pixel.
   result.has_error_target = options.error.target && !options.error.time_limit_s;
-  result.mode = {options.view.debug_view, !options.view.has_no_shadows};
+  result.mode = mode_of(options.view);
   result.has_lens = options.view.aperture_radius.value_or(0.0) > 0.0;
   result.aovs = options.aovs;
   // The average exposure only uses pixels with a hit, so it needs this AOV.

@@ -51,6 +51,7 @@ Json json_of_view(const View& view, const DisplayTransform& display) {
                {"filter", name_of(view.filter)}};
 #define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) json[#NAME] = view.NAME;
 #include "work/spec/view_numbers.def"
+  json["integrator"] = integrator_names()[static_cast<size_t>(view.mode.integrator)];
   json["exposure_ev"] = display.exposure_ev;
   json["tone_mapping"] = name_of(display.tone_mapping);
   if (view.crop) json["crop"] = {view.crop->lo.x, view.crop->lo.y, view.crop->hi.x, view.crop->hi.y};

@@ -58,6 +58,10 @@ std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
   return sides == uvec2(0) ? usual : complete_size(sides, usual);
 }
 
+RenderMode mode_of(const ViewOptions& options) {
+  return {options.debug_view, !options.has_no_shadows, options.integrator.value_or(Integrator::kWhitted)};
+}
+
 void put_lens(const ViewOptions& options, Camera& camera) {
   if (options.aperture_radius) camera.aperture_radius = static_cast<float>(*options.aperture_radius);
   if (options.focus_distance) camera.focus_distance = static_cast<float>(*options.focus_distance);
@@ -80,7 +84,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Messages& c
   view.filter = options.filter;
 #define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) view.NAME = options.NAME.value_or(USUAL);
 #include "work/spec/view_numbers.def"
-  view.mode = {options.debug_view, !options.has_no_shadows};
+  view.mode = mode_of(options);
   view.depth_kind = options.depth_kind;
   return view;
 }

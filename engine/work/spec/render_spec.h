@@ -102,6 +102,7 @@ struct ViewOptions {
   DebugView debug_view = DebugView::kNone;
   DepthKind depth_kind = DepthKind::kRay;
   bool has_no_shadows = false;
+  std::optional<Integrator> integrator = std::nullopt;
   LookOptions look;
   /// Indices of the scene's lights to switch off.
   std::vector<uint32_t> lights_off;

@@ -159,6 +159,7 @@ void add_view(Table<RenderSpec>& table) {
 #include "work/spec/view_numbers.def"
   table.add("shading", PROMIN_AT(view.debug_view), NameOf<DebugView>{debug_view_names()});
   table.add_flag("no_shadows", PROMIN_AT(view.has_no_shadows));
+  table.add("integrator", PROMIN_AT(view.integrator), NameOf<Integrator>{integrator_names()});
   table.add("lights_off", PROMIN_AT(view.lights_off), Indices());
   add_look(table);
   table.add("camera", PROMIN_AT(view.camera), Text(), {.replaces = {"from", "fit", "path"}});

@@ -8,7 +8,6 @@ const float LEAST_COSINE = 0.0009765625;        // 2^-10, the smallest cosine to
 const float LEAST_HALF_VECTOR = 0.000244140625;  // 2^-12; below this, the light comes from behind, as seen from the eye
 const float LEAST_ALPHA = 0.002;                 // the smallest alpha for highlights of sources, which would otherwise
                                                  // be points (glTF B.3.2 forbids 0)
-const float INVERSE_PI = 0.318309886;
 
 #include "shade/sheen.glsl"
 #include "shade/thin_film.glsl"
@@ -156,18 +155,26 @@ vec3 direction_of_lobe(vec3 normal, vec3 geometric_normal, float roughness, vec3
   return normalize3(leaning);
 }
 
+// Returns the fraction of the environment's reflection that own_light does not contain: the part of the mirror ray, if
+// one follows. With FEATURE_SKY_LIGHT, the rest is the light of a source.
+float share_elsewhere(float sharpness, bool follows_mirror) {
+  precise float rest = 1.0 - sharpness;
+  if (has(FEATURE_SKY_LIGHT)) return follows_mirror ? 1.0 : rest;
+  return follows_mirror ? sharpness : 0.0;
+}
+
 // Returns the light of the environment that the coat reflects, without the part that its mirror ray contributes.
 vec3 environment_in_coat(ShadingPoint point, vec3 direction, bool follows_mirror) {
   Coat coat = point.coat;
   vec3 around = environment_radiance(
       direction_of_lobe(coat.normal, point.geometric_normal, coat.roughness, direction), coat.roughness);
-  float sharpness = follows_mirror ? sharpness_of(coat.roughness) : 0.0;
+  float sharpness = share_elsewhere(sharpness_of(coat.roughness), follows_mirror);
   precise vec3 seen = coat.share * (1.0 - sharpness) * point.occlusion * around;
   return seen;
 }
 
 vec3 own_light_metallic_roughness(ShadingPoint point, vec3 direction, bool follows_mirror) {
-  float sharpness = follows_mirror ? sharpness_of(point) : 0.0;
+  float sharpness = share_elsewhere(sharpness_of(point), follows_mirror);
   vec3 around = environment_radiance(
       direction_of_lobe(has(FEATURE_ANISOTROPY) ? point.anisotropy.bent_normal : point.normal, point.geometric_normal,
                         point.material.c.x, direction),
@@ -263,6 +270,7 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
   } else {
     scale = facet_scale(point.normal, point.material.c.x, h, to_eye, cosine);
   }
+  if (has(FEATURE_SKY_LIGHT)) reflected *= lobe_share;
   contribution += reflected * light.specular.xyz * scale;
   if (has(FEATURE_SHEENS)) contribution = contribution_with_sheen(point, h, to_eye, cosine, light, contribution);
   return contribution;
@@ -277,6 +285,7 @@ vec3 contribution_in_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, LightR
   if (!(cosine > 0.0) || size < LEAST_HALF_VECTOR) return vec3(0.0);
   precise vec3 h = sum / size;
   precise vec3 reflected = facet_scale(coat.normal, coat.roughness, h, to_eye, cosine) * light.specular.xyz;
+  if (has(FEATURE_SKY_LIGHT)) reflected *= coat_share;
   return reflected;
 }
 

@@ -11,7 +11,10 @@ vec3 own_light_phong(ShadingPoint point, vec3 direction, bool follows_mirror) {
 vec3 emitted_light_phong(ShadingPoint point) { return point.material.emissive.xyz; }
 
 vec3 contribution_phong(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
-  precise vec3 contribution = point.material.b.xyz * point.color * light.diffuse.xyz * cosine;
+  // The environment's light is ambient, and has no highlight (sample_sky).
+  precise vec3 ambient = INVERSE_PI * point.material.a.xyz;
+  vec3 albedo = has(FEATURE_SKY_LIGHT) && is_of_sky(light) ? ambient : point.material.b.xyz;
+  precise vec3 contribution = albedo * point.color * light.diffuse.xyz * cosine;
   if (has(FEATURE_SPECULAR) && point.material.c.w > 0.0) {
     precise vec3 mirrored = 2.0 * cosine * point.normal - to_light;
     precise float highlight = dot3(mirrored, to_eye);
