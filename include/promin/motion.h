@@ -148,15 +148,15 @@ struct AnimationChannel {
 /// A clip: changes of properties over time.
 struct Animation {
   /// The display name; may be empty.
-  std::string name;
+  std::string name = {};
   /// The time of the last key in seconds.
   double duration_s = 0.0;
   /// The functions of time.
-  std::vector<AnimationSampler> samplers;
+  std::vector<AnimationSampler> samplers = {};
   /// The properties that they change.
-  std::vector<AnimationChannel> channels;
+  std::vector<AnimationChannel> channels = {};
   /// Problems because of which promin refuses to show the animation.
-  std::vector<Problem> problems;
+  std::vector<Problem> problems = {};
 };
 
 /// The connection of an object with nodes and geometries.
