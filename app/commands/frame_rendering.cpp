@@ -40,22 +40,23 @@ void expose_by_first(const RenderSpec& options, const RenderResult& result, RunS
   stats.display.exposure_ev = average_exposure_ev(result.image.pixels, result.aovs.object, result.aovs.unlit);
 }
 
-/// Returns whether a picture is traced by one call, because it is needed as a whole or has a time limit.
+/// Returns whether a picture is traced by one call, because it is needed as a whole, has a time limit, or because each
+/// of its samples has another pose.
 bool is_traced_whole(const RenderSpec& options) {
-  return options.error.time_limit_s || options.view.look.averages_exposure;
+  return options.error.time_limit_s || options.view.look.averages_exposure || options.shutter;
 }
 
 class FrameRendering {
  public:
   FrameRendering(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
-                 const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats, const Films& films,
+                 const gpu::Device& device, const Scene& scene, FrameTracer tracer, RunStats& stats, const Films& films,
                  ProgressCallback on_progress)
       : planned_(planned),
         options_(options),
         limit_s_(limit_s),
         device_(device),
         scene_(scene),
-        renderer_(renderer),
+        tracer_(std::move(tracer)),
         stats_(stats),
         films_(films),
         on_progress_(std::move(on_progress)),
@@ -87,7 +88,7 @@ class FrameRendering {
   PictureRows trace_part(const std::optional<PixelWindow>& part, const ProgressCallback& on_progress) {
     View view = *stats_.view;
     if (part) view.crop = part;
-    TracedFrame traced = trace(renderer_, view, options_, limit_s_, on_progress);
+    TracedFrame traced = tracer_(view, limit_s_, on_progress);
     RenderResult& result = traced.result;
     if (!result.error) {
       stats_.view->error_target.reset();
@@ -169,7 +170,7 @@ class FrameRendering {
   std::optional<double> limit_s_;
   const gpu::Device& device_;
   const Scene& scene_;
-  Renderer& renderer_;
+  FrameTracer tracer_;
   RunStats& stats_;
   const Films& films_;
   ProgressCallback on_progress_;
@@ -188,9 +189,9 @@ class FrameRendering {
 }  // namespace
 
 void render_frame(const PlannedFrame& planned, const RenderSpec& options, const std::optional<double>& limit_s,
-                  const gpu::Device& device, const Scene& scene, Renderer& renderer, RunStats& stats,
+                  const gpu::Device& device, const Scene& scene, const FrameTracer& tracer, RunStats& stats,
                   const Films& films, const ProgressCallback& on_progress) {
-  FrameRendering(planned, options, limit_s, device, scene, renderer, stats, films, on_progress).run();
+  FrameRendering(planned, options, limit_s, device, scene, tracer, stats, films, on_progress).run();
 }
 
 }  // namespace promin::app

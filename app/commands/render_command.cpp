@@ -32,6 +32,7 @@
 #include "work/pictures/film_file.h"
 #include "work/pictures/frame_renderers.h"
 #include "work/pictures/picture_run.h"
+#include "work/pictures/shutter.h"
 #include "work/pictures/tracing_run.h"
 #include "work/spec/check_spec.h"
 
@@ -120,9 +121,11 @@ FilmHeader describe_film(const RenderSpec& options, const std::vector<PlannedFra
 
 /// Renders all frames after loading the scene once. The message of an error names the frame. The pictures of earlier
 /// frames are complete then. A film appears after its last frame.
-void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& options, const Stopwatch& total,
-                   const gpu::Device& device, const Scene& scene, FrameRenderers& renderers, RunStats& stats,
-                   const Console& console) {
+void render_frames(const PictureRun& run, const Stopwatch& total, const gpu::Device& device, FrameRenderers& renderers,
+                   RunStats& stats, const Console& console) {
+  const std::vector<PlannedFrame>& frames = run.frames;
+  const RenderSpec& options = run.options;
+  const Scene& scene = run.scene;
   // A film is incomplete until its last frame. Therefore a signal ends the program only when the film is removed.
   std::optional<DeferredSignals> while_filming;
   Films films;
@@ -150,7 +153,11 @@ void render_frames(const std::vector<PlannedFrame>& frames, const RenderSpec& op
         progress.update((static_cast<double>(i) + fraction) / static_cast<double>(frames.size()), name);
         return !while_filming || !while_filming->is_pending();
       };
-      render_frame(frame, options, left_s, device, scene, renderer, stats, films, on_progress);
+      const auto tracer = [&](const View& view, const std::optional<double>& left, const ProgressCallback& tell) {
+        return options.shutter ? trace_open_shutter(renderers, run, frame, view, tell)
+                               : trace(renderer, view, options, left, tell);
+      };
+      render_frame(frame, options, left_s, device, scene, tracer, stats, films, on_progress);
       if (limit_s) {
         progress.clear();
         tell_reached(stats, *limit_s, taken_s(), console);
@@ -307,7 +314,7 @@ void render(const RenderSpec& asked, bool prints_spec) {
     fmt::print("{}", explain_json(explanation, scene));
     return;
   }
-  render_frames(run.frames, options, total, *device, scene, renderers, stats, console);
+  render_frames(run, total, *device, renderers, stats, console);
 
   const DeferredSignals while_writing;
   stats.total_ms = total.ms();

@@ -41,6 +41,7 @@ void arrange_help(CLI::App& program, CLI::App& render) {
          "turntable",
          "frames",
          "fps",
+         "shutter",
          "skip-existing"}},
        {"Look",
         {"background", "light", "environment", "environment-rotation", "environment-intensity", "light-rotation",

@@ -328,6 +328,11 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
             "0. Without --path, frame I has the time I / fps [all]",
             [&](const OptionValues& w) { options.frames = read_frames(w); });
   add_fps_option(table, options.fps);
+  table.add("--shutter", "S",
+            fmt::format("Blur motion: the shutter is open for this fraction of the time between two frames, {} to 1. "
+                        "Each sample of a pixel shows another moment [0, no blur]",
+                        kMinShutter),
+            [&](const OptionValues& w) { options.shutter = w.real(0, kMinShutter, 1.0); });
   table.add_flag("--skip-existing", "With --path: skip frames if their pictures exist already", options.skips_existing);
 
   add_job_options(table, options.job,

@@ -184,6 +184,8 @@ const WrongUsage kWrongUsages[] = {
     {"path.frame.missing", {"render", "walk.gltf", "--turntable", "4", "--frames", "3-4"}},
     {"usage.option.value", {"render", "walk.gltf", "--turntable", "1"}},
     {"usage.options.contradict", {"render", "walk.gltf", "--turntable", "4", "--path", "path.json"}},
+    {"usage.option.needs", {"render", "walk.gltf", "--shutter", "0.5"}},
+    {"usage.options.contradict", {"render", "walk.gltf", "--fps", "9", "--shutter", "0.5", "--target-error", "0.1"}},
     {"film.frames.many", {"render", "long.gltf", "--fps", "1000"}},
     {"film.fps.many", {"render", "walk.gltf", "--fps", "60", "-o", "a.gif"}},
     {"film.fps.missing", {"render", "square.gltf", "--path", "path.json", "--fps", "stored", "-o", "a.webm"}},

@@ -193,6 +193,7 @@ void Film::record_begin(const vk::raii::CommandBuffer& commands, const TileSched
   const auto clear = [&](uint32_t first, uint32_t count) {
     commands.fillBuffer(*buffer_->handle(), kPixelsOffset + first * record_bytes, count * record_bytes, 0);
   };
+  if (picture.begins_without_first()) clear(0, 1);
   if (features_.has_any(layout::FEATURE_LIGHT_AOVS)) clear(records_.first_part, layout::PART_RECORDS);
   if (features_.has_any(layout::FEATURE_UNLIT_SHARE)) clear(records_.unlit, 1);
 }

@@ -48,6 +48,8 @@ struct TileOptions {
   uint32_t refracted_rays = 0;
   /// The range of the view's samples of each pixel to trace: [first, end).
   uint32_t first_sample = 0;
+  /// True if the sums begin with the first sample even if it is not sample 0.
+  bool begins_sums = false;
   uint32_t end_sample = kMaxSamplesPerPixel;
   /// True if each pixel is a sample of a list (FEATURE_LISTED_SAMPLES). Such a sample is traced once.
   bool is_listed = false;
@@ -75,8 +77,10 @@ class TileScheduler {
   /// Returns the constants that all pieces share.
   layout::ViewConstants view_constants() const { return make_view_constants(scene_, view_); }
   uint32_t pixel_count() const { return pixel_count_; }
-  /// Returns whether the pieces begin with the first sample of each pixel.
-  bool begins_sums() const { return options_.first_sample == 0; }
+  /// Returns whether the sums of each pixel begin with these pieces.
+  bool begins_sums() const { return options_.first_sample == 0 || options_.begins_sums; }
+  /// Returns whether the pieces begin the sums without sample 0, which initialises the sums of colours.
+  bool begins_without_first() const { return options_.first_sample != 0 && options_.begins_sums; }
   bool is_done() const { return first_block_ == block_total_; }
   double fraction_done() const;
 

@@ -47,6 +47,9 @@ struct RendererAccess {
   static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
   static SceneOnDevice& scene_of(Renderer& renderer);
   static const SceneOnDevice& scene_of(const Renderer& renderer);
+  /// PictureTracer::render_sample() for a valid view.
+  static RenderResult render_sample(Renderer& renderer, const View& view, uint32_t sample,
+                                    const ProgressCallback& progress);
 };
 
 inline Renderer make_renderer(const gpu::Device& device, const world::Scene& scene,
@@ -59,6 +62,11 @@ inline Renderer make_renderer(const gpu::Device& device, const world::Scene& sce
 }
 inline Renderer make_renderer(const gpu::Device& device, const Scene& scene, const TunedRendererOptions& options) {
   return RendererAccess::make(device, world::flatten(scene), options);
+}
+
+inline RenderResult render_sample(Renderer& renderer, const View& view, uint32_t sample,
+                                  const ProgressCallback& progress) {
+  return RendererAccess::render_sample(renderer, view, sample, progress);
 }
 
 }  // namespace promin

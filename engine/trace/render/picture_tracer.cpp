@@ -127,6 +127,7 @@ void PictureTracer::trace_window(Film& onto, const PixelWindow& window, const Vi
   TileOptions cut = onto.piece_options(view.max_depth);
   cut.blocks_per_piece = options_.blocks_per_dispatch;
   cut.first_sample = samples.first;
+  cut.begins_sums = only_sample_.has_value();
   cut.end_sample = samples.end;
   if (cut.refracted_rays > 0) cut.least_blocks = TileOptions::kLeastBlocksOfTrees;
   const auto collect = [&] {
@@ -163,21 +164,23 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
                                const ProgressCallback& on_progress) {
   const uvec2 size = band.hi - band.lo;
   const size_t count = static_cast<size_t>(size.x) * size.y;
-  const uint32_t samples = view.samples_per_pixel;
+  const SampleRange all = samples_of(view);
+  const uint32_t samples = all.end - all.first;
   const uint32_t samples_at_once = wanted_.cryptomatte ? layout::SAMPLE_IDS : samples;
   film_->reserve(size.x * size.y);
   CoverageTally tally(wanted_.cryptomatte ? count : 0, scene_.object_materials());
   ReadFilm read{{}, 0, film_->records()};
-  for (SampleRange range{0, 0}; range.end < samples;) {
-    range = {range.end, std::min(samples, range.end + samples_at_once)};
+  for (SampleRange range{all.first, all.first}; range.end < all.end;) {
+    range = {range.end, std::min(all.end, range.end + samples_at_once)};
     trace_window(*film_, band, view, range, result, [&](double fraction) {
-      return !on_progress || on_progress((range.first + fraction * (range.end - range.first)) / samples);
+      return !on_progress || on_progress((range.first - all.first + fraction * (range.end - range.first)) / samples);
     });
     read = read_film(*film_, size);
     if (wanted_.cryptomatte) tally_samples(read, range.end - range.first, tally);
   }
   average_samples(film_records_, samples, std::span(result.image.pixels).subspan(first, count));
-  if (film_features_.has_any(layout::FEATURE_AOVS)) {
+  const uint32_t middle = view.samples_per_pixel / 2;
+  if (film_features_.has_any(layout::FEATURE_AOVS) && all.first <= middle && middle < all.end) {
     read_surfaces(read, scene_.numbers(), view.depth_kind, first, result.aovs);
   }
   for_each_pixel(count, [&](size_t i) {
@@ -280,6 +283,22 @@ RenderResult PictureTracer::render(const View& view, const ProgressCallback& pro
   cut_out(result.aovs.object_coverage, *wider.crop, window);
   cut_out(result.aovs.material_coverage, *wider.crop, window);
   return result;
+}
+
+SampleRange PictureTracer::samples_of(const View& view) const {
+  return only_sample_ ? SampleRange{*only_sample_, *only_sample_ + 1} : SampleRange{0, view.samples_per_pixel};
+}
+
+RenderResult PictureTracer::render_sample(const View& view, uint32_t sample, const ProgressCallback& progress) {
+  only_sample_ = sample;
+  try {
+    RenderResult result = render_samples(view, progress);
+    only_sample_.reset();
+    return result;
+  } catch (...) {
+    only_sample_.reset();
+    throw;
+  }
 }
 
 RenderResult PictureTracer::render_samples(const View& view, const ProgressCallback& progress) {

@@ -50,6 +50,10 @@ class PictureTracer {
 
   // The following functions are like those of Renderer, for valid views.
   RenderResult render(const View& view, const ProgressCallback& progress);
+  /// Renders one sample of each pixel of a view that has a fixed number of samples. The mean of the results of all
+  /// samples is the picture of the view, except for rounding. AOVs of surfaces, the error and Cryptomatte are not those
+  /// of a picture.
+  RenderResult render_sample(const View& view, uint32_t sample, const ProgressCallback& progress);
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress);
   void render_progressively(const View& view, double budget_ms,
                             const std::function<bool(const Image&, const View&)>& on_picture);
@@ -109,6 +113,8 @@ class PictureTracer {
   RenderResult make_result(const View& view) const;
   /// Renders a picture with a fixed number of samples per pixel.
   RenderResult render_samples(const View& view, const ProgressCallback& progress);
+  /// Returns the samples that a picture traces.
+  SampleRange samples_of(const View& view) const;
   /// AOVs of the samples of a window of a refined picture, indexed by pixel.
   struct RefinedAovs {
     PixelWindow window;
@@ -146,6 +152,8 @@ class PictureTracer {
   /// The film of trace_middle(), created when its AOVs are first requested.
   std::optional<Film> middle_film_;
   UnsetVector<uvec4> film_records_;
+  /// The sample to trace; empty for all samples.
+  std::optional<uint32_t> only_sample_;
   /// Ranges of the colours of each pixel's samples, for estimating errors.
   std::vector<ColorRange> ranges_;
 };

@@ -54,6 +54,13 @@ const SceneOnDevice& RendererAccess::scene_of(const Renderer& renderer) {
   return renderer.impl_->tracer.scene();
 }
 
+RenderResult RendererAccess::render_sample(Renderer& renderer, const View& view, uint32_t sample,
+                                           const ProgressCallback& progress) {
+  RenderResult result;
+  gpu::translate_vulkan_errors([&] { result = renderer.impl_->tracer.render_sample(view, sample, progress); });
+  return result;
+}
+
 const SetupStats& Renderer::setup_stats() const {
   return impl_->tracer.stats();
 }

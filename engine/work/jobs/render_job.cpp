@@ -14,6 +14,7 @@
 #include "work/jobs/picture_part.h"
 #include "work/jobs/picture_pieces.h"
 #include "work/pictures/frame_renderers.h"
+#include "work/pictures/shutter.h"
 #include "work/spec/spec_json.h"
 
 namespace promin::work {
@@ -83,7 +84,8 @@ class PicturePieces : public PieceMaker {
     View view = *job_.run_.stats.view;
     renderers_->describe(frame, view, stats_);
     view.crop = job_.parts_[piece % job_.parts_.size()];
-    TracedFrame traced = trace(renderer, view, options, std::nullopt, progress);
+    TracedFrame traced = options.shutter ? trace_open_shutter(*renderers_, job_.run_, frame, view, progress)
+                                         : trace(renderer, view, options, std::nullopt, progress);
     check_validation(device_, stats_);
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);

@@ -225,6 +225,17 @@ double PathPictures::time_s(size_t picture) const {
   return fps_ == kStored ? path_.frames[picture].time_s : static_cast<double>(picture) / fps_;
 }
 
+double PathPictures::seconds_after(size_t picture) const {
+  if (fps_ != kStored) return 1.0 / fps_;
+  if (count_ < 2) return 0.0;
+  const size_t first = std::min(picture, count_ - 2);
+  return time_s(first + 1) - time_s(first);
+}
+
+Camera PathPictures::camera_after(size_t picture, double seconds) const {
+  return camera_at(path_, time_s(picture) + seconds);
+}
+
 Camera PathPictures::camera(size_t picture) const {
   assert(picture < count_);
   if (fps_ == kStored) return path_.frames[picture].camera;

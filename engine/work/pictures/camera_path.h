@@ -55,6 +55,11 @@ class PathPictures {
   Camera camera(size_t picture) const;
   /// Returns the time of a picture in seconds.
   double time_s(size_t picture) const;
+  /// Returns the seconds from a picture to the next one. After the last stored frame, it is the time between the last
+  /// two.
+  double seconds_after(size_t picture) const;
+  /// Returns the camera some seconds after a picture.
+  Camera camera_after(size_t picture, double seconds) const;
   /// Returns the seconds from picture to picture; 0 if the pictures are the stored frames.
   double interval_s() const { return fps_ == kStored ? 0.0 : 1.0 / fps_; }
 

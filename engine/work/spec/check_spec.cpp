@@ -123,6 +123,7 @@ void check_explanation(const RenderSpec& options) {
                               {options.turntable.has_value(), "--turntable"},
                               {options.frames.has_value(), "--frames"},
                               {options.fps.has_value(), "--fps"},
+                              {options.shutter.has_value(), "--shutter"},
                               {options.aovs.any(), "--aov"},
                               {view.crop.has_value(), "--crop"},
                               {is_debug, "--shading"},
@@ -196,6 +197,21 @@ void check_job(const RenderSpec& options) {
   refuse_if("usage.options.contradict", job.share && !options.pictures.empty(),
             "--piece and --output contradict each other, because --piece writes no picture",
             "remove one of them; promin merge writes the picture when all pieces are made");
+}
+
+/// Refuses options that motion blur does not support.
+void check_shutter(const RenderSpec& options) {
+  if (!options.shutter) return;
+  const ErrorOptions& error = options.error;
+  refuse_if("usage.option.needs", !options.moves_scene() && !options.moves_camera(), "--shutter needs frames that move",
+            "give --frames, --fps, --path or --turntable as well");
+  refuse_beside("--shutter", {{error.target.has_value(), "--target-error"},
+                              {error.time_limit_s.has_value(), "--time-limit"},
+                              {options.quality == Quality::kBest, "--quality best"},
+                              {options.aovs.error, "--aov error"},
+                              {options.aovs.cryptomatte, "--aov cryptomatte"},
+                              {options.view.look.averages_exposure, "--exposure average"},
+                              {options.tracing.repeat_count > 1, "--repeat"}});
 }
 
 void check_frames(const RenderSpec& options) {
@@ -295,6 +311,7 @@ void check_render_spec(const RenderSpec& options) {
   }
   check_job(options);
   check_frames(options);
+  check_shutter(options);
   check_channels(options);
   check_alpha(options);
   check_dither(options);

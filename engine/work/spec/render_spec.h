@@ -22,6 +22,8 @@ namespace promin::work {
 // Ranges of members, for both options and JSON.
 
 inline constexpr uint32_t kMaxFrame = 9999999;
+/// The shortest time of an open shutter, as a fraction of the time between two frames.
+inline constexpr double kMinShutter = 1e-3;
 /// The smallest number of frames of a turntable.
 inline constexpr uint32_t kMinTurntable = 2;
 inline constexpr double kMaxBackground = 1e9;
@@ -206,6 +208,8 @@ struct RenderSpec {
   std::optional<FrameRange> frames;
   /// The number of pictures per second, in the form that PathPictures takes.
   std::optional<double> fps;
+  /// The fraction of the time between two frames for which the shutter is open; empty for no motion blur.
+  std::optional<double> shutter;
   /// A pixel to explain. No picture is written then.
   std::optional<uvec2> explained_pixel;
   bool has_all_features = false;

@@ -258,6 +258,7 @@ Table<RenderSpec> make_table(const RenderSpec* /*kind*/) {
   table.add_number("turntable", PROMIN_AT(turntable), kMinTurntable, kMaxFrame, {.replaces = {"path"}});
   table.add("frames", PROMIN_AT(frames), Frames());
   table.add("fps", PROMIN_AT(fps), Fps());
+  table.add_number("shutter", PROMIN_AT(shutter), kMinShutter, 1.0);
   table.add_number("pieces", PROMIN_AT(job.pieces), 1, kMaxSide, {.affects_bits = false, .replaces = {"tiles"}});
   table.add("tiles", PROMIN_AT(job.tiles), Pair{1, kMaxSide}, {.affects_bits = false, .replaces = {"pieces"}});
   add_channels(table);

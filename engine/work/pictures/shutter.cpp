@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+#include "work/pictures/shutter.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "work/pictures/camera_choice.h"
+#include "work/pictures/camera_path.h"
+#include "work/pictures/view_setup.h"
+
+namespace promin::work {
+namespace {
+
+/// Returns the radical inverse of a number in base 2, a fraction of 1.
+double van_der_corput(uint32_t i) {
+  double fraction = 0.0;
+  for (double digit = 0.5; i != 0; i >>= 1U, digit *= 0.5) {
+    if ((i & 1U) != 0) fraction += digit;
+  }
+  return fraction;
+}
+
+template <typename Value>
+void add_values(const std::vector<Value>& more, std::vector<Value>& sum) {
+  for (size_t i = 0; i < std::min(sum.size(), more.size()); ++i) sum[i] += more[i];
+}
+
+template <typename Value>
+void divide_values(float count, std::vector<Value>& sum) {
+  if constexpr (std::is_same_v<Value, uint32_t>) return;
+  for (Value& value : sum) value = value / static_cast<Value>(count);
+}
+
+/// Returns whether a picture has the mean of an AOV over its samples.
+constexpr bool is_mean(AovSource source) {
+  return source == AovSource::kParts || source == AovSource::kUnlit;
+}
+
+/// Adds the result of a sample to the sum of those before it. The middle sample gives the AOVs of surfaces.
+void add_sample(RenderResult& sample, bool is_middle, RenderResult& sum) {
+  add_values(sample.image.pixels, sum.image.pixels);
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  if (is_mean(AovSource::SOURCE)) {                                \
+    add_values(sample.aovs.FIELD, sum.aovs.FIELD);                 \
+  } else if (is_middle) {                                          \
+    sum.aovs.FIELD = std::move(sample.aovs.FIELD);                 \
+  }
+#include "promin/kinds/aovs.def"
+  sum.rays += sample.rays;
+  sum.trace_ms += sample.trace_ms;
+}
+
+void finish(uint32_t count, RenderResult& sum) {
+  const auto divisor = static_cast<float>(count);
+  divide_values(divisor, sum.image.pixels);
+#define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) \
+  if (is_mean(AovSource::SOURCE)) divide_values(divisor, sum.aovs.FIELD);
+#include "promin/kinds/aovs.def"
+  std::ranges::fill(sum.aovs.samples, count);
+  sum.samples_per_pixel = count;
+}
+
+}  // namespace
+
+PlannedFrame frame_between(const PictureRun& run, const PlannedFrame& frame, double fraction) {
+  PlannedFrame moment = frame;
+  double interval_s = 1.0 / run.options.fps.value_or(kDefaultFps);
+  if (frame.path != nullptr) {
+    const PathPictures path = frame.path->moved_to(run.scene.center);
+    interval_s = path.seconds_after(*frame.number);
+    moment.camera = path.camera_after(*frame.number, fraction * interval_s);
+    put_lens(run.options.view, *moment.camera);
+  } else if (run.options.turntable) {
+    constexpr double kTurnDeg = 360.0;
+    moment.camera =
+        turn_around(run.scene, run.options.view, *frame.camera, kTurnDeg * fraction / *run.options.turntable);
+  }
+  if (frame.time_s) moment.time_s = *frame.time_s + fraction * interval_s;
+  return moment;
+}
+
+TracedFrame trace_open_shutter(FrameRenderers& renderers, const PictureRun& run, const PlannedFrame& frame,
+                               const View& view, const ProgressCallback& on_progress) {
+  const double shutter = run.options.shutter.value_or(0.0);
+  const uint32_t count = view.samples_per_pixel;
+  RenderResult sum;
+  for (uint32_t i = 0; i < count; ++i) {
+    const PlannedFrame moment = frame_between(run, frame, shutter * van_der_corput(i));
+    Renderer& renderer = renderers.at(moment);
+    View view_then = view;
+    RunStats unused;
+    renderers.describe(moment, view_then, unused);
+    RenderResult sample = render_sample(
+        renderer, view_then, i, [&](double fraction) { return !on_progress || on_progress((i + fraction) / count); });
+    const bool is_middle = i == count / 2;
+    if (i == 0) {
+      sum = std::move(sample);
+    } else {
+      add_sample(sample, is_middle, sum);
+    }
+  }
+  finish(count, sum);
+  TracedFrame traced;
+  traced.trace_ms.push_back(sum.trace_ms);
+  traced.result = std::move(sum);
+  return traced;
+}
+
+}  // namespace promin::work
