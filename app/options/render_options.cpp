@@ -146,8 +146,16 @@ Number read_number(const OptionValues& words, Number min, Number max) {
 void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
-            "Light that is added if the scene has no light or no sky [studio; classic scenes: headlight]",
+            "Light that is added if the scene has no light or no sky. soft is the studio with soft shadows: a sun 10 "
+            "degrees wide, --integrator direct and --ground [studio; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
+  table.add(
+      "--ground", "on|off",
+      "Show the shadow of the scene on a ground under it, which is otherwise invisible [off; with --light soft: on]",
+      [&look](const OptionValues& w) {
+        constexpr std::array kWords = {std::string_view("off"), std::string_view("on")};
+        look.has_ground = w.choice(kWords) == kWords[1];
+      });
   table.add("--background", fmt::format("R G B|COLOR|{}", work::kEnvironmentShown),
             "Colour of the background in the picture: white, '#336699' or three numbers from 0 to 1. linear:R,G,B is "
             "linear light, which exposure and tone mapping change. environment shows the sky that lights the scene "

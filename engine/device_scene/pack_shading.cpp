@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "promin/error.h"
@@ -37,12 +38,26 @@ static_assert(static_cast<uint>(TextureWrap::kRepeat) == WRAP_REPEAT &&
               static_cast<uint>(TextureWrap::kMirroredRepeat) == WRAP_MIRRORED &&
               static_cast<uint>(TextureWrap::kClampToEdge) == WRAP_CLAMP);
 
+bool catches_shadows(const Material& material) {
+  const auto* unlit = std::get_if<Unlit>(&material.model);
+  return unlit != nullptr && unlit->catches_shadows;
+}
+
+/// Returns whether lights have the power that Phong's model expects (docs/model.md, "Light").
+bool has_phong_alone(std::span<const Material> materials) {
+  const auto has = [&]<typename Model>(const Model& /*any*/) {
+    return std::ranges::any_of(materials, [](const Material& m) { return std::holds_alternative<Model>(m.model); });
+  };
+  return has(Phong()) && !has(MetallicRoughness());
+}
+
 constexpr float kLeastAlpha = std::numeric_limits<float>::min();
 
 /// Packs a model's numbers into the members that the model's shader file reads.
 class MaterialPacker {
  public:
-  explicit MaterialPacker(const TextureTables& tables) : tables_(tables) {}
+  MaterialPacker(const TextureTables& tables, std::span<const Material> materials)
+      : tables_(tables), is_of_phong_(has_phong_alone(materials)) {}
 
   void add(const Material& material) {
     first_slot_ = packed_.slots.size();
@@ -67,7 +82,8 @@ class MaterialPacker {
         std::visit([&](const auto& model) { return add_glass(model, is_clear(material)); }, material.model);
     return glass << MATERIAL_GLASS_SHIFT | std::visit(ModelNumber(), material.model) |
            flag(has_holes(material), MATERIAL_HAS_HOLES) | flag(blends(material), MATERIAL_BLENDS) |
-           flag(!shows_backs(material), MATERIAL_IS_ONE_SIDED);
+           flag(!shows_backs(material), MATERIAL_IS_ONE_SIDED) |
+           flag(catches_shadows(material), MATERIAL_CATCHES_SHADOWS);
   }
 
   vec4 pack_cover(const Material& material) {
@@ -95,7 +111,11 @@ class MaterialPacker {
             {}};
   }
   MaterialRecord pack(const Unlit& m) {
-    return {vec4(m.color, 0.0F), {}, {}, {}, {}, {}};
+    if (!m.catches_shadows) return {vec4(m.color, 0.0F), {}, {}, {}, {}, {}};
+    // The factors of a light's power and of the environment's radiance, with and without 1 / pi.
+    const dvec3 inverse = 1.0 / glm::max(dvec3(m.color), dvec3(std::numeric_limits<float>::min()));
+    const dvec3 of_sky = inverse / std::numbers::pi;
+    return {vec4(vec3(of_sky), 0.0F), vec4(vec3(is_of_phong_ ? inverse : of_sky), 0.0F), {}, {}, {}, {}};
   }
 
   /// Returns the reflectance of the dielectric at normal incidence, before it is multiplied by the strength of the
@@ -186,6 +206,7 @@ class MaterialPacker {
   }
 
   const TextureTables& tables_;
+  bool is_of_phong_;
   PackedMaterials packed_;
   size_t first_slot_ = 0;  // The first slot of the current material.
 };
@@ -222,7 +243,7 @@ LightRecord pack(const Light& light) {
 }  // namespace
 
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables) {
-  MaterialPacker packer(tables);
+  MaterialPacker packer(tables, materials);
   for (const Material& material : materials) packer.add(material);
   return packer.take();
 }

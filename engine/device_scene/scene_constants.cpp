@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/divide_up.h"
 #include "device_scene/scrambled_points.h"
@@ -51,7 +52,9 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
       .eye = vec4(camera.eye, before_near),
       .look = vec4(camera.look, is_orthographic ? cone : 0.0F),
       .right = vec4(vec3(right), is_orthographic ? 0.0F : cone),
-      .up = vec4(vec3(up), 0.0F),
+      // w is the largest distance at which surfaces occlude others.
+      .up = vec4(vec3(up),
+                 view.occlusion_distance > 0.0F ? view.occlusion_distance : std::numeric_limits<float>::infinity()),
       .ambient = vec4(scene.ambient, 0.0F),
       .background = vec4(scene.background, what_is_shown(scene)),
       .backdrop_top = vec4(backdrop.top, backdrop.radiance),

@@ -117,7 +117,11 @@ struct MaterialFeatures {
     }
     return features;
   }
-  FeatureMask operator()(const Unlit& /*material*/) const { return FEATURE_UNLIT; }
+  FeatureMask operator()(const Unlit& unlit) const {
+    FeatureMask features = FEATURE_UNLIT;
+    if (unlit.catches_shadows) features |= FEATURE_SHADOW_CATCHERS;
+    return features;
+  }
 };
 
 FeatureMask feature_of(LightKind kind) {

@@ -104,12 +104,14 @@ void let_ambient_light_in(Scene& scene) {
 
 std::span<const std::string_view> light_choice_names() {
   using std::string_view_literals::operator""sv;
-  static constexpr std::array kNames = {"auto"sv, "studio"sv, "headlight"sv, "none"sv};
+  static constexpr std::array kNames = {"auto"sv, "studio"sv, "headlight"sv, "none"sv, "soft"sv};
   return kNames;
 }
 
 AssumedLight light_scene(Scene& scene, LightChoice choice) {
   if (choice == LightChoice::kAuto) choice = scene.is_classic ? LightChoice::kHeadlight : LightChoice::kStudio;
+  const bool is_soft = choice == LightChoice::kSoft;
+  if (is_soft) choice = LightChoice::kStudio;
   AssumedLight assumed;
   Environment& environment = scene.environment;
   const bool had_sky = is_surrounded(environment);
@@ -135,6 +137,7 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
     return assumed;
   }
   scene.lights.push_back(make_studio_light(front, static_cast<float>(kStudioLightPower * power_per_lux(scene))));
+  if (is_soft) scene.lights.back().angle = kSoftSunAngle;
   assumed.has_studio_light = true;
   return assumed;
 }

@@ -107,7 +107,7 @@ PROMIN_MEMBERS(MetallicRoughness, base_color, metallic, roughness, ior, specular
                sheen_color, sheen_roughness, sheen_color_texture, sheen_roughness_texture, iridescence, iridescence_ior,
                iridescence_thickness_minimum, iridescence_thickness_maximum, iridescence_texture,
                iridescence_thickness_texture, anisotropy, anisotropy_rotation, anisotropy_texture)
-PROMIN_MEMBERS(Unlit, color, color_texture)
+PROMIN_MEMBERS(Unlit, color, color_texture, catches_shadows)
 PROMIN_MEMBERS(Material, name, model, emissive, emissive_texture, alpha_mode, alpha, alpha_cutoff, is_double_sided)
 PROMIN_MEMBERS(Camera, name, projection, eye, look, up, yfov, ymag, aspect_ratio, resolution, near,
                aperture_radius, focus_distance)
@@ -122,7 +122,7 @@ PROMIN_MEMBERS(ErrorTarget, error, min_samples, white, display, max_samples)
 PROMIN_MEMBERS(PixelWindow, lo, hi)
 PROMIN_MEMBERS(RenderMode, debug_view, has_shadows, integrator)
 PROMIN_MEMBERS(View, camera, size, crop, samples_per_pixel, error_target, depth_kind, filter, filter_width, max_depth,
-               seed, mode)
+               seed, occlusion_distance, mode)
 PROMIN_MEMBERS(Sphere, center, radius)
 PROMIN_MEMBERS(Plane, point, normal)
 PROMIN_MEMBERS(Cylinder, center, axis, half_height, radius, is_open)

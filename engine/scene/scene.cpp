@@ -149,8 +149,9 @@ uint32_t default_max_depth(const Scene& scene) {
 }
 
 bool shows_same(const View& a, const View& b) {
-  return a.size == b.size && a.mode == b.mode && a.max_depth == b.max_depth && a.filter == b.filter &&
-         a.filter_width == b.filter_width && a.seed == b.seed && shows_same(a.camera, b.camera);
+  return a.size == b.size && a.mode == b.mode && a.max_depth == b.max_depth &&
+         a.occlusion_distance == b.occlusion_distance && a.filter == b.filter && a.filter_width == b.filter_width &&
+         a.seed == b.seed && shows_same(a.camera, b.camera);
 }
 
 AddedLights add_default_lights(std::vector<Light>& lights, Environment& environment) {

@@ -392,6 +392,8 @@ class Validation {
           "the number of samples per pixel is out of range", "view.samples_per_pixel", "use 1 to 65535");
     check("scene.choice.unknown", static_cast<size_t>(view.filter) < pixel_filter_names().size(),
           "the filter is not a value of PixelFilter", "view.filter", "use one of its values");
+    check("view.occlusion.range", view.occlusion_distance >= 0.0F && view.occlusion_distance <= 1e15F,
+          "the distance of occlusion is out of range", "view.occlusion_distance", "use 0 to 1e15");
     check("view.filter.range", view.filter_width >= kMinFilterWidth && view.filter_width <= kMaxFilterWidth,
           "the filter width is out of range", "view.filter_width", "use 0.01 to 32 pixels");
     check("view.depth.range", view.max_depth <= kMaxDepth, "the number of bounces is out of range", "view.max_depth",

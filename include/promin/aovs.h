@@ -37,8 +37,9 @@ using CoverageRanks = std::array<Coverage, kCoverageRanks>;
 /// The source of an AOV, which determines its cost. kSurface reads the surface at the middle sample and costs little.
 /// kParts sums one component of the light (e.g. direct light) over all samples. kSteps needs a pass of its own.
 /// kSampling describes the sampling and costs nothing. kUnlit sums the share of unlit surfaces over all samples and
-/// costs less than kParts.
-enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling, kUnlit };
+/// costs less than kParts. kOcclusion needs a pass of its own with the samples of the picture, or with 64 samples if
+/// the picture has an error target.
+enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling, kUnlit, kOcclusion };
 
 /// A selection of AOVs. Each member has the name of the member of Aovs that it selects.
 struct AovSet {

@@ -26,6 +26,9 @@ enum class LightChoice : uint32_t {
   kHeadlight,
   /// Adds nothing.
   kNone,
+  /// Acts like kStudio, with a directional light that is kSoftSunAngle wide. The programs also use
+  /// Integrator::kDirect, and add a ground that shows the shadow of the scene.
+  kSoft,
 };
 
 /// Returns the names to display, indexed by LightChoice. The first name is "auto".
@@ -57,6 +60,8 @@ inline constexpr float kStudioBackdropTop = 0.85F;
 inline constexpr float kStudioBackdropBottom = 0.55F;
 /// The illuminance that the studio's directional light causes on a surface that faces it, in lux.
 inline constexpr float kStudioLightPower = 1.35F;
+/// The angle of the directional light of LightChoice::kSoft in radians: 10 degrees.
+inline constexpr float kSoftSunAngle = 0.174532925F;
 /// The studio's intensity in a scene with lights, before it is divided by the exposure.
 inline constexpr float kStudioFill = 0.3F;
 

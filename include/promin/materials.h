@@ -148,6 +148,11 @@ struct Unlit {
   vec3 color{1.0F};
   /// Texture whose values multiply `color`.
   TextureSlot color_texture = {};
+  /// True if the surface shows only the shadows on it: what is behind it, multiplied by the fraction of light that
+  /// arrives. Only light from infinity counts: directional lights, and the environment with Integrator::kDirect.
+  /// `color` is then the light that arrives without shadows: the irradiance divided by pi. In pictures with alpha, the
+  /// alpha of the surface is the fraction of light that is missing.
+  bool catches_shadows = false;
 };
 
 /// The effect of alpha on a picture (glTF 2.0, section 3.9.4). Casts ignore alpha.

@@ -139,6 +139,9 @@ struct View {
   /// The seed of the sample points that depend on the pixel: of lights with a size, and of pictures with an error
   /// target. Each seed gives other noise.
   uint32_t seed = 0;
+  /// The largest distance at which surfaces occlude others in DebugView::kOcclusion and Aovs::ambient_occlusion, 0 to
+  /// 1e15; 0 for any distance.
+  float occlusion_distance = 0.0F;
   /// The mode. If it differs from the mode of the previous picture, promin first compiles the pipeline of this mode.
   RenderMode mode;
 };

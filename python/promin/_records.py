@@ -207,6 +207,9 @@ class Unlit(Material):
     """The colour that pictures show."""
     color_texture: TextureSlot | None = None
     """Texture whose values multiply `color`."""
+    catches_shadows: bool = False
+    """True if the surface shows only the shadows on it. `color` is then the irradiance without shadows, divided by
+    pi."""
 
 
 @dataclass(frozen=True)

@@ -141,6 +141,7 @@ class Renderer:
         environment_rotation: float | None = None,
         environment_intensity: float | None = None,
         light_rotation: float | None = None,
+        ground: bool | None = None,
         exposure: float | str = "auto",
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
@@ -151,7 +152,9 @@ class Renderer:
         """aovs: the AOVs of the pictures, with the names of include/promin/aovs.h: "depth", "normal", "object", ...,
         and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
         Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
-        light: the light that is added to a scene without light: "auto", "studio", "headlight" or "none". background:
+        light: the light that is added to a scene without light: "auto", "studio", "headlight", "none", or "soft", which
+        is the studio with soft shadows, a ground and the integrator "direct". ground: True if a ground under the scene
+        shows its shadow; None: only with the light "soft". background:
         the background, as in `promin render --background`. Three sRGB numbers from 0 to 1, a name such as "white", or
         "#80a0ff" are a colour that pictures show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone
         mapped. "environment" shows the environment that lights the scene. None: the scene's background, or a grey
@@ -172,6 +175,7 @@ class Renderer:
                 "environment_rotation": environment_rotation,
                 "environment_intensity": environment_intensity,
                 "light_rotation": light_rotation,
+                "ground": None if ground is None else bool(ground),
             }
         )
         self._panorama = _panorama_of(environment)
@@ -267,6 +271,7 @@ class Renderer:
         filter_width: float | None = None,
         depth: str | None = None,
         debug_view: str | None = None,
+        occlusion_distance: float | None = None,
         shadows: bool | None = None,
         integrator: str | None = None,
         from_: str | None = None,
@@ -363,7 +368,11 @@ class Renderer:
         """Returns the view for the native module, and the display transform of its picture."""
         camera = self._choose_camera(view, size_of(view), _ASPECT_RATIO)
         shown = self.display if shows_light(view) else Display()
-        return to_record(view, camera, shown, self._lit().default_max_depth()), shown
+        return to_record(self._with_integrator(view), camera, shown, self._lit().default_max_depth()), shown
+
+    def _with_integrator(self, view: View) -> View:
+        """Returns the view with the integrator that suits the light if it has none."""
+        return replace(view, integrator="direct") if view.integrator is None and self._light == "soft" else view
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """Returns the AOVs of these names. Positions are in world coordinates."""
@@ -404,7 +413,7 @@ class Renderer:
             self._builder,
             self._bvh,
             begins_with_target(view),
-            mode_of(view),
+            mode_of(self._with_integrator(view)),
             self._expected_samples,
             self._texture_memory,
             progress,
@@ -537,6 +546,7 @@ def render(
     environment_rotation: float | None = None,
     environment_intensity: float | None = None,
     light_rotation: float | None = None,
+    ground: bool | None = None,
     exposure: float | str = "auto",
     builder: str = "sah",
     progress: Progress = None,
@@ -556,6 +566,7 @@ def render(
     filter_width: float | None = None,
     depth: str | None = None,
     debug_view: str | None = None,
+    occlusion_distance: float | None = None,
     shadows: bool | None = None,
     integrator: str | None = None,
     from_: str | None = None,
@@ -586,6 +597,7 @@ def render(
         environment_rotation=environment_rotation,
         environment_intensity=environment_intensity,
         light_rotation=light_rotation,
+        ground=ground,
         exposure=exposure,
         builder=builder,
         expected_samples=_count_samples(view),

@@ -77,8 +77,11 @@ class View:
     """The definition of the AOV `depth`: "ray" is the distance from the eye, "plane" the distance along the direction
     of view."""
     debug_view: str = "full"
-    """The property that the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth" or
-    "steps"."""
+    """The property that the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth",
+    "steps" or "occlusion"."""
+    occlusion_distance: float | None = None
+    """Largest distance at which surfaces darken others in the debug view "occlusion" and in the AOV
+    `ambient_occlusion`; None: any distance."""
     shadows: bool = True
     """True if lights cast shadows."""
     integrator: str | None = None
@@ -212,9 +215,9 @@ def size_of(view: View) -> tuple[int, ...]:
 
 
 def member_of(name: str, value: object) -> object:
-    """Returns a value as it is written in a specification (docs/usage.md, "Specifications"): a text, a number or a list
-    of three. Raises UsageError if the value is neither a text nor as many numbers as the member accepts."""
-    if isinstance(value, str):
+    """Returns a value as it is written in a specification (docs/usage.md, "Specifications"): a text, a truth value, a
+    number or a list of three. Raises UsageError if the value is neither a text nor as many numbers as the member accepts."""
+    if isinstance(value, (str, bool)):
         return value
     try:
         numbers = [float(x) for x in np.ravel(np.asarray(value))]
@@ -280,6 +283,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
         "filter_width": width,
         "max_depth": default_max_depth if view.max_depth is None else view.max_depth,
         "seed": view.seed,
+        "occlusion_distance": 0.0 if view.occlusion_distance is None else view.occlusion_distance,
         "mode": mode_of(view),
     }
 

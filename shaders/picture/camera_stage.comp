@@ -64,8 +64,12 @@ void put_record(Path path, Hit hit) {
   if (is_middle_sample()) pixels[path.pixel].w = order;
 }
 
-// True if shading points are computed. Debug views show no light, but their AOVs need shading points.
-const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | uint(DEBUG_VIEW == DEBUG_VIEW_NONE);
+// True if the picture shows the share of directions in which nothing occludes a point.
+#define SHOWS_OCCLUSION (DEBUG_VIEW == DEBUG_VIEW_OCCLUSION)
+
+// True if shading points are computed. Most debug views show no light, but their AOVs need shading points.
+const uint SHADES_LIGHT = uint(DEBUG_VIEW == DEBUG_VIEW_NONE) | uint(SHOWS_OCCLUSION);
+const uint SHADES_POINTS = FEATURE_BIT(FEATURE_AOVS) | SHADES_LIGHT;
 
 // Returns the texture coordinates of a hit in set 0; 0 if the surface has no texture.
 vec2 texture_coordinates(Hit hit) {
@@ -158,7 +162,7 @@ void arrive() {
       points[i] = point;
       seen[i] = light;
       if (has(FEATURE_LIGHT_AOVS)) own_lights[i] = light;
-      is_lit[i] = takes_part && DEBUG_VIEW == DEBUG_VIEW_NONE && hit.primitive != NO_PRIMITIVE;
+      is_lit[i] = takes_part && SHADES_LIGHT != 0u && hit.primitive != NO_PRIMITIVE;
     }
     ++at;
   } while (at < PACKET_SIZE);
@@ -197,6 +201,7 @@ void aim_one_by_one(LightRecord light, uint source) {
     [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
       if (i != at) continue;
       contributions[i] = contribution;
+      if (has(FEATURE_SHADOW_CATCHERS)) seen[i] = without_caught(point, contribution, seen[i]);
       packet[i] = ray;
       ways[i] = light_way(path.media);
       blockers[i].primitive = NO_PRIMITIVE;
@@ -226,9 +231,30 @@ void aim_at_source(LightRecord light, uint source) {
       sampled = sample_light(light, point.position);
     }
     contributions[i] = unshadowed_contribution(point, -paths[i].direction, light, sampled);
+    if (has(FEATURE_SHADOW_CATCHERS)) seen[i] = without_caught(point, contributions[i], seen[i]);
     if (!has(FEATURE_SHADOWS) || !(max_abs(contributions[i]) > 0.0)) continue;
     Ray ray = shadow_ray(point, light, sampled);
     packet[i] = ray;
+    ++ray_count.y;
+  }
+}
+
+// With SHOWS_OCCLUSION: does the same for light of strength 1 from all sides, from one direction that is chosen by its
+// cosine to the normal.
+void aim_around() {
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    contributions[i] = vec3(0.0);
+    packet[i].tmax = -1.0;
+    ways[i] = light_way(paths[i].media);
+    blockers[i].primitive = NO_PRIMITIVE;
+    forget_passed(i);
+    if (!is_lit[i]) continue;
+    ShadingPoint point = points[i];
+    choose_sample(sample_ids[i], FIRST_LIGHT_PAIR);
+    vec3 direction = choose_by_cosine(point.normal, sample_pair_point());
+    contributions[i] = vec3(1.0);
+    if (!has(FEATURE_SHADOWS)) continue;
+    packet[i] = make_ray(shadow_origin(point), direction, 0.0, CAMERA.up.w);
     ++ray_count.y;
   }
 }
@@ -334,6 +360,17 @@ void add_parts(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_s
   add_seen_part(path.pixel, path.part, weight, own, light);
 }
 
+// Ends a path at a surface that shows only shadows. `share` is the fraction of light that arrives.
+void leave_catcher(Path path, vec3 share) {
+  share = max(share, vec3(0.0));
+  precise vec3 light = share * radiance_behind(path.origin, path.direction, true);
+  add_radiance(path, light, 1.0);
+  add_caught(path, light, share);
+  if (has(FEATURE_UNLIT_SHARE)) add_backdrop(path, light);
+  end_path_log(path.radiance, 1.0);
+  finish_path(path);
+}
+
 // Adds the radiance of a pixel to its path, and continues the path.
 void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on_surface) {
   float coverage = is_on_surface ? coverage_of(path, point) : 1.0;
@@ -374,7 +411,7 @@ void leave_one_by_one() {
     ShadingPoint point = points[0];
     vec3 light = seen[0];
     vec3 own = own_lights[0];
-    bool is_on_surface = is_lit[0];
+    bool is_on_surface = is_lit[0] && DEBUG_VIEW != DEBUG_VIEW_OCCLUSION;
     bool takes_part = is_inside[0];
     if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[0], 0u);
     [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
@@ -384,16 +421,25 @@ void leave_one_by_one() {
       if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[i], 0u);
       light = seen[i];
       own = own_lights[i];
-      is_on_surface = is_lit[i];
+      is_on_surface = is_lit[i] && DEBUG_VIEW != DEBUG_VIEW_OCCLUSION;
       takes_part = is_inside[i];
+    }
+    if (has(FEATURE_SHADOW_CATCHERS)) {
+      bool catches = is_on_surface && catches_shadows(point);
+      if (takes_part && catches) leave_catcher(path, light);
+      takes_part = takes_part && !catches;
     }
     if (takes_part) leave_pixel(path, point, light, own, is_on_surface);
     ++at;
   } while (at < PACKET_SIZE);
 }
 
+// glslang 12 writes an invalid module for three constants with ||.
+const uint LEAVES_ONE_BY_ONE =
+    FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_LIGHT_AOVS) | FEATURE_BIT(FEATURE_SHADOW_CATCHERS);
+
 void leave() {
-  if (has(FEATURE_GLASS) || has(FEATURE_LIGHT_AOVS)) {
+  if (LEAVES_ONE_BY_ONE != 0u) {
     leave_one_by_one();
     return;
   }
@@ -402,7 +448,7 @@ void leave() {
     Path path = paths[i];
     ShadingPoint point = points[i];
     if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[i], 0u);
-    leave_pixel(path, point, seen[i], own_lights[i], is_lit[i]);
+    leave_pixel(path, point, seen[i], own_lights[i], is_lit[i] && DEBUG_VIEW != DEBUG_VIEW_OCCLUSION);
   }
 }
 
@@ -410,14 +456,16 @@ void leave() {
 // the traversal, which halves the code to compile. CPU drivers execute the whole body of a loop in each of its turns.
 // Shading is therefore in the loop around the loop of turns, where it is executed twice and not once per source.
 void trace_pixels() {
-  uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : 0u;
+  uint sources = DEBUG_VIEW == DEBUG_VIEW_NONE ? source_count() : uint(SHOWS_OCCLUSION);
   uint source = 0u;
   uint layers = 0u;
   bool is_first_turn = true;
   bool aims = false;
   do {
     do {
-      if (has(FEATURE_SKY_LIGHT)) {
+      if (SHOWS_OCCLUSION) {
+        if (aims) aim_around();
+      } else if (has(FEATURE_SKY_LIGHT)) {
         if (aims) aim_one_by_one(load_light(VIEW.first_index.y + source), source);
       } else {
         if (aims) aim_at_source(load_light(VIEW.first_index.y + source), source);

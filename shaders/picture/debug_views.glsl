@@ -56,6 +56,9 @@ vec3 steps_color(Ray ray, Hit hit, vec4 normal_and_depth) {
   return color;
 }
 
+// The light that is not blocked is added as that of a source (aim_around in camera_stage.comp).
+vec3 occlusion_color(Ray ray, Hit hit, vec4 normal_and_depth) { return is_miss(hit) ? vec3(1.0) : vec3(0.0); }
+
 vec3 debug_color(Ray ray, Hit hit, vec4 normal_and_depth) {
 #define PROMIN_DEBUG_VIEW(KIND, ENUMERATOR, PREFIX, NUMBER, NAME, REQUEST, HELP) \
   if (DEBUG_VIEW == NUMBER) return PREFIX##_color(ray, hit, normal_and_depth);

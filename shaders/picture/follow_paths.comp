@@ -73,6 +73,9 @@ void choose_source_sample(uint path, uint source) {
   choose_sample(id, FIRST_LIGHT_PAIR + (turn / turns_of_bounce() + 1u) * source_count() + source);
 }
 
+// With FEATURE_SHADOW_CATCHERS: the light of the current point without the sources of this turn.
+vec3 left_of_caught;
+
 // Stores the unblocked contribution of a light source of this turn, and requests the source's shadow ray.
 void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   LightRecord light = load_light(VIEW.first_index.y + first_source(turn) + source);
@@ -85,6 +88,7 @@ void ask_source(uint path, uint source, ShadingPoint point, vec3 to_eye) {
   }
   vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
   store_vector(record_of_source(path, source) + RECORD_CONTRIBUTION, contribution);
+  if (has(FEATURE_SHADOW_CATCHERS)) left_of_caught = without_caught(point, contribution, left_of_caught);
   begin_source_log(first_source(turn) + source);
   end_source_log(contribution);
   uint asked = ASK_NOTHING;
@@ -140,6 +144,7 @@ vec3 add_unshadowed(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
         sampled = sample_light(light, point.position);
       }
       vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
+      if (has(FEATURE_SHADOW_CATCHERS)) seen = without_caught(point, contribution, seen);
       precise vec3 sum = seen + contribution;
       seen = sum;
       begin_source_log(source);
@@ -289,8 +294,19 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
       add_own_parts(path, point, own, coverage);
     }
   }
+  if (has(FEATURE_SHADOW_CATCHERS)) {
+    left_of_caught = seen;
+    // The light of the point is a factor of what is behind it.
+    bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
+    vec3 behind = is_of_camera ? radiance_behind(ray.origin, path.direction, true)
+                               : radiance_beyond(ray.origin, ray.direction, path.roughness);
+    precise vec3 shown = path.weight * behind;
+    if (catches_shadows(point)) path.weight = shown;
+    store_vector(record_of_weight(number, turn), path.weight);
+  }
   if (has(FEATURE_SHADOWS)) {
     ask_sources(number, point, -path.direction);
+    if (has(FEATURE_SHADOW_CATCHERS)) seen = left_of_caught;
   } else {
     seen = add_unshadowed(number, point, -path.direction, seen);
   }

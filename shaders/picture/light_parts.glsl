@@ -34,6 +34,15 @@ void add_beyond(Path path, vec3 beyond) {
   pixels[record] = floatBitsToUint(vec4(sum, share));
 }
 
+// Adds the light of what is behind a surface that catches shadows, and the fraction of it that is visible.
+void add_caught(Path path, vec3 light, vec3 share) {
+  if (!has(FEATURE_LIGHT_AOVS)) return;
+  uint record = record_of_part(path.pixel, PART_BACKGROUND);
+  precise float mean = (share.x + share.y + share.z) * (1.0 / 3.0);
+  precise vec4 sum = load_sum(record) + path.weight.x * vec4(light, mean);
+  pixels[record] = floatBitsToUint(sum);
+}
+
 // Adds the radiance of the path's hit without lights, if the camera sees it.
 void add_own_parts(Path path, ShadingPoint point, vec3 own, float coverage) {
   if (path.part != PART_BACKGROUND) return;
@@ -64,7 +73,7 @@ void add_to_unlit(uint pixel, vec3 weight, vec3 seen) {
 
 // Adds the radiance of a visible point if the point is unlit.
 void add_unlit(Path path, uint bounces, ShadingPoint point, vec3 seen, float coverage) {
-  if (bounces > 0u || model_of(point) != MATERIAL_UNLIT) return;
+  if (bounces > 0u || model_of(point) != MATERIAL_UNLIT || catches_shadows(point)) return;
   precise vec3 weight = coverage * path.weight;
   add_to_unlit(path.pixel, weight, seen);
 }

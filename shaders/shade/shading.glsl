@@ -441,6 +441,13 @@ vec3 unshadowed_contribution(ShadingPoint point, vec3 to_eye, LightRecord light,
   return contribution;
 }
 
+// Returns the light of a point without that of a source, if the point catches shadows: it is added again if nothing
+// blocks the source. So unshadowed points have no noise.
+vec3 without_caught(ShadingPoint point, vec3 contribution, vec3 seen) {
+  precise vec3 rest = seen - contribution;
+  return catches_shadows(point) ? rest : seen;
+}
+
 // Returns the origin of the shadow rays to sources in front of the surface, and to sources behind it.
 vec3 shadow_origin(ShadingPoint point) {
   return lift_off(point.shadow_position, point.geometric_normal, point.lift);

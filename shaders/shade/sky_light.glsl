@@ -109,12 +109,11 @@ vec3 choose_by_cosine(vec3 normal, vec2 u) {
   return normalize3(direction);
 }
 
-// The shares of the samples at a point: of those that choose a direction from the lobe of its coat and of its material,
-// and, of all other samples, of those that light its back.
+// The shares of the samples at a point.
 struct SkyShares {
-  float coat;
-  float material;
-  float behind;
+  float coat;      // the direction is chosen from the lobe of the coat
+  float material;  // the direction is chosen from the lobe of the material
+  float behind;    // share of all other samples: the direction lights the back
 };
 
 // Sets the parts of the lobes that rays from the sky light, and returns the shares of the samples. The rest of a lobe is
@@ -199,8 +198,7 @@ LightSample sample_sky(ShadingPoint point, vec3 to_eye, inout LightRecord light)
     density = by_sky * INVERSE_PI * max(dot3(normal, direction), 0.0);
   }
   if (has(FEATURE_METALLIC_ROUGHNESS) && !is_behind) {
-    precise float of_material = shares.material > 0.0 ? shares.material * density_of_lobe(point.normal, alpha, to_eye, direction) : 0.0;
-    density += of_material;
+    if (shares.material > 0.0) density += shares.material * density_of_lobe(point.normal, alpha, to_eye, direction);
     if (has(FEATURE_COATS) && shares.coat > 0.0) {
       density += shares.coat * density_of_lobe(point.coat.normal, coat_alpha, to_eye, direction);
     }

@@ -108,7 +108,7 @@ FAULTS = {
     # These are faults of the environment as a source (tests/gpu/sky_light_test.cpp).
     "sky_density_off": {"shade/sky_light.glsl": [(r"/ \(4\.0 \* side", "/ (4.08 * side")]},
     "dome_density_off": {"shade/sky_light.glsl": [(r"by_sky \* INVERSE_PI", "1.02 * \\g<0>")]},
-    "sky_lobes_left_out": {"shade/sky_light.glsl": [(r"density \+= of_material;", ";")]},
+    "sky_lobes_left_out": {"shade/sky_light.glsl": [(r"density \+= shares\.material[^;]*;", ";")]},
     "sky_squares_swapped": {"shade/sky_light.glsl": [(r"\(is_right \? 1u : 0u\)", "(is_right ? 0u : 1u)")]},
     "sky_horizon_hard": {"shade/sky_light.glsl": [(r"SHARE_OF_WIDEST \* widest", "0.0"), (r"USUAL_SQUARE\)", "1e-9)")]},
     "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},

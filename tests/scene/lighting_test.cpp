@@ -81,6 +81,18 @@ TEST(LightSceneTest, ASceneWithoutLightStandsInTheStudio) {
   EXPECT_EQ(scene.lights.size(), 1U);
 }
 
+TEST(LightSceneTest, TheSoftStudioHasASunOfTenDegrees) {
+  Scene scene = phong_scene();
+  EXPECT_TRUE(light_scene(scene, LightChoice::kSoft).has_studio_light);
+  ASSERT_EQ(scene.lights.size(), 1U);
+  EXPECT_FLOAT_EQ(scene.lights[0].angle, 10.0F * kPi / 180.0F);
+  EXPECT_TRUE(has_studio(scene));
+  scene.lights.clear();
+  scene.environment = {};
+  light_scene(scene, LightChoice::kStudio);
+  EXPECT_EQ(scene.lights[0].angle, 0.0F);
+}
+
 TEST(LightSceneTest, PhongsMaterialsTakeTheStudiosLightOverPi) {
   Scene scene = phong_scene();
   light_scene(scene);

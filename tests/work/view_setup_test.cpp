@@ -226,6 +226,38 @@ TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
   EXPECT_EQ(other.lights[0].kind, LightKind::kDirectional);
 }
 
+TEST(LightUpTest, SoftLightHasAGroundAndTheIntegratorDirect) {
+  const auto is_of_ground = [](const Object& object) { return object.name == "ground"; };
+  Scene scene = make_viewed_scene();
+  const Bounds bounds = bounds_of(scene);
+  const size_t materials = scene.materials.size();
+  light_up(scene, {.light = LightChoice::kSoft});
+  ASSERT_TRUE(is_of_ground(scene.objects.back()));
+  ASSERT_EQ(scene.materials.size(), materials + 1);
+  const auto& catcher = std::get<Unlit>(scene.materials.back().model);
+  EXPECT_TRUE(catcher.catches_shadows);
+  EXPECT_GT(catcher.color.x, 0.5F);
+  const auto& plane = std::get<Plane>(scene.geometries[scene.objects.back().geometry]);
+  EXPECT_LE(plane.point.y, bounds.lo.y);
+  EXPECT_NEAR(plane.point.y, bounds.lo.y, 1e-3F * glm::length(bounds.hi - bounds.lo));
+  EXPECT_TRUE(validate(scene).empty());
+
+  Scene without = make_viewed_scene();
+  light_up(without, {.light = LightChoice::kSoft, .has_ground = false});
+  EXPECT_FALSE(is_of_ground(without.objects.back()));
+  Scene hard = make_viewed_scene();
+  light_up(hard, {.has_ground = true});
+  EXPECT_TRUE(is_of_ground(hard.objects.back()));
+  Scene dark = make_viewed_scene();
+  light_up(dark, {.light = LightChoice::kNone, .has_ground = true});
+  EXPECT_FALSE(is_of_ground(dark.objects.back())) << "no light makes no shadow";
+
+  EXPECT_EQ(mode_of({.look = {.light = LightChoice::kSoft}}).integrator, Integrator::kDirect);
+  EXPECT_EQ(mode_of({.integrator = Integrator::kWhitted, .look = {.light = LightChoice::kSoft}}).integrator,
+            Integrator::kWhitted);
+  EXPECT_EQ(mode_of({}).integrator, Integrator::kWhitted);
+}
+
 TEST(LightUpTest, TheBackgroundIsTheUsers) {
   const BackgroundChoice environment{.is_environment = true};
   Scene scene = make_viewed_scene();

@@ -85,12 +85,14 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
 #define PROMIN_READ_kSteps(FIELD)
 #define PROMIN_READ_kSampling(FIELD)
 #define PROMIN_READ_kUnlit(FIELD)
+#define PROMIN_READ_kOcclusion(FIELD)
 #include "promin/kinds/aovs.def"
 #undef PROMIN_READ_kSurface
 #undef PROMIN_READ_kParts
 #undef PROMIN_READ_kSteps
 #undef PROMIN_READ_kSampling
 #undef PROMIN_READ_kUnlit
+#undef PROMIN_READ_kOcclusion
   });
 }
 

@@ -20,6 +20,9 @@ constexpr size_t kMostPiecesAtOnce = 64;
 /// The largest number of rays that a lane may count before its 32-bit counters are read.
 constexpr double kMaxRaysALane = 2e9;
 
+/// The number of samples of Aovs::ambient_occlusion in a picture with an error target.
+constexpr uint32_t kOcclusionSamples = 64;
+
 /// Extracts a window's pixels from those of a larger one.
 template <typename Value>
 void cut_out(std::vector<Value>& values, const PixelWindow& from, const PixelWindow& window) {
@@ -113,6 +116,7 @@ FilmOptions PictureTracer::film_options() const {
 
 void PictureTracer::take_change() {
   middle_film_.reset();
+  occlusion_film_.reset();
   if (!film_) return;
   try {
     film_->bind_scene();
@@ -255,6 +259,32 @@ void PictureTracer::trace_middle(const View& view, RenderResult& result, const P
   });
 }
 
+void PictureTracer::trace_occlusion(const View& view, RenderResult& result, const ProgressCallback& on_progress) {
+  View occluded = view;
+  occluded.max_depth = 0;
+  occluded.mode = {.debug_view = DebugView::kOcclusion};
+  if (view.error_target) occluded.samples_per_pixel = kOcclusionSamples;
+  occluded.error_target.reset();
+  if (!occlusion_film_) {
+    FeatureMask features = scene_.features(occluded.mode).without(layout::FEATURE_MIRRORS);
+    if (has_lens(view.camera)) features |= layout::FEATURE_LENS;
+    occlusion_film_.emplace(device_, scene_.device_scene(), features, film_options());
+    occlusion_film_->warm_up();
+  }
+  std::vector<vec3> shares;
+  for_each_band(occluded, occlusion_film_->records().count, [&](const PixelWindow& band, size_t first) {
+    const uvec2 size = band.hi - band.lo;
+    occlusion_film_->reserve(size.x * size.y);
+    RenderResult of_pass;
+    trace_window(*occlusion_film_, band, occluded, {0, occluded.samples_per_pixel}, of_pass, on_progress);
+    result.trace_ms += of_pass.trace_ms;
+    read_film(*occlusion_film_, size);
+    shares.resize(size_t{size.x} * size.y);
+    average_samples(film_records_, occluded.samples_per_pixel, shares);
+    for (size_t i = 0; i < shares.size(); ++i) result.aovs.ambient_occlusion[first + i] = shares[i].x;
+  });
+}
+
 RenderResult PictureTracer::make_result(const View& view) const {
   const PixelWindow window = picture_window(view);
   RenderResult result;
@@ -308,6 +338,7 @@ RenderResult PictureTracer::render_samples(const View& view, const ProgressCallb
   const double steps_share = wanted_.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
   const auto pixel_count = static_cast<double>(result.image.pixels.size());
   if (wanted_.steps) trace_middle(view, result, keep_going(progress));
+  if (wanted_.ambient_occlusion) trace_occlusion(view, result, keep_going(progress));
   for_each_band(view, film_->records().count, [&](const PixelWindow& band, size_t first) {
     const uvec2 size = band.hi - band.lo;
     trace_band(band, view, first, result, [&](double fraction) {

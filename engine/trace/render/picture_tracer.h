@@ -109,6 +109,9 @@ class PictureTracer {
   void trace_middle(const View& view, RenderResult& result, const ProgressCallback& on_progress);
   RenderMode mode_of_middle(RenderMode mode) const;
   void prepare_middle_film(const RenderMode& mode);
+  /// Traces samples of the occlusion of all pixels, and adds it to the result. A picture with an error target has
+  /// kOcclusionSamples of them.
+  void trace_occlusion(const View& view, RenderResult& result, const ProgressCallback& on_progress);
   /// Returns a result whose picture has no pixels.
   RenderResult make_result(const View& view) const;
   /// Renders a picture with a fixed number of samples per pixel.
@@ -151,6 +154,8 @@ class PictureTracer {
   FeatureMask film_features_;
   /// The film of trace_middle(), created when its AOVs are first requested.
   std::optional<Film> middle_film_;
+  /// The film of trace_occlusion().
+  std::optional<Film> occlusion_film_;
   UnsetVector<uvec4> film_records_;
   /// The sample to trace; empty for all samples.
   std::optional<uint32_t> only_sample_;

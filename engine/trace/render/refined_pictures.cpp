@@ -104,6 +104,7 @@ RenderResult PictureTracer::begin_refined(const View& view, const ProgressCallba
   centers.samples_per_pixel = 1;
   prepare_to_refine(view);
   if (tells_of_centers()) trace_middle(centers, result, keep_going(progress));
+  if (wanted_.ambient_occlusion) trace_occlusion(view, result, keep_going(progress));
   result.error.emplace(PictureError{.target = view.error_target->error});
   return result;
 }

@@ -48,6 +48,10 @@ FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environ
     features |= layout::FEATURE_SKY_LIGHT | layout::FEATURE_SAMPLED_LIGHT;
     if (casts_shadows(geometry_features_, primitive_count_)) features |= layout::FEATURE_SHADOWS;
   }
+  if (mode.debug_view == DebugView::kOcclusion) {
+    features |= layout::FEATURE_SAMPLED_LIGHT;
+    if (casts_shadows(geometry_features_, primitive_count_)) features |= layout::FEATURE_SHADOWS;
+  }
   if (!mode.has_shadows) features = features.without(layout::FEATURE_SHADOWS);
   return features | features_of(mode.debug_view);
 }

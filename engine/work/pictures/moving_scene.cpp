@@ -48,6 +48,10 @@ MovingScene::MovingScene(Scene scene, PoseChoice clip)
 
 void MovingScene::take_light(const Scene& lit_envelope, const std::vector<uint32_t>& lights_off) {
   lit_ = lit_envelope;
+  // The last object may be a ground (ground.h), which no pose moves.
+  if (lit_.objects.size() > envelope_.objects.size()) {
+    ground_ = std::get<Plane>(lit_.geometries[lit_.objects.back().geometry]);
+  }
   // Only its lights, materials and environment are used.
   lit_.geometries.clear();
   lit_.objects.clear();
@@ -66,6 +70,10 @@ Scene MovingScene::at(double time_s) const {
     auto* phong = std::get_if<Phong>(&posed.materials[i].model);
     const auto* lit = std::get_if<Phong>(&lit_.materials[i].model);
     if (phong != nullptr && lit != nullptr) phong->ambient = lit->ambient;
+  }
+  if (ground_) {
+    posed.materials.push_back(lit_.materials.back());
+    posed.add(lit_.materials.back().name, *ground_, static_cast<uint32_t>(posed.materials.size() - 1));
   }
   return posed;
 }

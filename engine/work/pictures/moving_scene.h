@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/feature_mask.h"
@@ -39,6 +40,8 @@ class MovingScene {
   std::vector<double> times_;
   Scene envelope_;
   Scene lit_;
+  /// The ground under all poses, if there is one.
+  std::optional<Plane> ground_;
   std::vector<uint32_t> lights_off_;
   FeatureMask features_;
 };

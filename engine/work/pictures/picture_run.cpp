@@ -9,6 +9,7 @@
 #include "promin/error.h"
 #include "promin/image.h"
 #include "work/pictures/camera_choice.h"
+#include "work/pictures/ground.h"
 #include "work/pictures/load_posed.h"
 #include "work/pictures/view_setup.h"
 
@@ -107,6 +108,7 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
     run.moving = moving;
   }
   switch_lights(scene.lights, options.view.lights_off);
+  refresh_ground(scene);
   const auto is_on = [](const Light& light) { return light.is_on; };
   stats.light_count = static_cast<size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_on));
   return run;

@@ -129,6 +129,10 @@ Metadata describe_picture(const RunStats& stats) {
                        {"promin:max_depth", std::to_string(stats.view->max_depth)},
                        {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
                        {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
+  if (stats.view->mode.integrator != Integrator::kWhitted) {
+    metadata.emplace_back("promin:integrator", integrator_names()[static_cast<size_t>(stats.view->mode.integrator)]);
+    metadata.emplace_back("promin:seed", std::to_string(stats.view->seed));
+  }
   if (stats.motion.any()) {
     metadata.emplace_back("promin:time_s", fmt::format("{}", stats.motion.time_s.value_or(0.0)));
     metadata.emplace_back("promin:animation", stats.motion.animations.empty()

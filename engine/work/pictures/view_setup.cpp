@@ -12,6 +12,7 @@
 #include "image/color_words.h"
 #include "promin/error.h"
 #include "work/pictures/camera_choice.h"
+#include "work/pictures/ground.h"
 
 namespace promin::work {
 namespace {
@@ -59,7 +60,8 @@ std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
 }
 
 RenderMode mode_of(const ViewOptions& options) {
-  return {options.debug_view, !options.has_no_shadows, options.integrator.value_or(Integrator::kWhitted)};
+  const Integrator usual = options.look.light == LightChoice::kSoft ? Integrator::kDirect : Integrator::kWhitted;
+  return {options.debug_view, !options.has_no_shadows, options.integrator.value_or(usual)};
 }
 
 void put_lens(const ViewOptions& options, Camera& camera) {
@@ -93,9 +95,11 @@ AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentCh
   surroundings.replace_sky(scene);
   AssumedLight assumed = light_scene(scene, look.light);
   surroundings.adjust_sky(scene);
-  if (!look.background) return assumed;
-  assumed.has_background = false;
-  show_background(*look.background, scene.environment);
+  if (look.background) {
+    assumed.has_background = false;
+    show_background(*look.background, scene.environment);
+  }
+  if (look.wants_ground()) add_ground(scene);
   return assumed;
 }
 

@@ -55,6 +55,8 @@ struct BackgroundChoice {
 /// The user's choices of light and display. Open choices depend on the scene (promin/lighting.h).
 struct LookOptions {
   LightChoice light = LightChoice::kAuto;
+  /// Whether a ground under the scene shows its shadow; if empty, it does with LightChoice::kSoft.
+  std::optional<bool> has_ground = std::nullopt;
   std::optional<BackgroundChoice> background = std::nullopt;
   /// Exposure in stops; empty if it is chosen automatically.
   std::optional<float> exposure_ev = std::nullopt;
@@ -64,6 +66,8 @@ struct LookOptions {
   bool dithers = false;
   /// The value of RendererOptions::texture_bytes, in MiB.
   uint32_t texture_memory_mib = kDefaultTextureBytes >> 20;
+
+  bool wants_ground() const { return has_ground.value_or(light == LightChoice::kSoft); }
 };
 
 /// The user's choices of a camera's position, directions and lens. Positions are in the world. Directions need not be

@@ -144,6 +144,7 @@ Field<RenderSpec> make_exposure() {
 
 void add_look(Table<RenderSpec>& table) {
   table.add("light", PROMIN_AT(view.look.light), NameOf<LightChoice>{light_choice_names(), 1});
+  table.add("ground", PROMIN_AT(view.look.has_ground), Flag());
   table.add("background", PROMIN_AT(view.look.background), Background(), {.replaces = {"alpha"}});
   table.add(make_exposure());
   table.add("tone_mapping", PROMIN_AT(view.look.tone_mapping), NameOf<ToneMapping>{tone_mapping_names()});
