@@ -195,6 +195,7 @@ std::vector<MessageCase> cases_of_views() {
       spoil_view("view.size.range", [](View& v) { v.size = uvec2(1U << 30); }),
       spoil_view("view.samples.range", [](View& v) { v.samples_per_pixel = 0; }),
       spoil_view("view.filter.range", [](View& v) { v.filter_width = 0; }),
+      spoil_view("view.occlusion.range", [](View& v) { v.occlusion_distance = -1; }),
       spoil_view("view.depth.range", [](View& v) { v.max_depth = kMaxDepth + 1; }),
       spoil_view("view.crop.empty",
                  [](View& v) {
