@@ -43,7 +43,8 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
   profile.samples_that_repay_packets = 1U << 19;
   profile.ray_packet_size = 4;
   profile.may_cut_loops = true;
-  profile.ray_traversal = {.steps_together = 2, .waits_with_solids = true};
+  profile.ray_traversal = {.steps_together = 2, .waits_with_solids = true, .waits_with_holes = true};
+  profile.packet_traversal.waits_with_holes = true;
 }
 
 /// Lets packets test their leaves after each step. With this, pictures take 0.78 to 0.94 of the time with lavapipe
@@ -52,6 +53,8 @@ void suit_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
 /// NIR again, which takes a quarter to two thirds of the CPU time of small pictures (docs/performance_log.md).
 void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
   profile.packet_traversal = {.steps_together = 1, .waits_with_solids = true};
+  // These versions jump over lookups that no lane needs.
+  profile.ray_traversal.waits_with_holes = false;
   profile.keeps_kernels = traits.has_shader_objects;
 }
 

@@ -31,6 +31,8 @@ struct TraversalForm {
   uint32_t steps_together = 0;
   /// True if solids in the leaves of a tree with more triangles wait until no lane can continue without them.
   bool waits_with_solids = false;
+  /// True if triangles that a ray may hit wait too, in scenes whose textures have holes.
+  bool waits_with_holes = false;
 };
 
 /// The settings for a device: all decisions that depend on its type or driver. No setting changes a bit of a picture or

@@ -16,6 +16,8 @@ layout(constant_id = CONSTANT_PACKET_SIZE) const uint PACKET_SIZE = 1u;
 layout(constant_id = CONSTANT_STEPS_TOGETHER) const uint STEPS_TOGETHER = 0u;
 // True if solids wait until no lane can continue without them.
 layout(constant_id = CONSTANT_WAITS_WITH_SOLIDS) const uint WAITS_WITH_SOLIDS = 0u;
+// True if triangles that a ray may hit wait too, in scenes whose textures have holes.
+layout(constant_id = CONSTANT_WAITS_WITH_HOLES) const uint WAITS_WITH_HOLES = 0u;
 // True if all of the kernel's rays are any-hit rays.
 layout(constant_id = CONSTANT_ALL_ASK_FOR_ANY) const uint ALL_ASK_FOR_ANY = 0u;
 

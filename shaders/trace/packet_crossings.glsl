@@ -153,3 +153,6 @@ bool glance_at_triangle(Primitive p, uint index) {
   }
   return needs_second_look;
 }
+
+// With ALL_ASK_FOR_ANY, nothing calls this function.
+bool may_meet_triangle(Primitive p) { return true; }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-// Intersects a packet with triangles. Kernels for comparisons provide a file of this name with these two functions
+// Intersects a packet with triangles. Kernels for comparisons provide a file of this name with these functions
 // (tools/plain).
 
 // Only few rays of a packet hit a triangle whose box they hit. The code first tests whether each ray may hit it, and
@@ -69,4 +69,16 @@ bool glance_at_triangle(Primitive p, uint index) {
     }
   }
   return needs_second_look;
+}
+
+// Returns whether a ray of the packet may hit the triangle, by a glance that keeps no hit.
+bool may_meet_triangle(Primitive p) {
+  bool may_be_met = false;
+  [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
+    ShearedTriangle sheared = shear_triangle(packet[slot], p);
+    Glance glance = glance_at(sheared, packet[slot].shear.z, packet[slot].tmin, limits[slot]);
+    bool is_missed = glance.is_missed && shifts[slot] == 0.0;
+    may_be_met = may_be_met || (sheared.may_be_met && limits[slot] >= 0.0 && !is_missed);
+  }
+  return may_be_met;
 }

@@ -13,12 +13,17 @@
 // waits.
 const uint SOLIDS_WAIT = WAITS_WITH_SOLIDS * FEATURE_BIT(FEATURE_TRIANGLES) * uint(TREE_KIND_COUNT > 1u);
 
+// True if a triangle may need a second look, which waits until no lane can continue without it. Any-hit rays glance at
+// triangles first. If textures have holes, older versions of lavapipe would execute the lookup for all lanes at each
+// triangle.
+const uint LOOKS_TWICE = ALL_ASK_FOR_ANY | (WAITS_WITH_HOLES & FEATURE_BIT(FEATURE_HOLES));
+
 // The primitives of the current leaf that are left to test. enter_leaf and the functions that intersect primitives set
 // it.
 struct Leaf {
   uint next;
   uint end;
-  bool needs_second_look;  // whether the triangle just before `next` needs a second look; with ALL_ASK_FOR_ANY
+  bool needs_second_look;  // whether the triangle just before `next` needs a second look; with LOOKS_TWICE
   bool has_solids_next;    // whether `next` and all primitives behind it are solids; with SOLIDS_WAIT
 };
 Leaf leaf;
@@ -26,7 +31,7 @@ Leaf leaf;
 // Returns whether the lane delays work that CPU drivers would otherwise execute for all lanes after each leaf of one
 // lane.
 bool waits() {
-  return (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) || (SOLIDS_WAIT != 0u && leaf.has_solids_next);
+  return (LOOKS_TWICE != 0u && leaf.needs_second_look) || (SOLIDS_WAIT != 0u && leaf.has_solids_next);
 }
 
 // The position of the packet in the tree. take_child and enter_family set it.
@@ -93,6 +98,8 @@ void intersect_triangles(bool asks_for_any) {
       Primitive p = load_primitive(leaf.next);
       if (ALL_ASK_FOR_ANY != 0u) {
         leaf.needs_second_look = glance_at_triangle(p, leaf.next);
+      } else if (LOOKS_TWICE != 0u) {
+        leaf.needs_second_look = may_meet_triangle(p);
       } else {
         intersect_packet_with_triangle(p, leaf.next, asks_for_any);
       }
@@ -178,7 +185,7 @@ uint go_through_leaf(uint current, bool asks_for_any) {
 
 // Intersects the waiting primitives of the current leaf.
 void end_waiting(bool asks_for_any) {
-  if (ALL_ASK_FOR_ANY != 0u && leaf.needs_second_look) {
+  if (LOOKS_TWICE != 0u && leaf.needs_second_look) {
     intersect_packet_with_triangle(load_primitive(leaf.next - 1u), leaf.next - 1u, asks_for_any);
     leaf.needs_second_look = false;
   }

@@ -33,6 +33,7 @@ void expect_gpu(const DeviceProfile& profile) {
   for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal}) {
     EXPECT_EQ(form.steps_together, 0U);
     EXPECT_FALSE(form.waits_with_solids);
+    EXPECT_FALSE(form.waits_with_holes);
   }
   EXPECT_EQ(profile.target_dispatch_ms, 25.0);
   EXPECT_EQ(profile.most_silence_s, 120.0);
@@ -101,6 +102,8 @@ TEST(ProfileTest, PacketsOfNewerLavapipesLookIntoLeavesAfterEachStep) {
     const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, older);
     EXPECT_EQ(profile.packet_traversal.steps_together, 0U);
     EXPECT_EQ(profile.ray_traversal.steps_together, 2U);
+    EXPECT_TRUE(profile.packet_traversal.waits_with_holes);
+    EXPECT_TRUE(profile.ray_traversal.waits_with_holes);
   }
   for (const char* newer : {"Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)", "Mesa 25.1.0-devel", "Mesa 101.0"}) {
     const DeviceProfile profile = profile_of(true, kLlvmpipe, 8, newer);
@@ -108,6 +111,7 @@ TEST(ProfileTest, PacketsOfNewerLavapipesLookIntoLeavesAfterEachStep) {
     EXPECT_EQ(profile.ray_traversal.steps_together, 2U);
     for (const TraversalForm& form : {profile.packet_traversal, profile.ray_traversal}) {
       EXPECT_TRUE(form.waits_with_solids);
+      EXPECT_FALSE(form.waits_with_holes);
     }
     EXPECT_EQ(profile.pixel_packet_size, 4U);
   }

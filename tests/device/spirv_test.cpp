@@ -106,6 +106,7 @@ std::vector<SpecializationConstant> constants_of(uint64_t features, uint32_t pac
           {layout::CONSTANT_ALL_ASK_FOR_ANY, any},
           {layout::CONSTANT_STEPS_TOGETHER, any},
           {layout::CONSTANT_WAITS_WITH_SOLIDS, any},
+          {layout::CONSTANT_WAITS_WITH_HOLES, any},
           // Only one of the kernels has this constant.
           {layout::CONSTANT_LISTS_CROSSINGS, packet_size > 1 ? 1U : 0U}};
 }

@@ -126,7 +126,8 @@ TEST(SpirvTest, SpecialisationConstantsAreThoseOfTheLayout) {
                                                     {"PACKET_SIZE", layout::CONSTANT_PACKET_SIZE},
                                                     {"ALL_ASK_FOR_ANY", layout::CONSTANT_ALL_ASK_FOR_ANY},
                                                     {"STEPS_TOGETHER", layout::CONSTANT_STEPS_TOGETHER},
-                                                    {"WAITS_WITH_SOLIDS", layout::CONSTANT_WAITS_WITH_SOLIDS}};
+                                                    {"WAITS_WITH_SOLIDS", layout::CONSTANT_WAITS_WITH_SOLIDS},
+                                                    {"WAITS_WITH_HOLES", layout::CONSTANT_WAITS_WITH_HOLES}};
   EXPECT_EQ(test::SpirvModule(k_cast_spirv).spec_ids, expected);
   std::map<std::string, uint32_t> of_pictures = expected;
   of_pictures["FETCHES_FILM_TEXELS"] = layout::CONSTANT_FETCHES_FILM_TEXELS;

@@ -66,6 +66,7 @@ Film::Film(const gpu::Device& device, std::shared_ptr<const DeviceScene> scene, 
       records_(features),
       packet_size_(pick_packet_size(device.profile(), features, options)),
       avoids_texels_(options.avoids_texels),
+      waits_with_holes_(options.waits_with_holes),
       shaders_(options.shaders),
       log_records_(options.log_records),
       view_constants_(device, sizeof(layout::ViewConstants), vk::BufferUsageFlagBits::eUniformBuffer) {
@@ -92,7 +93,8 @@ void Film::bind_scene() {
   // If the device has already compiled the pipeline, it is used again, unless the scene no longer fits in texel
   // buffers.
   const auto constants_for = [&](uint32_t packet_size) {
-    const gpu::TraversalForm form = traversal_form(device_->profile(), *scene_, packet_size);
+    gpu::TraversalForm form = traversal_form(device_->profile(), *scene_, packet_size);
+    form.waits_with_holes = waits_with_holes_.value_or(form.waits_with_holes);
     std::vector<gpu::SpecializationConstant> constants =
         traversal_constants(form, features_, scene_->stack_size(), scene_->fetches_texels() && !avoids_texels_);
     constants.push_back({layout::CONSTANT_PACKET_SIZE, packet_size});

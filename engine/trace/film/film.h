@@ -34,6 +34,8 @@ struct FilmOptions {
   uint64_t expected_samples = std::numeric_limits<uint64_t>::max();
   /// If true, shaders read the scene from storage buffers even if texel buffers can hold it. For tests.
   bool avoids_texels = false;
+  /// Replaces TraversalForm::waits_with_holes of the device profile. For tests.
+  std::optional<bool> waits_with_holes = std::nullopt;
   /// The shaders. Other shaders with the same bindings are for measurements.
   PictureShaders shaders = picture_shaders();
   /// Number of uvec4 records after the pixels, for FEATURE_RAY_LOG.
@@ -125,6 +127,7 @@ class Film {
   FilmRecords records_;
   uint32_t packet_size_;
   bool avoids_texels_;
+  std::optional<bool> waits_with_holes_;
   PictureShaders shaders_;
   uint32_t log_records_;
   gpu::Buffer view_constants_;

@@ -41,7 +41,8 @@ std::vector<gpu::SpecializationConstant> traversal_constants(const gpu::Traversa
           {layout::CONSTANT_STACK_SIZE, stack_size},
           {layout::CONSTANT_FETCHES_TEXELS, fetches_texels ? 1U : 0U},
           {layout::CONSTANT_STEPS_TOGETHER, form.steps_together},
-          {layout::CONSTANT_WAITS_WITH_SOLIDS, form.waits_with_solids ? 1U : 0U}};
+          {layout::CONSTANT_WAITS_WITH_SOLIDS, form.waits_with_solids ? 1U : 0U},
+          {layout::CONSTANT_WAITS_WITH_HOLES, form.waits_with_holes ? 1U : 0U}};
 }
 
 TracingKernel::TracingKernel(const gpu::Device& device, std::span<const uint32_t> spirv,

@@ -33,6 +33,8 @@ struct TunedRendererOptions : RendererOptions {
   uint32_t blocks_per_dispatch = 0;
   /// If true, shaders read the scene from storage buffers even if texel buffers can hold it. The image does not change.
   bool avoids_texels = false;
+  /// Replaces TraversalForm::waits_with_holes of the device profile. The image does not change.
+  std::optional<bool> waits_with_holes = std::nullopt;
   /// The shaders. Renderer::explain() does not use other shaders with the same bindings.
   PictureShaders shaders = picture_shaders();
   /// A BVH file that is shared with other processes (pack_scene_sharing). It is not used if `bvh` names a file.

@@ -111,6 +111,7 @@ FilmOptions PictureTracer::film_options() const {
   return {.packet_size = options_.packet_size,
           .expected_samples = options_.expected_samples,
           .avoids_texels = options_.avoids_texels,
+          .waits_with_holes = options_.waits_with_holes,
           .shaders = options_.shaders};
 }
 

@@ -13,3 +13,5 @@ bool glance_at_triangle(Primitive p, uint index) {
   intersect_packet_with_triangle(p, index, true);
   return false;
 }
+
+bool may_meet_triangle(Primitive p) { return true; }
