@@ -20,6 +20,7 @@ BIN, TOOLS, SCENES = map(pathlib.Path, sys.argv[2:5])
 sys.path[:0] = [str(TOOLS / "lab"), str(TOOLS)]
 sys.dont_write_bytecode = True
 
+import processes
 from figures import gap_text, number
 from stats import figures_of_times, fit_doublings, median_interval, read_figures
 
@@ -103,7 +104,7 @@ def names_gaps(folder):
         (folder / name).symlink_to(f"/bin/{name}")
     path = str(folder)
     found = measure()
-    expect(not found["rows"] and found["first"], f"without peers: {found}")
+    expect(not found["rows"], f"without peers: {found}")
     expect([gap["reason"] for gap in found["gaps"]] == ["not installed"] * 2, f"without peers: {found['gaps']}")
     install("tachyon", "echo working; echo 'Tachyon: no such file' >&2; exit 1")
     install("povray", "echo hi")
@@ -123,6 +124,22 @@ def names_gaps(folder):
     expect(row["mean_difference"] > 0.01 and row["time_ratio"] == [row["promin_ms"][0] / 2500.0], f"{row}")
 
 
+def measures_processes(folder):
+    """A process with empty caches compiles its kernels; the next one takes them from the caches. A process that fails
+    is an error."""
+    rows = processes.measure(BIN / "promin", [(SCENES / "sphere.gltf", 16)], 2)
+    expect([row["scene"] for row in rows] == ["sphere.gltf"], f"rows: {rows}")
+    times = [rows[0][f"{caches}_{clock}"] for caches in ("cached", "empty") for clock in ("cpu_s", "s")]
+    expect(all(len(runs) == 2 and min(runs) > 0.0 for runs in times), f"times: {rows}")
+    expect(max(rows[0]["cached_cpu_s"]) < min(rows[0]["empty_cpu_s"]), f"kernels are not compiled, or twice: {rows}")
+    try:
+        processes.measure(BIN / "promin", [(folder / "none.gltf", 16)], 1)
+    except RuntimeError as problem:
+        expect("none.gltf" in str(problem), f"another error: {problem}")
+    else:
+        expect(False, "a process that failed was measured")
+
+
 def _cells(text):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines()]
 
@@ -132,10 +149,15 @@ def check_bench_tables(folder):
     system.mkdir()
     run_lab("rates", "wavy:500", "--runs", 1, "--side", 32, "-o", system / "rates.json")
     run_lab("growth", "--quick", "--runs", 1, "--side", 32, "-o", folder / "growth.json")
+    process = {"scene": "a.gltf", "width": 16, "cached_cpu_s": [2.0], "cached_s": [3.0]}
+    process |= {"empty_cpu_s": [5.0], "empty_s": [4.0]}
+    (system / "processes.json").write_text(json.dumps({"processes": {"rows": [process]}}), encoding="utf-8")
     done = run_python("bench_tables.py", "-o", folder / "bench.json", "--growth", folder / "growth.json", system)
     expect(done.returncode == 0, f"bench_tables.py: {done.stderr}")
     lines = _cells(done.stdout)
-    report = read_figures(system / "rates.json")
+    report = read_figures(system / "rates.json") | read_figures(system / "processes.json")
+    cells = next(line for line in lines if line[1] == "a.gltf")
+    expect([cell[0] for cell in cells[3:]] == ["2", "3", "5", "4"], f"other processes: {cells}")
     for row in report["rates"]["rows"]:
         cells = next(line for line in lines if line[1:3] == [row["scene"], row["rays"]])
         expect(cells[4] == number(row["promin_mrays_per_s"]), f"another rate than {row}: {cells}")
@@ -241,7 +263,8 @@ def writes_a_report(folder):
     expect(done.returncode == 1 and "no such scene" in done.stderr, f"a scene that is not there: {done}")
 
 
-TESTS = {test.__name__: test for test in (computes_figures, names_gaps, makes_tables, writes_a_report)}
+TESTS = (computes_figures, measures_processes, names_gaps, makes_tables, writes_a_report)
+TESTS = {test.__name__: test for test in TESTS}
 
 with tempfile.TemporaryDirectory() as name:
     TESTS[sys.argv[1]](pathlib.Path(name))

@@ -69,14 +69,13 @@ _OVER_RAYS_COLUMNS = [
     ("the same rays, ms", lambda r: spread(r.get("peer_ms"))),
     ("over these", lambda r: interval(r.get("time_ratio"))),
 ]
-_FIRST_COLUMNS = [
+_PROCESSES_COLUMNS = [
     ("scene", lambda r: r["scene"]),
-    ("whole process, ms", lambda r: spread(r["process_ms"])),
-    ("its tracing", lambda r: spread(r["trace_ms"])),
-    ("process of one sphere at 16²", lambda r: spread(r["one_sphere_process_ms"])),
-    ("over its tracing and twice one sphere's", lambda r: interval(r["time_ratio"])),
-    ("rays", lambda r: f"{r['rays']:,}"),
-    ("shadow rays", lambda r: f"{r['shadow_rays']:,}"),
+    ("width", lambda r: r["width"]),
+    ("CPU s, cached kernels", lambda r: spread(r["cached_cpu_s"])),
+    ("elapsed", lambda r: spread(r["cached_s"])),
+    ("CPU s, empty caches", lambda r: spread(r["empty_cpu_s"])),
+    ("elapsed", lambda r: spread(r["empty_s"])),
 ]
 
 
@@ -160,17 +159,19 @@ def tables(reports, growth):
     yield _table(reports, "peers", "rows", _PICTURES_COLUMNS, [("target", _picture_target)])
     for report in reports:
         yield gap_text(report.get("peers", {}).get("gaps", []))
-    yield "First picture: its whole process over its tracing and twice the process of one sphere at 16²:\n"
-    first = [("target", lambda _, r: _target(_ratio_of(r), most=1))]
-    yield _table(reports, "peers", "first", _FIRST_COLUMNS, first)
+    yield "Whole processes that render a first picture, 1 sample per pixel:\n"
+    yield _table(reports, "processes", "rows", _PROCESSES_COLUMNS)
     yield "Node steps and primitive tests a ray over the triangles of a wavy sphere:\n"
     yield _growth_table(growth["growth"])
 
 
 def _read_driver(folder):
-    """Returns the tables of a driver's rates, with the pictures of the peers if they were measured."""
-    peers = folder / "peers.json"
-    return read_figures(folder / "rates.json") | (read_figures(peers) if peers.exists() else {})
+    """Returns the tables of a driver's rates, with the pictures of the peers and the processes if they were
+    measured."""
+    report = read_figures(folder / "rates.json")
+    for file in (folder / "peers.json", folder / "processes.json"):
+        report |= read_figures(file) if file.exists() else {}
+    return report
 
 
 def main():

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the times of promin, Tachyon and POV-Ray for the sphereflake in turns, and the time of a first picture.
-tools/bench calls this program. The page of tools/report uses its classes."""
+"""Measures the times of promin, Tachyon and POV-Ray for the sphereflake in turns. tools/bench calls this
+program. The page of tools/report uses its classes."""
 
 import argparse
 import json
@@ -99,34 +99,18 @@ def gap_of(name, peer, failure=None):
 
 
 class _Promin:
-    """Runs `promin render` on the sphereflake and on one sphere."""
+    """Runs `promin render` on the sphereflake."""
 
     def __init__(self, programs, folder, side):
         self._program, self._folder, self._side = programs / "promin", folder, side
-        self.trace_ms, self.process_ms, self.one_sphere_process_ms, self.rays = [], [], [], {}
-
-    def _render(self, name, side):
-        """Returns the milliseconds that the device traces, the milliseconds of the whole process by the clock, and the
-        number of rays."""
-        command = (self._program, "render", f"{name}.gltf", "-o", f"{name}.exr", "--size", side, side)
-        settings = ("--spp", 1, "--max-depth", MAX_DEPTH, "--quiet", "--stats", "stats.json")
-        _, took_ms = run_program(*command, *settings, folder=self._folder)
-        stats = json.loads((self._folder / "stats.json").read_text(encoding="utf-8"))
-        return stats["times_ms"]["trace"], took_ms, stats["rays"]
+        self.trace_ms = []
 
     def render(self):
-        trace_ms, process_ms, self.rays = self._render("flake", self._side)
-        self.trace_ms.append(trace_ms)
-        self.process_ms.append(process_ms)
-        self.one_sphere_process_ms.append(self._render("ball", 16)[1])
-
-    def forget_times(self):
-        for times in (self.trace_ms, self.process_ms, self.one_sphere_process_ms):
-            times.clear()
-
-
-def _ratios(times, others):
-    return [own / other for own, other in zip(times, others)]
+        command = (self._program, "render", "flake.gltf", "-o", "flake.exr", "--size", self._side, self._side)
+        settings = ("--spp", 1, "--max-depth", MAX_DEPTH, "--quiet", "--stats", "stats.json")
+        run_program(*command, *settings, folder=self._folder)
+        stats = json.loads((self._folder / "stats.json").read_text(encoding="utf-8"))
+        self.trace_ms.append(stats["times_ms"]["trace"])
 
 
 def _run_turns(promin, peers, runs, folder):
@@ -141,7 +125,7 @@ def _run_turns(promin, peers, runs, folder):
                 if turn > 0:
                     peer.trace_ms.append(trace_ms)
             if turn == 0:
-                promin.forget_times()
+                promin.trace_ms.clear()
     except RuntimeError as problem:
         return last_line(problem)
     return None
@@ -151,24 +135,9 @@ def _row_of(peer, promin, difference):
     return {
         "promin_ms": promin.trace_ms,
         "peer_ms": peer.trace_ms,
-        "time_ratio": _ratios(promin.trace_ms, peer.trace_ms),
+        "time_ratio": [own / other for own, other in zip(promin.trace_ms, peer.trace_ms)],
         "mean_difference": difference["mean_absolute"],
         "different_pixels_percent": difference["different_percent"],
-    }
-
-
-def _first_row(promin):
-    """Returns the row of the first picture. The target is the time of its tracing plus the time of two whole processes
-    that trace almost nothing."""
-    allowed_ms = [trace + 2 * small for trace, small in zip(promin.trace_ms, promin.one_sphere_process_ms)]
-    return {
-        "trace_ms": promin.trace_ms,
-        "process_ms": promin.process_ms,
-        "one_sphere_process_ms": promin.one_sphere_process_ms,
-        "allowed_ms": allowed_ms,
-        "time_ratio": _ratios(promin.process_ms, allowed_ms),
-        "rays": sum(promin.rays.values()),
-        "shadow_rays": promin.rays["shadow"],
     }
 
 
@@ -180,25 +149,21 @@ def _compare(programs, folder, peer):
 
 
 def measure(programs, folder, runs, side, level):
-    """Measures. Returns a dict: "rows" of the peers, "first" for the first picture, and "gaps" for missing peers."""
-    for name, depth in (("flake", level), ("ball", 0)):
-        sphereflake(depth, has_endless_ground=True).write(folder / f"{name}.gltf")
-    of_scene = {"scene": f"sphereflake:{level}"}
+    """Measures. Returns a dict: "rows" of the peers, and "gaps" for missing peers."""
+    sphereflake(level, has_endless_ground=True).write(folder / "flake.gltf")
     peers = {peer.name: peer for peer in find_peers(folder, folder / "flake.gltf", side)}
     promin = _Promin(programs, folder, side)
-    section = {"rows": [], "first": [], "gaps": []}
+    section = {"rows": [], "gaps": []}
     failure = _run_turns(promin, peers.values(), runs, folder)
     what = f"a picture of {side} by {side} pixels, {MAX_DEPTH} bounces"
     for name in PEERS:
         peer = peers.get(name)
         difference = _compare(programs, folder, peer) if peer and not failure else None
         if difference is not None:
-            head = {**of_scene, "peer": peer.version, "what": what}
+            head = {"scene": f"sphereflake:{level}", "peer": peer.version, "what": what}
             section["rows"].append({**head, **_row_of(peer, promin, difference)})
         else:
             section["gaps"].append(gap_of(name, peer, failure))
-    if not failure:
-        section["first"].append({**of_scene, **_first_row(promin)})
     return section
 
 
