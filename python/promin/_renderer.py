@@ -152,9 +152,9 @@ class Renderer:
         """aovs: the AOVs of the pictures, with the names of include/promin/aovs.h: "depth", "normal", "object", ...,
         and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
         Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
-        light: the light that is added to a scene without light: "auto", "studio", "headlight", "none", or "soft", which
-        is the studio with soft shadows, a ground and the integrator "direct". ground: True if a ground under the scene
-        shows its shadow; None: only with the light "soft". background:
+        light: the light that is added to a scene without light: "auto", "studio", "headlight", "none" or "soft". The
+        soft light is the studio with soft shadows of its lamps and its sky, and with a ground. ground: True if a ground
+        under the scene shows its shadow, False if not; None: only with soft light. background:
         the background, as in `promin render --background`. Three sRGB numbers from 0 to 1, a name such as "white", or
         "#80a0ff" are a colour that pictures show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone
         mapped. "environment" shows the environment that lights the scene. None: the scene's background, or a grey

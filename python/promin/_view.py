@@ -79,14 +79,14 @@ class View:
     debug_view: str = "full"
     """The property that the picture shows: "full" for light, or "normals", "uv", "object", "primitive", "depth",
     "steps" or "occlusion"."""
-    occlusion_distance: float | None = None
-    """Largest distance at which surfaces darken others in the debug view "occlusion" and in the AOV
-    `ambient_occlusion`; None: any distance."""
+    occlusion_distance: float = 0.0
+    """Largest distance at which surfaces darken others in the debug view of occlusion and in the AOV
+    `ambient_occlusion`; 0 is any distance."""
     shadows: bool = True
     """True if lights cast shadows."""
     integrator: str | None = None
     """The method that computes light: "whitted", or "direct", with which objects also block the light of the
-    environment. None: "whitted"."""
+    environment. None: "direct" with soft light, otherwise "whitted"."""
 
     # The following fields change the camera, as the options of `promin render` with the same names do.
 
@@ -283,7 +283,7 @@ def to_record(view: View, camera: dict[str, Any], shown: Display, default_max_de
         "filter_width": width,
         "max_depth": default_max_depth if view.max_depth is None else view.max_depth,
         "seed": view.seed,
-        "occlusion_distance": 0.0 if view.occlusion_distance is None else view.occlusion_distance,
+        "occlusion_distance": view.occlusion_distance,
         "mode": mode_of(view),
     }
 

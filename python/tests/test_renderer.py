@@ -189,10 +189,22 @@ def test_the_pipeline_is_that_of_the_first_picture(box: promin.Scene, monkeypatc
         pickle.loads(pickled).render(size=(8, 8), **options)
     promin.Renderer(box, view=promin.View(target_error=0.5))
     promin.Renderer(box, view=promin.View(debug_view="uv", shadows=False))
-    light = {"debug_view": "full", "has_shadows": True}
-    flat = {"debug_view": "uv", "has_shadows": False}
+    light = {"debug_view": "full", "has_shadows": True, "integrator": "whitted"}
+    flat = {"debug_view": "uv", "has_shadows": False, "integrator": "whitted"}
     # A picture with a time limit starts with one sample per pixel.
     assert told == [(False, light), (True, light), (False, light), (True, light), (False, flat)]
+
+
+def test_soft_light_has_soft_shadows_and_a_ground(box: promin.Scene) -> None:
+    view = promin.View(size=(24, 18), spp=4)
+    soft = promin.Renderer(box, light="soft", view=view)
+    assert soft.materials[-1].catches_shadows and soft.lights[-1].angle > 0.17  # type: ignore[attr-defined]
+    assert (soft.render().rgb == soft.render(integrator="direct").rgb).all()
+    assert (soft.render().rgb != soft.render(integrator="whitted").rgb).any()
+    bare = promin.Renderer(box, light="soft", ground=False, view=view, aovs=("ambient_occlusion",))
+    assert len(bare.materials) == len(soft.materials) - 1
+    occlusion = bare.render().aovs["ambient_occlusion"]
+    assert occlusion.shape == (18, 24) and occlusion.max() == 1
 
 
 def test_a_centre_moves_camera_light_and_positions() -> None:

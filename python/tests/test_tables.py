@@ -88,7 +88,7 @@ def test_a_view_has_the_defaults_of_the_library() -> None:
     assert _view.mode_of(view) == theirs["mode"]
     assert view.error_in == CHOICES["error_in"][0]
     open_ones = {"camera", "size", "crop", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
-    open_ones |= {"filter_width", *_view.POSE}
+    open_ones |= {"filter_width", "integrator", *_view.POSE}
     assert {f.name for f in dataclasses.fields(view) if f.default is None} == open_ones
     told = told_fields(promin.View)
     target = DEFAULTS["ErrorTarget"]

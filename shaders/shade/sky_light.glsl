@@ -116,8 +116,9 @@ struct SkyShares {
   float behind;    // share of all other samples: the direction lights the back
 };
 
-// Sets the parts of the lobes that rays from the sky light, and returns the shares of the samples. The rest of a lobe is
-// that of the mirror ray. A lobe gets its share of the reflected light; a metal chooses half of its samples by the sky.
+// Sets the parts of the lobes that rays from the sky light, and returns the shares of the samples. The rest of a lobe
+// is that of the mirror ray. A lobe gets its share of the reflected light. A metal chooses half of its samples by the
+// sky.
 SkyShares sky_shares(ShadingPoint point) {
   lobe_share = 1.0;
   coat_share = 0.0;
