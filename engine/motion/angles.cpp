@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/angles.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace promin {
 namespace {
 
@@ -22,6 +26,14 @@ double sine(double angle) {
   double sum = 1.0;
   for (int n = kLastFactor + 1; n >= 3; n -= 2) sum = 1.0 - square / (n * (n - 1)) * sum;
   return angle * sum;
+}
+
+double sine_of_any(double angle) {
+  const double rest = std::remainder(angle, 2.0 * std::numbers::pi);
+  const double size = std::abs(rest);
+  constexpr double kRight = 0.5 * std::numbers::pi;
+  const double value = size <= kRight ? sine(size) : sine(std::max(std::numbers::pi - size, 0.0));
+  return rest < 0.0 ? -value : value;
 }
 
 double angle_of_sine(double wanted) {

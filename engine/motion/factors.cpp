@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <variant>
 
+#include "motion/angles.h"
 #include "motion/attach.h"
 #include "promin/validate.h"
+#include "scene/texture_slots.h"
 
 namespace promin {
 namespace {
@@ -51,6 +54,30 @@ void apply_emission(const Value& value, MaterialLink& link, Material& material) 
   material.emissive = vec3(glm::clamp(link.emissive_strength * link.emissive, 0.0, kMaxCoordinate));
 }
 
+/// Sets the transform of a slot's texture coordinates. The rotation has the direction that the loader gives it.
+void put_transform(const TextureLink& link, TextureSlot& slot) {
+  constexpr double kRight = 0.5 * std::numbers::pi;
+  const double sine = sine_of_any(link.rotation);
+  const double cosine = sine_of_any(link.rotation + kRight);
+  slot.to_u = vec3(dvec3(cosine * link.scale.x, sine * link.scale.y, link.offset.x));
+  slot.to_v = vec3(dvec3(-sine * link.scale.x, cosine * link.scale.y, link.offset.y));
+}
+
+void apply_to_texture(const Value& value, MaterialLink& link, Material& material) {
+  if (value.element >= link.textures.size()) return;
+  TextureLink& texture = link.textures[value.element];
+  const dvec4 number = glm::clamp(value.value, -kMaxCoordinate, kMaxCoordinate);
+  if (value.property == AnimatedProperty::kTextureOffset) texture.offset = dvec2(number);
+  if (value.property == AnimatedProperty::kTextureRotation) texture.rotation = number.x;
+  if (value.property == AnimatedProperty::kTextureScale) texture.scale = dvec2(number);
+  for_each_slot(material, [&](const TextureSlot& slot, std::string_view name, ImageUse /*use*/) {
+    const bool is_unlit_color = name == "color_texture" && texture.slot == "base_color_texture";
+    if (name != texture.slot && !is_unlit_color) return;
+    // The visitor gets constant slots, because other code only reads them.
+    put_transform(texture, const_cast<TextureSlot&>(slot));
+  });
+}
+
 void apply_to_material(const Value& value, MaterialLink& link, Material& material) {
   switch (value.property) {
     case AnimatedProperty::kBaseColor:
@@ -58,6 +85,10 @@ void apply_to_material(const Value& value, MaterialLink& link, Material& materia
     case AnimatedProperty::kEmissive:
     case AnimatedProperty::kEmissiveStrength:
       return apply_emission(value, link, material);
+    case AnimatedProperty::kTextureOffset:
+    case AnimatedProperty::kTextureRotation:
+    case AnimatedProperty::kTextureScale:
+      return apply_to_texture(value, link, material);
     case AnimatedProperty::kAlphaCutoff:
       return set_factor(material.alpha_cutoff, value.value, 0.0, kMaxCoordinate);
     default:

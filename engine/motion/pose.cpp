@@ -102,7 +102,7 @@ class Evaluation {
 
   void put(const dvec4& value, const AnimationChannel& channel) {
     if (target_of(channel.property) != AnimatedTarget::kNode) {
-      return pose_.values.push_back({channel.property, channel.target, value});
+      return pose_.values.push_back({channel.property, channel.target, value, channel.element});
     }
     Node& node = nodes_[channel.target];
     switch (channel.property) {

@@ -141,7 +141,8 @@ struct AnimationChannel {
   AnimatedProperty property = AnimatedProperty::kTranslation;
   /// The index of the target. The property determines its kind.
   uint32_t target = 0;
-  /// For AnimatedProperty::kWeight, the index of the weight.
+  /// For AnimatedProperty::kWeight, the index of the weight. For kTextureOffset, kTextureRotation and kTextureScale,
+  /// the index into MaterialLink::textures.
   uint32_t element = 0;
 };
 
@@ -205,6 +206,19 @@ struct CameraLink {
   double xmag = 1.0;
 };
 
+/// The transform of the texture coordinates of a slot: they are scaled, then rotated, then moved
+/// (KHR_texture_transform).
+struct TextureLink {
+  /// The name of the member of the material or of its model, such as "base_color_texture".
+  std::string slot;
+  /// The translation.
+  dvec2 offset{0.0};
+  /// The rotation in radians.
+  double rotation = 0.0;
+  /// The factors.
+  dvec2 scale{1.0};
+};
+
 /// A material that animations change.
 struct MaterialLink {
   /// Index into Scene::materials.
@@ -215,6 +229,9 @@ struct MaterialLink {
   dvec3 emissive{0.0};
   /// The strength of the emission, another factor (KHR_materials_emissive_strength).
   double emissive_strength = 1.0;
+  /// The transforms of texture coordinates that animations may change, without animations. Transforms of slots that the
+  /// material does not have count for nothing.
+  std::vector<TextureLink> textures = {};
 };
 
 /// Everything that a scene needs for other poses. Scenes share it, because it may be large. pose_of() and scene_at()
@@ -264,6 +281,7 @@ struct Pose {
     AnimatedProperty property = AnimatedProperty::kLightColor;  ///< The property.
     uint32_t target = 0;                                        ///< The index of its target.
     dvec4 value{0.0};                                           ///< Its components; the others are 0.
+    uint32_t element = 0;                                       ///< AnimationChannel::element.
   };
   /// These values, in the order of the channels.
   std::vector<Value> values;

@@ -131,7 +131,7 @@ TEST_F(GltfAnimationTest, PointersToNothingStandStill) {
   point("/materials/0/emissiveFactor");
   expect_rest("an animation's target does not exist", "gltf.animation.target");
   for (const char* unknown :
-       {"/nodes/0/rotation/x", "/materials/0/normalTexture/extensions/KHR_texture_transform/offset", "/nodes//scale",
+       {"/nodes/0/rotation/x", "/materials/0/normalTexture/extensions/KHR_texture_transform/texCoord", "/nodes//scale",
         "/nodes/0", "", "/extras/a", "/nodes/99999999999999999999/scale"}) {
     point(unknown);
     const Scene scene = load();

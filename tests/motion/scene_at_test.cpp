@@ -31,6 +31,10 @@ TEST(AnglesTest, AreAsAccurateAsTheLibrary) {
   }
 }
 
+TEST(AnglesTest, AnyAngleHasASine) {
+  for (int i = -1000; i <= 1000; ++i) EXPECT_NEAR(sine_of_any(0.02 * i), std::sin(0.02 * i), 4e-15);
+}
+
 TEST(SlerpTest, TurnsAtAConstantSpeed) {
   const dvec4 from(0, 0, 0, 1);
   const dvec4 to(0, std::sin(0.7), 0, std::cos(0.7));
@@ -181,6 +185,39 @@ TEST_F(SceneAtTest, PointersChangeCameras) {
   EXPECT_EQ(posed.cameras[0].near, 0.0F) << "values are clamped";
   EXPECT_EQ(posed.cameras[1].ymag, 1.5F);
   EXPECT_EQ(posed.cameras[1].aspect_ratio, 2.0F);
+  EXPECT_TRUE(validate(posed).empty());
+}
+
+TEST_F(SceneAtTest, PointersChangeTheTransformsOfTextures) {
+  gltf_.json["images"] = {{{"uri", "none.png"}}};
+  gltf_.json["textures"] = {{{"source", 0}}};
+  const json transform = {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"rotation", 0.25}, {"scale", {2, 3}}}}};
+  gltf_.json["materials"] = {
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"extensions", transform}}}}},
+       {"emissiveFactor", {1, 1, 1}},
+       {"emissiveTexture", {{"index", 0}}},
+       {"extensions", {{"KHR_materials_sheen", {{"sheenColorTexture", {{"index", 0}}}}}}}},
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+       {"extensions", {{"KHR_materials_unlit", json::object()}}}}};
+  gltf_.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const std::string base = "/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/";
+  animate(gltf_, 0, "/materials/0" + base + "offset", {0, 1}, {0, 0, 2, 4}, "VEC2");
+  animate(gltf_, 0, "/materials/0/emissiveTexture/extensions/KHR_texture_transform/rotation", {0, 1}, {0, 3}, "SCALAR");
+  animate(gltf_, 0,
+          "/materials/0/extensions/KHR_materials_sheen/sheenColorTexture/extensions/KHR_texture_transform/scale",
+          {0, 1}, {1, 1, 3, 5}, "VEC2");
+  animate(gltf_, 0, "/materials/1" + base + "offset", {0, 1}, {0, 0, 1, 1}, "VEC2");
+  const Scene posed = at(0.5);
+  const auto& model = std::get<MetallicRoughness>(posed.materials[0].model);
+  const auto cosine = static_cast<float>(std::cos(0.25));
+  const auto sine = static_cast<float>(std::sin(0.25));
+  expect_near(model.base_color_texture.to_u, vec3(2 * cosine, 3 * sine, 1), 1e-6F);
+  expect_near(model.base_color_texture.to_v, vec3(-2 * sine, 3 * cosine, 2), 1e-6F);
+  const auto turned = static_cast<float>(std::sin(1.5));
+  expect_near(posed.materials[0].emissive_texture.to_v, vec3(-turned, std::cos(1.5F), 0), 1e-6F);
+  EXPECT_EQ(model.sheen_color_texture.to_u, vec3(2, 0, 0));
+  EXPECT_EQ(model.sheen_color_texture.to_v, vec3(0, 3, 0));
+  EXPECT_EQ(std::get<Unlit>(posed.materials[1].model).color_texture.to_u, vec3(1, 0, 0.5F));
   EXPECT_TRUE(validate(posed).empty());
 }
 

@@ -73,6 +73,52 @@ constexpr Pointer kPointers[] = {
 #include "promin/kinds/animated.def"
 };
 
+/// A texture of a material: its place in the material, and the member of the slot.
+struct SlotPlace {
+  std::string_view place;
+  std::string_view member;
+};
+
+#define PROMIN_EXTENSION(NAME) "extensions/KHR_materials_" NAME
+constexpr SlotPlace kSlots[] = {
+    {"pbrMetallicRoughness/baseColorTexture", "base_color_texture"},
+    {"pbrMetallicRoughness/metallicRoughnessTexture", "metallic_roughness_texture"},
+    {"normalTexture", "normal_texture"},
+    {"occlusionTexture", "occlusion_texture"},
+    {"emissiveTexture", "emissive_texture"},
+    {PROMIN_EXTENSION("transmission/transmissionTexture"), "transmission_texture"},
+    {PROMIN_EXTENSION("diffuse_transmission/diffuseTransmissionTexture"), "diffuse_transmission_texture"},
+    {PROMIN_EXTENSION("diffuse_transmission/diffuseTransmissionColorTexture"), "diffuse_transmission_color_texture"},
+    {PROMIN_EXTENSION("specular/specularTexture"), "specular_texture"},
+    {PROMIN_EXTENSION("specular/specularColorTexture"), "specular_color_texture"},
+    {PROMIN_EXTENSION("clearcoat/clearcoatTexture"), "clearcoat_texture"},
+    {PROMIN_EXTENSION("clearcoat/clearcoatRoughnessTexture"), "clearcoat_roughness_texture"},
+    {PROMIN_EXTENSION("clearcoat/clearcoatNormalTexture"), "clearcoat_normal_texture"},
+    {PROMIN_EXTENSION("sheen/sheenColorTexture"), "sheen_color_texture"},
+    {PROMIN_EXTENSION("sheen/sheenRoughnessTexture"), "sheen_roughness_texture"},
+    {PROMIN_EXTENSION("iridescence/iridescenceTexture"), "iridescence_texture"},
+    {PROMIN_EXTENSION("iridescence/iridescenceThicknessTexture"), "iridescence_thickness_texture"},
+    {PROMIN_EXTENSION("anisotropy/anisotropyTexture"), "anisotropy_texture"},
+};
+#undef PROMIN_EXTENSION
+
+constexpr std::string_view kMaterials = "/materials/";
+constexpr std::string_view kTransform = "/extensions/KHR_texture_transform/";
+
+/// The members of KHR_texture_transform.
+constexpr std::pair<std::string_view, AnimatedProperty> kTransformParts[] = {
+    {"offset", AnimatedProperty::kTextureOffset},
+    {"rotation", AnimatedProperty::kTextureRotation},
+    {"scale", AnimatedProperty::kTextureScale},
+};
+
+/// Removes this begin of a text. Returns false if the text begins otherwise.
+bool take_word(std::string_view& text, std::string_view word) {
+  if (!text.starts_with(word)) return false;
+  text.remove_prefix(word.size());
+  return true;
+}
+
 /// The property that a channel changes, and the indices of its targets. A pointer to the weights of a mesh has several.
 struct Target {
   AnimatedProperty property = AnimatedProperty::kTranslation;
@@ -160,8 +206,26 @@ class AnimationReader {
       if (pointer.property == AnimatedProperty::kWeight) target.element = take_number(rest).value_or(kNoIndex);
       if (rest.empty()) return check_pointer(std::move(target), pointer.array, text, place);
     }
+    if (std::optional<Target> target = find_texture(text)) {
+      return check_pointer(std::move(*target), kMaterials, text, place);
+    }
     report_.warn({"gltf.animation.pointer", "an animation changes a property that promin does not animate", quote(text),
                   place, "", kStandsStill});
+    return std::nullopt;
+  }
+
+  /// Returns the part of a texture's transform that a pointer names.
+  static std::optional<Target> find_texture(std::string_view text) {
+    if (!take_word(text, kMaterials)) return std::nullopt;
+    const std::optional<uint32_t> index = take_number(text);
+    if (!index || !take_word(text, "/")) return std::nullopt;
+    for (uint32_t slot = 0; slot < std::size(kSlots); ++slot) {
+      std::string_view rest = text;
+      if (!take_word(rest, kSlots[slot].place) || !take_word(rest, kTransform)) continue;
+      for (const auto& [name, property] : kTransformParts) {
+        if (rest == name) return Target{property, {*index}, slot};
+      }
+    }
     return std::nullopt;
   }
 
@@ -366,6 +430,24 @@ class AnimationReader {
 std::vector<Animation> read_gltf_animations(const GltfDocument& document, const std::vector<Node>& nodes,
                                             LoadReport& report) {
   return AnimationReader(document, nodes, report).read();
+}
+
+std::vector<TextureLink> read_gltf_texture_links(const json& material) {
+  std::vector<TextureLink> links;
+  for (const SlotPlace& slot : kSlots) {
+    TextureLink& link = links.emplace_back();
+    link.slot = slot.member;
+    const json::json_pointer place("/" + std::string(slot.place));
+    if (!material.contains(place)) continue;
+    const json* transform = find_extension(material.at(place), "KHR_texture_transform");
+    if (transform == nullptr) continue;
+    const json offset = transform->value("offset", json::array({0.0, 0.0}));
+    const json scale = transform->value("scale", json::array({1.0, 1.0}));
+    link.offset = {offset[0].get<double>(), offset[1].get<double>()};
+    link.scale = {scale[0].get<double>(), scale[1].get<double>()};
+    link.rotation = transform->value("rotation", 0.0);
+  }
+  return links;
 }
 
 GltfAnimated find_gltf_animated(const std::vector<Animation>& animations, const std::vector<Node>& nodes,

@@ -32,6 +32,10 @@ struct GltfAnimated {
   std::vector<bool> is_material_changed;
 };
 
+/// Returns the transforms of all texture slots of a material of the document that animations may change
+/// (MaterialLink::textures).
+std::vector<TextureLink> read_gltf_texture_links(const nlohmann::json& material);
+
 /// Returns the things that animations change. Nodes that have the state of another node change like it.
 GltfAnimated find_gltf_animated(const std::vector<Animation>& animations, const std::vector<Node>& nodes,
                                 size_t material_count);

@@ -322,6 +322,7 @@ class SceneReader {
       if (const json* extension = find_extension(source, "KHR_materials_emissive_strength")) {
         link.emissive_strength = extension->value("emissiveStrength", 1.0);
       }
+      link.textures = read_gltf_texture_links(source);
       motion_.materials.push_back(std::move(link));
     }
   }
