@@ -113,7 +113,7 @@ constexpr std::pair<std::string_view, AnimatedProperty> kTransformParts[] = {
 };
 
 /// Removes this begin of a text. Returns false if the text begins otherwise.
-bool take_word(std::string_view& text, std::string_view word) {
+bool drop_begin(std::string_view& text, std::string_view word) {
   if (!text.starts_with(word)) return false;
   text.remove_prefix(word.size());
   return true;
@@ -216,12 +216,12 @@ class AnimationReader {
 
   /// Returns the part of a texture's transform that a pointer names.
   static std::optional<Target> find_texture(std::string_view text) {
-    if (!take_word(text, kMaterials)) return std::nullopt;
+    if (!drop_begin(text, kMaterials)) return std::nullopt;
     const std::optional<uint32_t> index = take_number(text);
-    if (!index || !take_word(text, "/")) return std::nullopt;
+    if (!index || !drop_begin(text, "/")) return std::nullopt;
     for (uint32_t slot = 0; slot < std::size(kSlots); ++slot) {
       std::string_view rest = text;
-      if (!take_word(rest, kSlots[slot].place) || !take_word(rest, kTransform)) continue;
+      if (!drop_begin(rest, kSlots[slot].place) || !drop_begin(rest, kTransform)) continue;
       for (const auto& [name, property] : kTransformParts) {
         if (rest == name) return Target{property, {*index}, slot};
       }
@@ -437,7 +437,7 @@ std::vector<TextureLink> read_gltf_texture_links(const json& material) {
   for (const SlotPlace& slot : kSlots) {
     TextureLink& link = links.emplace_back();
     link.slot = slot.member;
-    const json::json_pointer place("/" + std::string(slot.place));
+    const json::json_pointer place(std::string("/").append(slot.place));
     if (!material.contains(place)) continue;
     const json* transform = find_extension(material.at(place), "KHR_texture_transform");
     if (transform == nullptr) continue;
