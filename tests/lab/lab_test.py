@@ -156,7 +156,7 @@ def check_bench_tables(folder):
     expect(done.returncode == 0, f"bench_tables.py: {done.stderr}")
     lines = _cells(done.stdout)
     report = read_figures(system / "rates.json") | read_figures(system / "processes.json")
-    cells = next(line for line in lines if line[1] == "a.gltf")
+    cells = next(line for line in lines if line[1:2] == ["a.gltf"])
     expect([cell[0] for cell in cells[3:]] == ["2", "3", "5", "4"], f"other processes: {cells}")
     for row in report["rates"]["rows"]:
         cells = next(line for line in lines if line[1:3] == [row["scene"], row["rays"]])
