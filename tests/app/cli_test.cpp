@@ -142,7 +142,7 @@ TEST_F(CliTest, WrongUsageIsRefusedInOneLine) {
       {{"render"}, "usage.words.wrong SCENE"},
       {{"render", "square.gltf", "--skip-existing"}, "usage.option.needs --skip-existing"},
       {{"render", "square.gltf", "-o", "a.exr", "--min-spp", "8"}, "usage.option.needs --min-spp"},
-      {{"render", "square.gltf", "-o", "a.gif"}, "output.extension \".gif\""},
+      {{"render", "square.gltf", "-o", "a.bmp"}, "output.extension \".bmp\""},
       {{"render", "square.gltf", "-o", "a.exr", "-o", "./a.exr"}, "output.twice"},
       {{"render", "square.gltf", "-o", "a.exr", "--spp"}, "usage.option.few --spp"},
       {{"render", "square.gltf", "-o", "a.exr", "--spp", "0"}, "usage.option.value --spp \"0\""},
