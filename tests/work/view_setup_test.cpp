@@ -226,9 +226,15 @@ TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
   EXPECT_EQ(other.lights[0].kind, LightKind::kDirectional);
 }
 
+Scene make_viewed_ball() {
+  Scene scene = make_viewed_scene();
+  scene.add("ball", Sphere{.center = dvec3(1.0, 2.0, 3.0)});
+  return scene;
+}
+
 TEST(LightUpTest, SoftLightHasAGroundAndTheIntegratorDirect) {
   const auto is_of_ground = [](const Object& object) { return object.name == "ground"; };
-  Scene scene = make_viewed_scene();
+  Scene scene = make_viewed_ball();
   const Bounds bounds = bounds_of(scene);
   const size_t materials = scene.materials.size();
   light_up(scene, {.light = LightChoice::kSoft});
@@ -242,20 +248,22 @@ TEST(LightUpTest, SoftLightHasAGroundAndTheIntegratorDirect) {
   EXPECT_NEAR(plane.point.y, bounds.lo.y, 1e-3F * glm::length(bounds.hi - bounds.lo));
   EXPECT_TRUE(validate(scene).empty());
 
-  Scene without = make_viewed_scene();
+  Scene without = make_viewed_ball();
   light_up(without, {.light = LightChoice::kSoft, .has_ground = false});
   EXPECT_FALSE(is_of_ground(without.objects.back()));
-  Scene hard = make_viewed_scene();
+  Scene hard = make_viewed_ball();
   light_up(hard, {.has_ground = true});
   EXPECT_TRUE(is_of_ground(hard.objects.back()));
-  Scene dark = make_viewed_scene();
+  Scene dark = make_viewed_ball();
   light_up(dark, {.light = LightChoice::kNone, .has_ground = true});
   EXPECT_FALSE(is_of_ground(dark.objects.back())) << "no light makes no shadow";
 
-  EXPECT_EQ(mode_of({.look = {.light = LightChoice::kSoft}}).integrator, Integrator::kDirect);
-  EXPECT_EQ(mode_of({.integrator = Integrator::kWhitted, .look = {.light = LightChoice::kSoft}}).integrator,
-            Integrator::kWhitted);
-  EXPECT_EQ(mode_of({}).integrator, Integrator::kWhitted);
+  ViewOptions options;
+  EXPECT_EQ(mode_of(options).integrator, Integrator::kWhitted);
+  options.look.light = LightChoice::kSoft;
+  EXPECT_EQ(mode_of(options).integrator, Integrator::kDirect);
+  options.integrator = Integrator::kWhitted;
+  EXPECT_EQ(mode_of(options).integrator, Integrator::kWhitted);
 }
 
 TEST(LightUpTest, TheBackgroundIsTheUsers) {
