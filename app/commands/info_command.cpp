@@ -227,7 +227,9 @@ struct LitScene {
 };
 
 LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
-  LitScene lit{.assumed = light_up(scene, {}, surroundings), .flat = world::flatten(scene), .packed = {}};
+  LitScene lit{.assumed = light_up(scene, {}, surroundings),
+               .flat = world::flatten(scene, world::Purpose::kPictures, Instancing::kAuto),
+               .packed = {}};
   for (auto& image : lit.flat.images) {
     image = std::make_shared<const TextureImage>(TextureImage{image->name, image->size, {}, image->use});
   }
@@ -244,6 +246,7 @@ void print_scene_json(Scene scene, const EnvironmentChoice& surroundings) {
   json["environment"] = json_of(scene.environment);
   json["display"] = json_of(display);
   json["assumed"] = list_assumptions(scene, {}, lit.assumed, display);
+  json["counts"]["instances"] = lit.packed.instance_count;
   json["features"] = feature_names(features_of(lit.flat));
   json["warnings"] = scene.warnings;
   fmt::print("{}", write_json(json));
@@ -263,6 +266,16 @@ std::string describe_materials(const Scene& scene) {
   return fmt::format("{} ({}{})", text, fmt::join(names, ", "), is_cut ? ", ..." : "");
 }
 
+std::string describe_triangles(const SceneCounts& counts, uint64_t degenerate_count) {
+  std::string text = fmt::format("{} (degenerate: {}", counts.triangles, degenerate_count);
+  if (counts.stored_triangles != counts.triangles) text += fmt::format("; stored: {}", counts.stored_triangles);
+  return text + ")";
+}
+
+std::string describe_instances(const PackedScene& packed) {
+  return fmt::format("{} of meshes with {}", packed.instance_count, count_of(packed.shared_triangle_count, "triangle"));
+}
+
 void print_table(Scene scene, const std::filesystem::path& file, const EnvironmentChoice& surroundings) {
   const SceneCounts counts = count_scene(scene);
   const uint64_t image_bytes = packed_image_bytes(scene.images, scene.textures);
@@ -273,7 +286,8 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
   print_row("scene", file.string());
   print_row("objects", describe_objects(counts, scene));
   print_row("primitives", std::to_string(counts.primitives));
-  print_row("triangles", fmt::format("{} (degenerate: {})", counts.triangles, packed.degenerate_count));
+  print_row("triangles", describe_triangles(counts, packed.degenerate_count));
+  if (packed.instance_count > 0) print_row("instances", describe_instances(packed));
   print_row("materials", describe_materials(scene));
   print_row("textures", describe_textures(scene, image_bytes));
   if (!scene.variants.empty()) print_rows("variants", scene.variants);

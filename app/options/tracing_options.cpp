@@ -4,6 +4,8 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "options/arguments.h"
 #include "options/load_options.h"
 #include "promin/renderer.h"
@@ -44,6 +46,15 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
             [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });
   table.add("--bvh", "FILE.pbvh", "Read the BVH from a file that `promin-bvh build` wrote",
             [&](const OptionValues& w) { options.bvh = w.text(); });
+  table.add(
+      "--instances", fmt::format("{}", fmt::join(instancing_names(), "|")),
+      "Objects that share the triangles of their mesh: those that save much memory, no object, or all with meshes "
+      "[auto]",
+      [&](const OptionValues& w) {
+        const auto names = instancing_names();
+        const auto found = std::ranges::find(names, w.choice(names));
+        options.instances = static_cast<Instancing>(found - names.begin());
+      });
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
   add_motion_options(table, options.motion);

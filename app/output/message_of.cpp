@@ -20,7 +20,8 @@ struct Wording {
 constexpr Wording kWordings[] = {{Setting::kDepth, "use a smaller depth", "lower --max-depth"},
                                  {Setting::kDevice, "another device", "another --device"},
                                  {Setting::kBuilder, "the builder", "--builder"},
-                                 {Setting::kTextureMemory, "the memory for textures", "--texture-memory"}};
+                                 {Setting::kTextureMemory, "the memory for textures", "--texture-memory"},
+                                 {Setting::kInstances, "draw no object as an instance", "use --instances none"}};
 
 std::string_view option_for(Setting setting) {
   switch (setting) {
@@ -34,6 +35,8 @@ std::string_view option_for(Setting setting) {
       return "--builder";
     case Setting::kTextureMemory:
       return "--texture-memory";
+    case Setting::kInstances:
+      return "--instances";
   }
   return "";
 }

@@ -162,7 +162,10 @@ Json list_images(const Scene& scene) {
 Json describe(const SceneCounts& counts) {
   Json kinds = Json::object();
   for (size_t i = 0; i < counts.objects.size(); ++i) kinds[std::string(kObjectNames[i])] = counts.objects[i];
-  return {{"objects", kinds}, {"primitives", counts.primitives}, {"triangles", counts.triangles}};
+  return {{"objects", kinds},
+          {"primitives", counts.primitives},
+          {"triangles", counts.triangles},
+          {"stored_triangles", counts.stored_triangles}};
 }
 
 Json describe(const Animation& animation) {

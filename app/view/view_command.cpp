@@ -153,6 +153,7 @@ ViewerStart make_start(const WindowOptions& options, const Console& console) {
   start.error_target = options.error.target_or(ErrorTarget{}.error);
   start.choice.builder = tracing.builder.value_or(RendererOptions{}.builder);
   start.choice.bvh = tracing.bvh;
+  start.choice.instances = tracing.instances;
   start.choice.lights_off = options.view.lights_off;
   start.present_mode = options.present_mode;
   start.target_ms = options.target_ms;

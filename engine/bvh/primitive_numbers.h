@@ -20,9 +20,12 @@ struct PackedPart {
   std::array<vec2, 3> weights{};
 };
 
-/// Converts the numbers in Primitive::c.y to objects and primitives. The numbers count primitives in (object,
-/// primitive) order.
+/// Converts the numbers of primitives to objects and primitives. The numbers count primitives in (object, primitive)
+/// order. They are in Primitive::c.y, where those of an instance's mesh begin at 0.
 struct PrimitiveNumbers {
+  /// The value of `mesh_of_object` for an object that is not an instance.
+  static constexpr uint32_t kNoMesh = ~0U;
+
   /// The number of each object's first primitive; then the number of all primitives.
   std::vector<uint32_t> first_order;
   /// For each object, whether it is a mesh whose second and third corners were exchanged when it was moved to the world
@@ -30,6 +33,13 @@ struct PrimitiveNumbers {
   std::vector<bool> is_rewound;
   /// The parts of all triangles that have more than one part, sorted by the triangles' order.
   std::vector<PackedPart> parts;
+  /// For each mesh that instances share, the parts of its triangles, with numbers that begin at 0.
+  std::vector<std::vector<PackedPart>> mesh_parts = {};
+  /// For each object, the index in `mesh_parts` if it is an instance; empty if no object is one.
+  std::vector<uint32_t> mesh_of_object = {};
+  /// True if there are more primitives than numbers. Then all primitives of an instance have one number, and count as
+  /// primitive 0.
+  bool are_instances_whole = false;
 };
 
 /// The object and the primitive that have a number.

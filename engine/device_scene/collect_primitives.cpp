@@ -53,11 +53,6 @@ uint32_t hash_of(std::initializer_list<uint64_t> words) {
   return static_cast<uint32_t>(hash.value() >> 48);
 }
 
-/// Returns the value of Primitive::c.w: hashes of the object and of the primitive.
-uint32_t hashes_of(size_t object, uint32_t primitive) {
-  return hash_of({object}) | hash_of({object, primitive}) << 16;
-}
-
 void check_count(const world::Scene& scene, size_t count) {
   check_at_most(CHILD_FIRST_MASK, count, scene, "the scene has", "primitives");
 }
@@ -71,7 +66,8 @@ vec4 record_of(const vec4& value) {
 
 class Collector {
  public:
-  explicit Collector(const world::Scene& scene) : scene_(scene), cut_triangles_(scene) {
+  Collector(const world::Scene& scene, std::span<const uint32_t> numbers_of_object)
+      : scene_(scene), cut_triangles_(scene) {
     size_t count = 0;
     for (const world::Object& object : scene.objects) count += world::primitive_count(object.shape);
     check_count(scene, count);
@@ -84,6 +80,7 @@ class Collector {
       result_.numbers.first_order.push_back(result_.order);
       result_.numbers.is_rewound.push_back(object.is_rewound);
       std::visit([this](const auto& shape) { add(shape); }, object.shape);
+      if (!numbers_of_object.empty()) result_.order += numbers_of_object[object_];
     }
     result_.numbers.first_order.push_back(result_.order);
   }
@@ -242,8 +239,12 @@ class Collector {
 
 }  // namespace
 
-Collected collect_primitives(const world::Scene& scene) {
-  return Collector(scene).take();
+uint32_t hashes_of(size_t object, uint32_t primitive) {
+  return hash_of({object}) | hash_of({object, primitive}) << 16;
+}
+
+Collected collect_primitives(const world::Scene& scene, std::span<const uint32_t> numbers_of_object) {
+  return Collector(scene, numbers_of_object).take();
 }
 
 void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bvh/primitive_numbers.h"
@@ -45,8 +46,13 @@ struct Collected {
   uint64_t degenerate_count = 0;
 };
 
-/// Returns the primitives of a checked scene. Throws RunError if there are more than the layout can hold.
-Collected collect_primitives(const world::Scene& scene);
+/// Returns the value of Primitive::c.w: hashes of the object and of the primitive.
+uint32_t hashes_of(size_t object, uint32_t primitive);
+
+/// Returns the primitives of a checked scene without its instances. Throws RunError if there are more than the layout
+/// can hold. `numbers_of_object` has the number of numbers that each object takes if it is an instance; it may be
+/// empty.
+Collected collect_primitives(const world::Scene& scene, std::span<const uint32_t> numbers_of_object = {});
 
 /// Throws RunError with the text "`who` `count` `what`" if the count exceeds `most`.
 void check_at_most(uint32_t most, size_t count, const world::Scene& scene, const char* who, const char* what,

@@ -18,6 +18,7 @@
 #include "core/rounding.h"
 #include "core/stopwatch.h"
 #include "device_scene/collect_primitives.h"
+#include "device_scene/pack_instances.h"
 #include "promin/error.h"
 #include "scene/alpha.h"
 #include "scene/features.h"
@@ -108,8 +109,8 @@ void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
 /// Packs all parts of a scene except its tree. The tree's references must exist.
 void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected, uint64_t texture_bytes) {
   packed.numbers = std::move(collected.numbers);
-  packed.features = geometry_features(scene.objects);
-  packed.shown_materials = find_shown_materials(scene.objects, scene.materials.size());
+  packed.features = geometry_features(scene);
+  packed.shown_materials = find_shown_materials(scene);
   packed.degenerate_count = collected.degenerate_count;
   const std::span<const uint32_t> references = packed.references;
   UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
@@ -133,15 +134,19 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.tree_bounds = center_and_radius(tree_bounds);
 }
 
+/// Builds a tree over the collected primitives.
+Bvh build_own_tree(const Collected& collected, std::string_view builder, const BuildOptions& options) {
+  return build_bvh(builder,
+                   {collected.boxes, [&](uint32_t primitive,
+                                         const Bounds& window) { return clip(collected.bounded[primitive], window); }},
+                   options);
+}
+
 /// Builds the tree of the collected primitives.
 void build_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options) {
   const Stopwatch building;
-  const Bvh bvh =
-      build_bvh(builder,
-                {collected.boxes,
-                 [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
-                options);
+  const Bvh bvh = build_own_tree(collected, builder, options);
   check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
                 ", or use the builder sah", Setting::kBuilder);
   packed.bvh_ms = building.ms();
@@ -204,6 +209,146 @@ void share_tree(PackedScene& packed, const world::Scene& scene, const Collected&
   packed.bvh_ms = sharing.ms();
 }
 
+/// Returns the meshes of a scene, each with its tree.
+std::vector<PackedMesh> pack_meshes(const world::Scene& scene, std::string_view builder, const BuildOptions& options) {
+  std::vector<PackedMesh> meshes;
+  for (const Mesh& mesh : scene.meshes) {
+    world::Scene alone;
+    alone.file = scene.file;
+    alone.objects.push_back({"", mesh});
+    meshes.push_back(pack_mesh(alone, builder, options));
+  }
+  return meshes;
+}
+
+/// Returns the number of numbers that each object takes if it is an instance. If there are too many primitives for 32
+/// bits, an instance takes one number.
+std::vector<uint32_t> count_numbers(const world::Scene& scene, std::vector<PackedMesh>& meshes, bool& are_whole) {
+  constexpr uint64_t kMostNumbers = NO_ORDER;
+  uint64_t total = 0;
+  for (const world::Object& object : scene.objects) total += world::primitive_count(object.shape);
+  for (const world::Instance& instance : scene.instances) total += meshes[instance.mesh].number_count;
+  are_whole = total >= kMostNumbers;
+  if (are_whole) {
+    for (PackedMesh& mesh : meshes) {
+      mesh.number_count = 1;
+      mesh.parts.clear();
+      for (Primitive& primitive : mesh.primitives) primitive.c.y = 0;
+    }
+  }
+  std::vector<uint32_t> numbers(scene.objects.size(), 0);
+  for (const world::Instance& instance : scene.instances) {
+    numbers[instance.object] = meshes[instance.mesh].number_count;
+  }
+  return numbers;
+}
+
+/// Adds the vertices of a mesh behind all others. Returns the index of the first one.
+uint32_t append_vertices(const VertexRecords& from, VertexRecords& to) {
+  const size_t first = to.count();
+  const auto append = [&](const std::vector<vec4>& records, std::vector<vec4>& all) {
+    if (records.empty()) return;
+    all.resize(first);
+    all.insert(all.end(), records.begin(), records.end());
+  };
+  append(from.normals, to.normals);
+  append(from.colors, to.colors);
+  append(from.uvs, to.uvs);
+  append(from.tangents, to.tangents);
+  return static_cast<uint32_t>(first);
+}
+
+/// Inserts the primitives and surfaces of meshes between the primitives of the tree and the unbounded ones.
+void insert_meshes(PackedScene& packed, std::vector<PackedMesh>& meshes, size_t own_count) {
+  if (own_count + packed.unbounded_count == 0) packed.primitives.clear();
+  UnsetVector<Primitive> primitives;
+  UnsetVector<SurfaceRecord> surfaces;
+  for (PackedMesh& mesh : meshes) {
+    const uint32_t first_vertex = append_vertices(mesh.vertices, packed.surfaces.vertices);
+    primitives.insert(primitives.end(), mesh.primitives.begin(), mesh.primitives.end());
+    for (SurfaceRecord surface : mesh.surfaces) {
+      if ((surface.corners_material.w & ~SURFACE_MATERIAL_MASK) != 0) {
+        surface.corners_material += uvec4(uvec3(first_vertex), 0);
+      }
+      surfaces.push_back(surface);
+    }
+    packed.shared_triangle_count += mesh.primitives.size() + mesh.degenerate_count;
+    mesh.primitives = {};
+    mesh.surfaces = {};
+    mesh.vertices = {};
+  }
+  const auto at = static_cast<std::ptrdiff_t>(own_count);
+  packed.primitives.insert(packed.primitives.begin() + at, primitives.begin(), primitives.end());
+  packed.surfaces.surfaces.insert(packed.surfaces.surfaces.begin() + at, surfaces.begin(), surfaces.end());
+  if (packed.primitives.empty()) packed.primitives.push_back({});
+  packed.references.resize(own_count + primitives.size());
+  std::fill(packed.references.begin() + at, packed.references.end(), 0U);
+}
+
+/// Returns the statistics of a tree of two levels.
+BvhStats stats_of(std::string_view builder, const TwoLevelTree& tree, const std::vector<PackedMesh>& meshes) {
+  BvhStats stats = tree.upper;
+  stats.builder = builder;
+  uint32_t depth = 0;
+  for (const PackedMesh& mesh : meshes) {
+    stats.nodes += mesh.bvh.nodes;
+    stats.leaves += mesh.bvh.leaves;
+    stats.max_leaf_size = std::max(stats.max_leaf_size, mesh.bvh.max_leaf_size);
+    depth = std::max(depth, mesh.bvh.depth);
+  }
+  stats.depth += depth;
+  stats.bytes = tree.nodes.size() * sizeof(Node);
+  return stats;
+}
+
+/// Packs a scene with instances.
+PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, std::string_view builder,
+                            const BuildOptions& options) {
+  const Stopwatch building;
+  std::vector<PackedMesh> meshes = pack_meshes(scene, builder, options);
+  PackedScene packed;
+  bool are_whole = false;
+  Collected collected = collect_primitives(scene, count_numbers(scene, meshes, are_whole));
+  packed.copies = drop_copies(scene, collected);
+  count_kinds(packed, collected.bounded);
+  packed.kinds |= 1U << KIND_TRIANGLE;
+  const Bvh own = build_own_tree(collected, builder, options);
+  packed.references = sort_leaves_by_kind(own, collected.bounded);
+  const size_t own_count = packed.references.size();
+  size_t reference_count = own_count;
+  packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
+  for (const PackedMesh& mesh : meshes) {
+    reference_count += mesh.primitives.size();
+    packed.bounded_count += mesh.bounded_count;
+  }
+  check_at_most(CHILD_INSTANCE_INDEX, reference_count, scene, "the tree refers to", "parts of primitives",
+                ", or use the builder sah", Setting::kBuilder);
+  TwoLevelTree tree =
+      build_two_levels({scene, own, static_cast<uint32_t>(own_count), meshes, collected.numbers.first_order}, options);
+  check_at_most(MAX_NODES, tree.node_count, scene, "the scene's tree has", "nodes");
+  check_at_most(CHILD_INSTANCE_INDEX, tree.nodes.size(), scene, "the scene's tree has", "nodes and instances");
+  packed.bvh_ms = building.ms();
+  packed.bvh = stats_of(builder, tree, meshes);
+  packed.nodes = std::move(tree.nodes);
+  packed.stack_size = tree.stack_size;
+  packed.instance_count = tree.instance_count;
+  Bounds bounds = tree.bounds;
+  for (const Bounds& box : collected.boxes) bounds.extend(box);
+  pack_contents(packed, scene, collected, texture_bytes);
+  packed.tree_bounds = center_and_radius(bounds);
+  packed.numbers.are_instances_whole = are_whole;
+  packed.numbers.mesh_of_object.assign(scene.objects.size(), PrimitiveNumbers::kNoMesh);
+  for (const world::Instance& instance : scene.instances) {
+    packed.numbers.mesh_of_object[instance.object] = instance.mesh;
+  }
+  for (PackedMesh& mesh : meshes) packed.numbers.mesh_parts.push_back(std::move(mesh.parts));
+  for (const world::Instance& instance : scene.instances) {
+    packed.degenerate_count += meshes[instance.mesh].degenerate_count;
+  }
+  insert_meshes(packed, meshes, own_count);
+  return packed;
+}
+
 /// Packs a scene with the tree that `make_tree` makes.
 template <typename MakeTree>
 PackedScene pack_world(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
@@ -243,18 +388,24 @@ TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& o
 
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options,
                        uint64_t texture_bytes) {
+  if (!scene.instances.empty()) return pack_two_levels(scene, texture_bytes, builder, options);
   return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
     build_tree(packed, scene, collected, builder, options);
   });
 }
 
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {
+  if (!scene.instances.empty()) {
+    throw InputError({"bvh.instances", "the scene has instances, but a BVH file has the triangles of all objects",
+                      bvh_file.string(), "build the tree, or draw no object as an instance", Setting::kInstances});
+  }
   return pack_world(scene, texture_bytes,
                     [&](PackedScene& packed, const Collected& /*collected*/) { read_tree(packed, bvh_file); });
 }
 
 PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
                                std::string_view builder, const BuildOptions& options, uint64_t texture_bytes) {
+  if (!scene.instances.empty()) return pack_two_levels(scene, texture_bytes, builder, options);
   return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
     if (packed.bounded_count < kLeastShared) return build_tree(packed, scene, collected, builder, options);
     share_tree(packed, scene, collected, builder, options, bvh_file);

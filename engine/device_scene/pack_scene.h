@@ -51,6 +51,9 @@ struct PackedScene {
   PrimitiveNumbers numbers;
   /// Primitives that are left out because they are copies of other primitives.
   DroppedCopies copies;
+  /// The number of instances in the tree, and the number of triangles of the meshes that they share.
+  uint64_t instance_count = 0;
+  uint64_t shared_triangle_count = 0;
   /// The features that the geometry uses.
   FeatureMask features;
   /// For each of Scene::materials, whether a visible primitive uses it.
@@ -75,7 +78,8 @@ struct PackedScene {
   /// Problems with the file that pack_scene_sharing() used.
   std::vector<Problem> warnings;
 
-  /// Returns the tree; its nodes are in this object or in the file. The view is valid as long as this object exists.
+  /// Returns the tree; its nodes are in this object or in the file. With instances, nodes and references contain those
+  /// of both levels, which pack_instances.h describes. The view is valid as long as this object exists.
   TreeView tree() const;
   uint32_t first_unbounded() const { return static_cast<uint32_t>(references.size()); }
   /// Returns the number of primitives. A triangle in parts counts once, and degenerate triangles count too.

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string>
 #include <variant>
 
 #include "scene/framing.h"
+#include "scene/placed_bounds.h"
 #include "shapes/placement.h"
 
 namespace promin {
@@ -58,6 +60,21 @@ Bounds bounds_of_object(const Scene& scene, const Object& object, const std::vec
   return bounds;
 }
 
+/// Returns hierarchies over the positions of meshes that many objects show.
+std::map<uint32_t, PlacedBounds> find_shared(const Scene& scene) {
+  constexpr uint32_t kLeastSharers = 3;
+  std::vector<uint32_t> users(scene.geometries.size(), 0);
+  for (const Object& object : scene.objects) {
+    if (object.geometry != Object::kNoGeometry) ++users[object.geometry];
+  }
+  std::map<uint32_t, PlacedBounds> shared;
+  for (uint32_t i = 0; i < users.size(); ++i) {
+    const auto* mesh = std::get_if<Mesh>(&scene.geometries[i]);
+    if (mesh != nullptr && users[i] >= kLeastSharers) shared.emplace(i, mesh->positions);
+  }
+  return shared;
+}
+
 /// Returns the number as text with two digits.
 std::string to_text(double number) {
   char text[32];
@@ -69,8 +86,11 @@ std::string to_text(double number) {
 
 VertexBounds bounds_of_vertices(const Scene& scene) {
   VertexBounds bounds{.of_meshes = bounds_of_meshes(scene), .of_objects = {}, .all = {}};
+  const std::map<uint32_t, PlacedBounds> shared = find_shared(scene);
   for (const Object& object : scene.objects) {
-    bounds.of_objects.push_back(bounds_of_object(scene, object, bounds.of_meshes));
+    const auto found = shared.find(object.geometry);
+    bounds.of_objects.push_back(found != shared.end() ? found->second.of(object.world_from_object)
+                                                      : bounds_of_object(scene, object, bounds.of_meshes));
     bounds.all.extend(bounds.of_objects.back());
   }
   return bounds;

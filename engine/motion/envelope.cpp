@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "scene/framing.h"
+#include "scene/placed_bounds.h"
 
 namespace promin {
 namespace {
@@ -65,11 +65,10 @@ Scene envelope_of(const Scene& scene, const std::vector<uint32_t>& animations, c
   std::vector<bool> is_moved(envelope.objects.size(), false);
   for (const double time_s : times) {
     const Scene posed = scene_at(scene, {.animations = animations, .time_s = time_s});
+    const std::vector<Bounds> bounds = bounds_of_objects(posed);
     for (size_t i = 0; i < posed.objects.size(); ++i) {
       if (!is_same(envelope, posed, i)) is_moved[i] = true;
-      if (posed.objects[i].geometry == Object::kNoGeometry) continue;
-      const Bounds box = bounds_of(posed, posed.objects[i]);
-      if (!box.is_empty()) add_box(box, boxes[i]);
+      if (!bounds[i].is_empty()) add_box(bounds[i], boxes[i]);
     }
   }
   for (size_t i = 0; i < boxes.size(); ++i) {

@@ -7,8 +7,11 @@
 
 namespace promin {
 
-/// Returns whether all vertices of a mesh lie within 1e15 in the world.
-bool is_mesh_in_range(const Mesh& mesh, const dmat4& world_from_object);
+/// Returns the bounds of all positions of a mesh.
+Bounds bounds_of_positions(const Mesh& mesh);
+
+/// Returns whether all vertices of a mesh lie within 1e15 in the world. `box` is bounds_of_positions(mesh).
+bool is_mesh_in_range(const Mesh& mesh, const Bounds& box, const dmat4& world_from_object);
 
 /// Returns whether a transform is almost singular or overflows, so that an object cannot have it, because normals may
 /// vanish.

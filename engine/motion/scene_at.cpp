@@ -150,7 +150,9 @@ class ScenePose {
     object.world_from_object = world;
     const auto* mesh = std::get_if<Mesh>(&scene_.geometries[object.geometry]);
     if (mesh == nullptr) return;
-    if (!is_mesh_in_range(*mesh, world)) refuse_far_vertex(link);
+    const auto [box, is_new] = boxes_.try_emplace(object.geometry);
+    if (is_new) box->second = bounds_of_positions(*mesh);
+    if (!is_mesh_in_range(*mesh, box->second, world)) refuse_far_vertex(link);
     if (!is_singular(world)) return;
     bool has_lost_normals = false;
     Mesh flat = apply_transform(*mesh, world, has_lost_normals);
@@ -207,6 +209,8 @@ class ScenePose {
   std::set<uint32_t> hides_;
   std::set<uint32_t> free_;
   std::map<uint32_t, PosedSkin> skins_;
+  /// The bounds of the positions of each geometry that an object shows.
+  std::map<uint32_t, Bounds> boxes_;
   /// Geometries by mesh, skin and weights.
   std::map<std::tuple<uint32_t, uint32_t, std::vector<double>>, uint32_t> deformed_;
 };

@@ -81,11 +81,12 @@ struct FacetFinder {
 };
 
 /// Calls `use` with the facets of a valid scene, without unbounded objects, until `use` returns true. Returns whether
-/// it has returned true.
-template <class Use>
-bool any_facet(const Scene& scene, const Use& use) {
-  for (const Object& object : scene.objects) {
-    if (object.geometry == Object::kNoGeometry) continue;
+/// it has returned true. Ignores objects for whose index `is_skipped` returns true.
+template <class IsSkipped, class Use>
+bool any_facet(const Scene& scene, const IsSkipped& is_skipped, const Use& use) {
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (object.geometry == Object::kNoGeometry || is_skipped(i)) continue;
     if (std::visit(FacetFinder<Use>{scene, object, use}, scene.geometries[object.geometry])) return true;
   }
   return false;

@@ -136,9 +136,11 @@ FeatureMask feature_of(LightKind kind) {
 
 }  // namespace
 
-FeatureMask geometry_features(std::span<const world::Object> objects) {
+FeatureMask geometry_features(const world::Scene& scene) {
   FeatureMask features;
-  for (const world::Object& object : objects) features |= std::visit(ShapeFeatures(), object.shape);
+  for (const world::Object& object : scene.objects) features |= std::visit(ShapeFeatures(), object.shape);
+  for (const Mesh& mesh : scene.meshes) features |= ShapeFeatures()(mesh);
+  if (!scene.instances.empty()) features |= FEATURE_INSTANCES;
   return features;
 }
 
@@ -184,12 +186,12 @@ FeatureMask primitive_features() {
   FeatureMask features;
 #define PROMIN_PRIMITIVE(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #include "promin/kinds/primitives.def"
-  return features | FEATURE_OPEN_SHAPES;
+  return features | FEATURE_OPEN_SHAPES | FEATURE_INSTANCES;
 }
 
-std::vector<bool> find_shown_materials(std::span<const world::Object> objects, size_t material_count) {
-  std::vector<bool> is_shown(material_count, false);
-  for (const world::Object& object : objects) {
+std::vector<bool> find_shown_materials(const world::Scene& scene) {
+  std::vector<bool> is_shown(scene.materials.size(), false);
+  for (const world::Object& object : scene.objects) {
     if (world::primitive_count(object.shape) == 0) continue;
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (mesh == nullptr || mesh->triangle_materials.empty()) {
@@ -197,6 +199,13 @@ std::vector<bool> find_shown_materials(std::span<const world::Object> objects, s
     } else {
       for (const uint32_t material : mesh->triangle_materials) is_shown[material] = true;
     }
+  }
+  for (const world::Instance& instance : scene.instances) {
+    if (scene.meshes[instance.mesh].triangle_materials.empty())
+      is_shown[scene.objects[instance.object].material] = true;
+  }
+  for (const Mesh& mesh : scene.meshes) {
+    for (const uint32_t material : mesh.triangle_materials) is_shown[material] = true;
   }
   return is_shown;
 }
@@ -220,10 +229,9 @@ FeatureMask picture_features(FeatureMask geometry, FeatureMask materials, Featur
 FeatureMask features_of(const world::Scene& scene) {
   uint64_t primitives = 0;
   for (const world::Object& object : scene.objects) primitives += world::primitive_count(object.shape);
-  return picture_features(
-      geometry_features(scene.objects),
-      material_features(scene.materials, find_shown_materials(scene.objects, scene.materials.size())),
-      light_features(scene.lights), environment_features(scene.environment), primitives);
+  for (const world::Instance& instance : scene.instances) primitives += scene.meshes[instance.mesh].triangles.size();
+  return picture_features(geometry_features(scene), material_features(scene.materials, find_shown_materials(scene)),
+                          light_features(scene.lights), environment_features(scene.environment), primitives);
 }
 
 FeatureMask features_of(DebugView view) {

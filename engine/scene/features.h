@@ -14,7 +14,7 @@ namespace promin {
 
 /// Returns the features that a scene's geometry uses. A picture also needs the features of materials and lights, and
 /// the features that picture_features() adds for their combination.
-FeatureMask geometry_features(std::span<const world::Object> objects);
+FeatureMask geometry_features(const world::Scene& scene);
 /// Returns the features of the visible materials. `is_shown` is indexed by material.
 FeatureMask material_features(std::span<const Material> materials, const std::vector<bool>& is_shown);
 /// Returns the features of the lights that are on.
@@ -26,7 +26,7 @@ FeatureMask environment_features(const Environment& environment);
 FeatureMask primitive_features();
 
 /// Returns for each material whether a visible object uses it.
-std::vector<bool> find_shown_materials(std::span<const world::Object> objects, size_t material_count);
+std::vector<bool> find_shown_materials(const world::Scene& scene);
 
 /// Returns the features of a picture from the features of its parts. Some combinations need fewer features: without
 /// lights there are no highlights, and a single flat primitive casts no shadow.

@@ -102,6 +102,14 @@ struct Contains {
   }
 };
 
+/// Returns a mesh with the positions and triangles of another.
+Mesh corners_of(const Mesh& mesh) {
+  Mesh corners;
+  corners.positions = mesh.positions;
+  corners.triangles = mesh.triangles;
+  return corners;
+}
+
 /// Returns the material of an object. For a mesh it is the material of the first triangle, because a mesh counts as one
 /// solid.
 uint32_t material_of(const world::Object& object) {
@@ -130,20 +138,41 @@ bool is_within(const Bounds& bounds, const vec3& point) {
 
 }  // namespace
 
+bool GlassSolids::contains(const Solid& solid, const vec3& point) {
+  if (solid.mesh == nullptr) return std::visit(Contains{dvec3(point)}, solid.shape);
+  // No map changes whether a point is inside a mesh.
+  return Contains{dmat3(solid.map.object_from_world) * (dvec3(point) - dvec3(solid.map.origin))}(*solid.mesh);
+}
+
+void GlassSolids::add_instances(const world::Scene& scene) {
+  std::vector<std::shared_ptr<const Mesh>> meshes(scene.meshes.size());
+  std::vector<Bounds> boxes(scene.meshes.size());
+  for (const world::Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) continue;
+    const uint32_t material =
+        mesh.triangle_materials.empty() ? scene.objects[instance.object].material : mesh.triangle_materials.front();
+    if (!bounds_volume(scene.materials[material])) continue;
+    std::shared_ptr<const Mesh>& shared = meshes[instance.mesh];
+    if (shared == nullptr) {
+      shared = std::make_shared<const Mesh>(corners_of(mesh));
+      boxes[instance.mesh] = BoundsOf()(mesh);
+    }
+    const world::InstanceMap map = world::map_of(instance);
+    solids_.push_back({world::NotDrawn{}, material, world::bounds_of(map, {&boxes[instance.mesh], 1}), shared, map});
+  }
+}
+
 GlassSolids::GlassSolids(const world::Scene& scene) {
   for (const world::Object& object : scene.objects) {
     if (world::primitive_count(object.shape) == 0 || std::visit(IsOpen(), object.shape)) continue;
     const uint32_t material = material_of(object);
     if (!bounds_volume(scene.materials[material])) continue;
-    solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape)});
+    solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape), nullptr, {}});
     // Only the positions and triangles are needed.
-    if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) {
-      Mesh corners;
-      corners.positions = std::move(mesh->positions);
-      corners.triangles = std::move(mesh->triangles);
-      *mesh = std::move(corners);
-    }
+    if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) *mesh = corners_of(*mesh);
   }
+  add_instances(scene);
   std::ranges::stable_sort(solids_, std::greater(), [](const Solid& solid) { return volume_of(solid.bounds); });
 }
 
@@ -151,7 +180,7 @@ std::vector<uint32_t> GlassSolids::materials_around(const vec3& point) const {
   std::vector<uint32_t> materials;
   for (const Solid& solid : solids_) {
     if (!is_within(solid.bounds, point)) continue;
-    if (std::visit(Contains{dvec3(point)}, solid.shape)) materials.push_back(solid.material);
+    if (contains(solid, point)) materials.push_back(solid.material);
   }
   return materials;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "scene/world_scene.h"
@@ -23,10 +24,16 @@ class GlassSolids {
 
  private:
   struct Solid {
+    /// NotDrawn for an instance.
     world::Shape shape;
     uint32_t material = 0;
     Bounds bounds;
+    /// The positions and triangles of an instance's mesh, and its map.
+    std::shared_ptr<const Mesh> mesh = nullptr;
+    world::InstanceMap map = {};
   };
+  static bool contains(const Solid& solid, const vec3& point);
+  void add_instances(const world::Scene& scene);
   /// The solids, sorted by descending volume.
   std::vector<Solid> solids_;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -154,10 +155,14 @@ class SixPictures {
   std::array<Silhouette, 3> silhouettes_;
 };
 
-/// Calls `use` with the facets of a scene's main part.
+/// The most triangles of instances for which the function looks for a room.
+constexpr uint64_t kMostTrianglesOfRoom = uint64_t{1} << 26;
+
+/// Calls `use` with the facets of a scene's main part. `counts_wholes` is false to skip objects that count as wholes.
 template <class Use>
-void for_each_facet(const Scene& scene, const MainPart& part, const Use& use) {
-  any_facet(scene, [&](const Facet& facet) {
+void for_each_facet(const Scene& scene, const MainPart& part, bool counts_wholes, const Use& use) {
+  const auto is_skipped = [&](size_t object) { return !counts_wholes && part.is_whole(object); };
+  any_facet(scene, is_skipped, [&](const Facet& facet) {
     if (part.centers) {
       Bounds bounds;
       for (const dvec3& corner : facet.corners) bounds.extend(vec3(corner));
@@ -168,15 +173,53 @@ void for_each_facet(const Scene& scene, const MainPart& part, const Use& use) {
   });
 }
 
+/// Sums over the triangles of a mesh: six times the volume between the triangles and the origin, and the normals with
+/// the length of twice the areas.
+struct MeshVolume {
+  double volume = 0.0;
+  dvec3 normals{0.0};
+};
+
+MeshVolume mesh_volume_of(const Mesh& mesh) {
+  MeshVolume sums;
+  for (const uvec3& triangle : mesh.triangles) {
+    const dvec3 a(mesh.positions[triangle.x]);
+    const dvec3 normal = glm::cross(dvec3(mesh.positions[triangle.y]) - a, dvec3(mesh.positions[triangle.z]) - a);
+    sums.volume += glm::dot(a, normal);
+    sums.normals += normal;
+  }
+  return sums;
+}
+
 /// Returns six times the volume that the facets bound; negative if they show their backs to the outside.
 double signed_volume(const Scene& scene, const MainPart& part) {
   const dvec3 center(part.bounds.center());
   double sum = 0.0;
-  for_each_facet(scene, part, [&](const Facet& facet) {
+  for_each_facet(scene, part, false, [&](const Facet& facet) {
     const auto& [a, b, c] = facet.corners;
     sum += glm::dot(a - center, glm::cross(b - a, c - a));
   });
+  std::map<uint32_t, MeshVolume> volumes;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!part.is_whole(i) || (part.centers && !holds(*part.centers, part.wholes[i].center()))) continue;
+    const Object& object = scene.objects[i];
+    const auto [volume, is_new] = volumes.try_emplace(object.geometry);
+    if (is_new) volume->second = mesh_volume_of(std::get<Mesh>(scene.geometries[object.geometry]));
+    const dmat3 turn(object.world_from_object);
+    const dvec3 from_center = dvec3(object.world_from_object[3]) - center;
+    // The product with the inverse transpose gives the sum of normals in the world.
+    const dvec3 normals = glm::transpose(glm::inverse(turn)) * volume->second.normals;
+    sum += std::abs(glm::determinant(turn)) * (volume->second.volume + glm::dot(from_center, normals));
+  }
   return sum;
+}
+
+uint64_t count_triangles_of_wholes(const Scene& scene, const MainPart& part) {
+  uint64_t count = 0;
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (part.is_whole(i)) count += primitive_count(scene, scene.objects[i]);
+  }
+  return count;
 }
 
 }  // namespace
@@ -185,14 +228,15 @@ Framing framing_of(const Scene& scene, const MainPart& part) {
   constexpr Framing kOutside = Framing::kThreeQuarter;
   // Most scenes can be classified without pictures.
   if (part.bounds.is_empty() || signed_volume(scene, part) >= 0.0) return kOutside;
+  if (count_triangles_of_wholes(scene, part) > kMostTrianglesOfRoom) return kOutside;
   SixPictures outside(part.bounds);
-  for_each_facet(scene, part, [&](const Facet& facet) { outside.draw(facet); });
+  for_each_facet(scene, part, true, [&](const Facet& facet) { outside.draw(facet); });
   if (outside.share_of_backs() < kLeastBacks) return kOutside;
 
   const auto open = outside.find_open_side();
   std::vector<Facet> within;
   Bounds bounds;
-  for_each_facet(scene, part, [&](const Facet& facet) {
+  for_each_facet(scene, part, true, [&](const Facet& facet) {
     const auto& corners = facet.corners;
     if (!outside.is_enclosed((corners[0] + corners[1] + corners[2]) / 3.0, open)) return;
     within.push_back(facet);

@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "promin/framing.h"
+#include "scene/choose_instances.h"
 #include "scene/facets.h"
 #include "scene/framing.h"
+#include "scene/placed_bounds.h"
 
 namespace promin {
 namespace {
@@ -108,7 +110,20 @@ bool may_see(const Scene& scene, const Camera& camera, float aspect_ratio) {
     if (object.geometry == Object::kNoGeometry) continue;
     if (std::visit(MeetsUnbounded{frustum, object.world_from_object}, scene.geometries[object.geometry])) return true;
   }
-  return any_facet(scene, [&](const Facet& facet) {
+  // If the box of an instance lies beyond a side, so do all its facets.
+  const std::vector<bool> is_instance = choose_instances(scene, Instancing::kAuto);
+  std::vector<Bounds> boxes;
+  if (std::ranges::count(is_instance, true) > 0) boxes = bounds_of_objects(scene);
+  const auto is_beyond = [&](size_t object) {
+    if (!is_instance[object]) return false;
+    uint32_t beyond = ~0U;
+    for (uint32_t corner = 0; corner < 8; ++corner) {
+      const glm::bvec3 is_high((corner & 1U) != 0, (corner & 2U) != 0, (corner & 4U) != 0);
+      beyond &= frustum.sides_beyond(glm::mix(dvec3(boxes[object].lo), dvec3(boxes[object].hi), is_high));
+    }
+    return beyond != 0;
+  };
+  return any_facet(scene, is_beyond, [&](const Facet& facet) {
     uint32_t beyond = ~0U;
     for (const dvec3& corner : facet.corners) beyond &= frustum.sides_beyond(corner);
     return beyond == 0;

@@ -36,7 +36,7 @@ PictureMeshes::PictureMeshes(const Scene& scene)
 std::optional<Mesh> PictureMeshes::find(const Object& object) {
   const auto* mesh = std::get_if<Mesh>(&scene_.geometries[object.geometry]);
   if (mesh == nullptr) return std::nullopt;
-  const Needs needs = needs_of(*mesh, object);
+  const Needs& needs = needs_of(*mesh, object);
   if (needs == Needs{}) return std::nullopt;
   const std::pair key(object.geometry, needs);
   if (const auto known = made_.find(key); known != made_.end()) return known->second;
@@ -55,7 +55,20 @@ const std::vector<uint32_t>& PictureMeshes::find_turned(uint32_t geometry, const
   return *known;
 }
 
-PictureMeshes::Needs PictureMeshes::needs_of(const Mesh& mesh, const Object& object) {
+uint32_t PictureMeshes::version_of(const Object& object) {
+  const auto* mesh = std::get_if<Mesh>(&scene_.geometries[object.geometry]);
+  if (mesh == nullptr) return 0;
+  const auto number = static_cast<uint32_t>(versions_.size());
+  return versions_.try_emplace({object.geometry, needs_of(*mesh, object)}, number).first->second;
+}
+
+const PictureMeshes::Needs& PictureMeshes::needs_of(const Mesh& mesh, const Object& object) {
+  const auto [known, is_new] = needs_.try_emplace({object.geometry, object.material});
+  if (is_new) known->second = find_needs(mesh, object);
+  return known->second;
+}
+
+PictureMeshes::Needs PictureMeshes::find_needs(const Mesh& mesh, const Object& object) {
   Needs needs;
   needs.turns_normals = !find_turned(object.geometry, mesh).empty();
   if (mesh.uvs.empty()) return needs;

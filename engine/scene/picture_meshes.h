@@ -24,6 +24,9 @@ class PictureMeshes {
   /// Returns the mesh for an object, or nullopt if the scene's own mesh needs no change.
   std::optional<Mesh> find(const Object& object);
 
+  /// Returns a number that is the same for two objects with the same geometry exactly if they need the same mesh.
+  uint32_t version_of(const Object& object);
+
  private:
   /// The changes that an object's mesh needs: the set of coordinates for which tangents are computed, and the offset
   /// that is subtracted from all coordinates.
@@ -34,7 +37,8 @@ class PictureMeshes {
 
     auto operator<=>(const Needs&) const = default;
   };
-  Needs needs_of(const Mesh& mesh, const Object& object);
+  const Needs& needs_of(const Mesh& mesh, const Object& object);
+  Needs find_needs(const Mesh& mesh, const Object& object);
   const std::vector<uint32_t>& find_turned(uint32_t geometry, const Mesh& mesh);
 
   const Scene& scene_;
@@ -43,6 +47,9 @@ class PictureMeshes {
   /// The turned triangles of each geometry that was requested so far.
   std::vector<std::optional<std::vector<uint32_t>>> turned_triangles_;
   std::map<std::pair<uint32_t, Needs>, Mesh> made_;
+  /// The needs of each geometry with each material.
+  std::map<std::pair<uint32_t, uint32_t>, Needs> needs_;
+  std::map<std::pair<uint32_t, Needs>, uint32_t> versions_;
 };
 
 }  // namespace promin

@@ -11,6 +11,7 @@
 #include "promin/view.h"
 #include "scene/framing.h"
 #include "scene/glass.h"
+#include "scene/placed_bounds.h"
 #include "scene/stray_geometry.h"
 #include "shapes/shapes.h"
 
@@ -113,10 +114,7 @@ Bounds bounds_of(const Scene& scene, const Object& object) {
 
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
-  for (const Object& object : scene.objects) {
-    if (object.geometry == Object::kNoGeometry) continue;
-    bounds.extend(bounds_of(scene, object));
-  }
+  for (const Bounds& box : bounds_of_objects(scene)) bounds.extend(box);
   return bounds;
 }
 

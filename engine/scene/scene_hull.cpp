@@ -53,8 +53,9 @@ std::vector<vec3> find_corners_within(const Bounds& box, const Mesh& mesh, const
 struct SceneHull::Adder {
   SceneHull& hull;
   const Object& object;
+  size_t number;
 
-  void operator()(const Mesh& mesh) const { hull.add(mesh, object); }
+  void operator()(const Mesh& mesh) const { hull.add(mesh, object, number); }
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME)                                         \
   void operator()(const TYPE& shape) const {                                                                 \
     const std::optional placed = place(shape, Placement(object.world_from_object));                          \
@@ -70,22 +71,36 @@ SceneHull::SceneHull(const Scene& scene)
     : part_(find_main_part(scene)),
       bounds_(part_.bounds.is_empty() ? frame_of(scene) : part_.bounds),
       center_(middle_of(bounds_)) {
-  for (const Object& object : scene.objects) {
-    if (object.geometry != Object::kNoGeometry) std::visit(Adder{*this, object}, scene.geometries[object.geometry]);
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (object.geometry != Object::kNoGeometry) std::visit(Adder{*this, object, i}, scene.geometries[object.geometry]);
   }
   if (part_.bounds.is_empty()) solids_.emplace_back(world::Box{.center = bounds_.center(), .half_size = vec3(1.0F)});
 }
 
-void SceneHull::add(const Mesh& mesh, const Object& object) {
-  if (part_.centers) {
+void SceneHull::add(const Mesh& mesh, const Object& object, size_t number) {
+  const bool is_whole = part_.is_whole(number);
+  if (is_whole && part_.centers && !holds(*part_.centers, part_.wholes[number].center())) return;
+  if (part_.centers && !is_whole) {
     positions_.push_back(find_corners_within(*part_.centers, mesh, object.world_from_object));
-    meshes_.push_back({dmat3(1.0), -center_, cut(positions_.back())});
+    const std::span<const Block> blocks = cut(positions_.back());
+    meshes_.push_back({dmat3(1.0), -center_, blocks, box_of(blocks)});
     return;
   }
   const auto [place, is_new] = blocks_of_.try_emplace(object.geometry);
-  if (is_new) place->second = cut(find_used(mesh, positions_.emplace_back()));
+  Bounds& bounds = bounds_of_[object.geometry];
+  if (is_new) {
+    place->second = cut(find_used(mesh, positions_.emplace_back()));
+    bounds = box_of(place->second);
+  }
   const dmat4& matrix = object.world_from_object;
-  meshes_.push_back({dmat3(matrix), dvec3(matrix[3]) - center_, place->second});
+  meshes_.push_back({dmat3(matrix), dvec3(matrix[3]) - center_, place->second, bounds});
+}
+
+Bounds SceneHull::box_of(std::span<const Block> blocks) {
+  Bounds bounds;
+  for (const Block& block : blocks) bounds.extend(block.bounds);
+  return bounds;
 }
 
 std::span<const SceneHull::Block> SceneHull::cut(std::span<const vec3> positions) {
@@ -103,9 +118,13 @@ void SceneHull::find_farthest(const PlacedMesh& mesh, const dvec3& direction, Fa
   const double offset = glm::dot(direction, mesh.origin);
   double most = farthest.value - offset;
   const vec3* found = nullptr;
+  const auto may_reach = [&](const Bounds& bounds) {
+    const dvec3 half = 0.5 * (dvec3(bounds.hi) - dvec3(bounds.lo));
+    return glm::dot(own, middle_of(bounds)) + glm::dot(glm::abs(own), half) > most;
+  };
+  if (!may_reach(mesh.bounds)) return;
   for (const Block& block : mesh.blocks) {
-    const dvec3 half = 0.5 * (dvec3(block.bounds.hi) - dvec3(block.bounds.lo));
-    if (!(glm::dot(own, middle_of(block.bounds)) + glm::dot(glm::abs(own), half) > most)) continue;
+    if (!may_reach(block.bounds)) continue;
     for (const vec3& position : block.positions) {
       const double value = own.x * double{position.x} + own.y * double{position.y} + own.z * double{position.z};
       if (!(value > most)) continue;

@@ -40,6 +40,8 @@ class SceneHull {
     dmat3 turn;
     dvec3 origin;
     std::span<const Block> blocks;
+    /// The bounds of all blocks.
+    Bounds bounds;
   };
   using Solid = std::variant<std::monostate
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , world::TYPE
@@ -51,7 +53,8 @@ class SceneHull {
   };
   struct Adder;
 
-  void add(const Mesh& mesh, const Object& object);
+  void add(const Mesh& mesh, const Object& object, size_t number);
+  static Bounds box_of(std::span<const Block> blocks);
   std::span<const Block> cut(std::span<const vec3> positions);
   void find_farthest(const PlacedMesh& mesh, const dvec3& direction, Farthest& farthest) const;
 
@@ -62,6 +65,7 @@ class SceneHull {
   std::vector<Solid> solids_;
   /// The blocks of the geometries that were added, by the index of the geometry.
   std::map<uint32_t, std::span<const Block>> blocks_of_;
+  std::map<uint32_t, Bounds> bounds_of_;
   std::deque<std::vector<Block>> blocks_;
   std::deque<std::vector<vec3>> positions_;
 };

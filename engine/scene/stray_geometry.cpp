@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <span>
 #include <variant>
 
 #include "core/parallel.h"
 #include "core/rounding.h"
+#include "scene/choose_instances.h"
+#include "scene/placed_bounds.h"
 #include "shapes/shapes.h"
 
 namespace promin {
@@ -62,11 +67,45 @@ struct FinitePrimitives {
   }
 };
 
+/// The objects that count as wholes, with their bounds and surface areas. The areas are exact if a transform scales all
+/// axes alike.
+struct Wholes {
+  std::span<const Bounds> bounds;
+  std::vector<double> areas;
+
+  Wholes(const Scene& scene, std::span<const Bounds> of_objects) : bounds(of_objects), areas(of_objects.size()) {
+    std::map<uint32_t, double> own_areas;
+    for (size_t i = 0; i < areas.size(); ++i) {
+      if (bounds[i].is_empty()) continue;
+      const Object& object = scene.objects[i];
+      const auto [own, is_new] = own_areas.try_emplace(object.geometry, 0.0);
+      if (is_new) own->second = area_of(std::get<Mesh>(scene.geometries[object.geometry]));
+      areas[i] = own->second * std::pow(std::abs(glm::determinant(dmat3(object.world_from_object))), 2.0 / 3.0);
+    }
+  }
+
+  static double area_of(const Mesh& mesh) {
+    double sum = 0.0;
+    for (const uvec3& triangle : mesh.triangles) {
+      const dvec3 a(mesh.positions[triangle.x]);
+      sum +=
+          0.5 * glm::length(glm::cross(dvec3(mesh.positions[triangle.y]) - a, dvec3(mesh.positions[triangle.z]) - a));
+    }
+    return sum;
+  }
+};
+
 template <class Sum>
-Sum add_up(const Scene& scene, Sum sum) {
-  for (const Object& object : scene.objects) {
+Sum add_up(const Scene& scene, const Wholes& wholes, Sum sum) {
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
     if (object.geometry == Object::kNoGeometry) continue;
-    std::visit(FinitePrimitives<Sum>{object.world_from_object, sum}, scene.geometries[object.geometry]);
+    const Geometry& geometry = scene.geometries[object.geometry];
+    if (!wholes.bounds[i].is_empty()) {
+      sum.add(wholes.bounds[i], wholes.areas[i], primitive_count(scene, object));
+    } else {
+      std::visit(FinitePrimitives<Sum>{object.world_from_object, sum}, geometry);
+    }
   }
   return sum;
 }
@@ -101,7 +140,7 @@ struct Histogram {
         slices_per_length(glm::mix(dvec3(0.0), 1.0 / slice_size, glm::greaterThan(slice_size, dvec3(0.0)))) {}
 
   Histogram start_part() const { return Histogram(box); }
-  void add(const Bounds& bounds, double surface) {
+  void add(const Bounds& bounds, double surface, uint64_t /*count*/ = 1) {
     const vec3 center = bounds.center();
     if (!holds(box, center)) return;
     total += surface;
@@ -126,9 +165,9 @@ struct Content {
   double surface = 0.0;
 
   Content start_part() const { return {box}; }
-  void add(const Bounds& bounds, double of_primitive) {
+  void add(const Bounds& bounds, double of_primitive, uint64_t count = 1) {
     if (!holds(box, bounds.center())) {
-      ++part.stray_count;
+      part.stray_count += count;
       return;
     }
     surface += of_primitive;
@@ -156,10 +195,10 @@ Bounds shrink(const Bounds& box, const Histogram& histogram, double least) {
 
 /// Returns a box that contains the centres of nearly all of the surface area. If the centres are spread over the given
 /// box, returns that box.
-Bounds find_dense_box(const Scene& scene, const Bounds& bounds, double& total) {
+Bounds find_dense_box(const Scene& scene, const Wholes& wholes, const Bounds& bounds, double& total) {
   Bounds box = bounds;
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const Histogram histogram = add_up(scene, Histogram(box));
+    const Histogram histogram = add_up(scene, wholes, Histogram(box));
     if (pass == 0) total = histogram.total;
     // Each of the three axes may exclude a third of the area that may be excluded. The caller checks the total of all
     // passes.
@@ -181,14 +220,22 @@ bool holds(const Bounds& bounds, const vec3& point) {
 }
 
 MainPart find_main_part(const Scene& scene) {
-  const MainPart all{.bounds = bounds_of(scene)};
+  MainPart all;
+  all.wholes = bounds_of_objects(scene);
+  for (const Bounds& box : all.wholes) all.bounds.extend(box);
+  const std::vector<bool> is_whole = choose_instances(scene, Instancing::kAuto);
+  for (size_t i = 0; i < is_whole.size(); ++i) {
+    if (!is_whole[i]) all.wholes[i] = {};
+  }
   if (all.bounds.is_empty()) return all;
   double total = 0.0;
-  const Bounds box = find_dense_box(scene, all.bounds, total);
+  const Wholes wholes(scene, all.wholes);
+  const Bounds box = find_dense_box(scene, wholes, all.bounds, total);
   if (!is_far_smaller(box, all.bounds)) return all;
 
-  Content content = add_up(scene, Content{box});
+  Content content = add_up(scene, wholes, Content{box});
   content.part.centers = box;
+  content.part.wholes = all.wholes;
   return content.surface > 0.0 && content.surface >= kLeastShare * total &&
                  is_far_smaller(content.part.bounds, all.bounds)
              ? content.part

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "promin/framing.h"
 #include "promin/scene.h"
@@ -19,6 +20,11 @@ struct MainPart {
   /// Set if there are primitives outside. A primitive belongs to the main part if the centre of its bounds lies in this
   /// box.
   std::optional<Bounds> centers = std::nullopt;
+  /// The bounds of each object that counts as a whole; empty for other objects. Instances count as wholes
+  /// (scene/choose_instances.h), because they may have billions of triangles.
+  std::vector<Bounds> wholes = {};
+
+  bool is_whole(size_t object) const { return !wholes[object].is_empty(); }
 };
 
 /// Returns all finite geometry, unless 99 percent of the surface area lie in a box smaller than 1/64 of the scene's

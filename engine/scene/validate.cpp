@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -488,8 +489,10 @@ class Validation {
 
  private:
   void check_in_world(const Mesh& mesh, const Object& object, const Place& place) {
-    Bounds box;
-    for (const vec3& position : mesh.positions) box.extend(position);
+    // Objects that share a mesh have the same box.
+    const auto [known, is_new] = boxes_.try_emplace(&mesh);
+    Bounds& box = known->second;
+    for (size_t i = 0; is_new && i < mesh.positions.size(); ++i) box.extend(mesh.positions[i]);
     for (int corner = 0; corner < 8 && !mesh.positions.empty(); ++corner) {
       const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
                     (corner & 4) != 0 ? box.hi.z : box.lo.z);
@@ -569,6 +572,8 @@ class Validation {
   }
 
   std::vector<Problem>& problems_;
+  /// The box of each mesh that an object shows.
+  std::map<const Mesh*, Bounds> boxes_;
 };
 
 }  // namespace

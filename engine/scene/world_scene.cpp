@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/rounding.h"
+#include "scene/choose_instances.h"
 #include "scene/framing.h"
 #include "scene/picture_meshes.h"
 #include "shapes/shapes.h"
@@ -106,8 +109,54 @@ Bounds box_to_look_at(const Scene& scene) {
 
 }  // namespace
 
-Scene flatten(const promin::Scene& scene, Purpose purpose) {
-  Scene result{scene.file, {}, scene.materials, {}, {}, scene.lights, scene.cameras, scene.environment};
+InstanceMap map_of(const Instance& instance) {
+  InstanceMap map;
+  map.object_from_world = glm::mat3(glm::inverse(dmat3(instance.world_from_object)));
+  map.origin = vec3(instance.world_from_object[3]);
+  map.world_from_object = glm::mat3(glm::inverse(dmat3(map.object_from_world)));
+  return map;
+}
+
+namespace {
+
+/// Adds the instances of a scene, and their meshes.
+class InstanceAdder {
+ public:
+  InstanceAdder(const promin::Scene& scene, PictureMeshes* pictures, Scene& result)
+      : scene_(scene), pictures_(pictures), result_(result) {}
+
+  void add(uint32_t object) {
+    const promin::Object& source = scene_.objects[object];
+    const auto key = std::pair(source.geometry, pictures_ == nullptr ? 0 : pictures_->version_of(source));
+    const auto [mesh, is_new] = meshes_.try_emplace(key, static_cast<uint32_t>(result_.meshes.size()));
+    if (is_new) result_.meshes.push_back(make_mesh(source));
+    result_.objects.push_back({source.name, NotDrawn{}, source.material});
+    result_.instances.push_back({object, mesh->second, glm::dmat4x3(source.world_from_object)});
+  }
+
+ private:
+  Mesh make_mesh(const promin::Object& object) {
+    std::optional<Mesh> mesh = pictures_ == nullptr ? std::nullopt : pictures_->find(object);
+    if (!mesh) mesh = std::get<Mesh>(scene_.geometries[object.geometry]);
+    return place(std::move(*mesh), dmat4(1.0));
+  }
+
+  const promin::Scene& scene_;
+  PictureMeshes* pictures_;
+  Scene& result_;
+  /// Meshes by geometry and version.
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> meshes_;
+};
+
+}  // namespace
+
+Scene flatten(const promin::Scene& scene, Purpose purpose, Instancing instancing) {
+  Scene result;
+  result.file = scene.file;
+  result.materials = scene.materials;
+  result.lights = scene.lights;
+  result.cameras = scene.cameras;
+  result.environment = scene.environment;
   std::optional<PictureMeshes> meshes;
   if (purpose == Purpose::kPictures) {
     result.images = scene.images;
@@ -115,8 +164,15 @@ Scene flatten(const promin::Scene& scene, Purpose purpose) {
     meshes.emplace(scene);
   }
   result.objects.reserve(scene.objects.size());
-  for (const promin::Object& object : scene.objects) {
-    result.objects.push_back(flatten(scene, object, meshes ? &*meshes : nullptr));
+  PictureMeshes* pictures = meshes ? &*meshes : nullptr;
+  const std::vector<bool> is_instance = choose_instances(scene, instancing);
+  InstanceAdder instances(scene, pictures, result);
+  for (uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (is_instance[i]) {
+      instances.add(i);
+    } else {
+      result.objects.push_back(flatten(scene, scene.objects[i], pictures));
+    }
   }
   return result;
 }
@@ -126,9 +182,40 @@ uint32_t primitive_count(const Shape& shape) {
   return std::holds_alternative<NotDrawn>(shape) ? 0 : 1;
 }
 
+Bounds bounds_of(const world::InstanceMap& map, std::span<const Bounds> boxes) {
+  const dmat3 turn = glm::inverse(dmat3(map.object_from_world));
+  const dmat3 size(glm::abs(turn[0]), glm::abs(turn[1]), glm::abs(turn[2]));
+  dvec3 lo(std::numeric_limits<double>::infinity());
+  dvec3 hi(-std::numeric_limits<double>::infinity());
+  dvec3 most(0.0);
+  for (const Bounds& box : boxes) {
+    const dvec3 center = 0.5 * (dvec3(box.lo) + dvec3(box.hi));
+    const dvec3 half = 0.5 * (dvec3(box.hi) - dvec3(box.lo));
+    const dvec3 placed = turn * center;
+    const dvec3 reach = size * half;
+    lo = glm::min(lo, placed - reach);
+    hi = glm::max(hi, placed + reach);
+    most = glm::max(most, size * glm::abs(center) + reach);
+  }
+  // The rounding of these sums, and of the inverse, is far smaller than this.
+  const dvec3 rounding = 0x1p-40 * (most + glm::abs(dvec3(map.origin)));
+  const dvec3 origin(map.origin);
+  Bounds result;
+  for (int i = 0; i < 3; ++i) {
+    result.lo[i] = round_down(origin[i] + lo[i] - rounding[i]);
+    result.hi[i] = round_up(origin[i] + hi[i] + rounding[i]);
+  }
+  return result;
+}
+
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Object& object : scene.objects) bounds.extend(std::visit(BoundsOfShape{}, object.shape));
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const Bounds box = BoundsOfShape()(mesh);
+    if (!box.is_empty()) bounds.extend(bounds_of(map_of(instance), {&box, 1}));
+  }
   return bounds;
 }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "promin/instances.h"
 #include "promin/scene.h"
 
 // A scene prepared for the device. All coordinates are in world space, in the fp32 numbers that the device uses.
@@ -33,9 +35,34 @@ struct Object {
   bool is_rewound = false;
 };
 
+/// An object that shares a mesh. The object's shape is NotDrawn. The device computes with fp32 numbers R and c
+/// (InstanceMap): a point p of the mesh lies at c + R^-1 p. Statements about exact pictures and hits refer to these.
+struct Instance {
+  /// Index into Scene::objects.
+  uint32_t object = 0;
+  /// Index into Scene::meshes.
+  uint32_t mesh = 0;
+  glm::dmat4x3 world_from_object{1.0};
+};
+
+/// The numbers of an instance on the device.
+struct InstanceMap {
+  /// R, from directions in the world to the space of the mesh: the inverse of the transform, rounded.
+  glm::mat3 object_from_world{1.0F};
+  /// c, the place of the mesh's origin.
+  vec3 origin{0.0F};
+  /// E, the inverse of R, rounded.
+  glm::mat3 world_from_object{1.0F};
+};
+InstanceMap map_of(const Instance& instance);
+
 struct Scene {
   std::filesystem::path file;
   std::vector<Object> objects;
+  /// Meshes in their own space, which instances share.
+  std::vector<Mesh> meshes = {};
+  /// The instances in the order of their objects.
+  std::vector<Instance> instances = {};
   std::vector<Material> materials;
   std::vector<std::shared_ptr<const TextureImage>> images;
   std::vector<Texture> textures;
@@ -58,14 +85,19 @@ enum class Purpose {
   kHits,
 };
 
-/// Returns all objects in world space, in their order. The scene must be valid.
-Scene flatten(const promin::Scene& scene, Purpose purpose = Purpose::kPictures);
+/// Returns all objects in world space, in their order. The scene must be valid. Objects that become instances
+/// (scene/choose_instances.h) are not drawn, and are in Scene::instances.
+Scene flatten(const promin::Scene& scene, Purpose purpose = Purpose::kPictures,
+              Instancing instancing = Instancing::kNone);
 
 /// Returns the number of triangles, including degenerate ones; 1 for an analytic shape; 0 for NotDrawn.
 uint32_t primitive_count(const Shape& shape);
 
-/// Returns the bounds of all finite geometry; empty if there is none.
+/// Returns bounds of all finite geometry; empty if there is none. They are not the smallest ones if there are
+/// instances.
 Bounds bounds_of(const Scene& scene);
+/// Returns a box that contains c + R^-1 p for every point p in the boxes, of which there is at least one.
+Bounds bounds_of(const InstanceMap& map, std::span<const Bounds> boxes);
 /// Returns a camera in front of the scene and slightly above it, so that all corners of its bounds are in the picture.
 /// Tests and measurements use this camera for scenes without a camera, so that they do not depend on how scenes are
 /// framed for people (promin/framing.h).

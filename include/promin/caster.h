@@ -11,6 +11,7 @@
 #include <string>
 
 #include "promin/export.h"
+#include "promin/instances.h"
 #include "promin/progress.h"
 #include "promin/ray.h"
 #include "promin/scene.h"
@@ -29,6 +30,9 @@ struct CasterOptions {
   std::string builder = "sah";
   /// A BVH file to read the tree from. Without one the tree is built.
   std::optional<std::filesystem::path> bvh = std::nullopt;
+  /// The objects that share the triangles of their meshes. A BVH file has the triangles of all objects, so `bvh` needs
+  /// Instancing::kNone if the scene has instances.
+  Instancing instances = Instancing::kAuto;
   /// Receives the progress of building the tree. If it returns false, the constructor throws Cancelled.
   ProgressCallback progress = {};
 };

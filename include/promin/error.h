@@ -25,6 +25,8 @@ enum class Setting {
   kBuilder,
   /// The setting RendererOptions::texture_bytes.
   kTextureMemory,
+  /// The setting `instances` of RendererOptions and CasterOptions.
+  kInstances,
 };
 
 /// The name of a kind of problem, for programs and tests: two to four words of lower-case letters, joined by dots, such

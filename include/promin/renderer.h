@@ -15,6 +15,7 @@
 #include "promin/explain.h"
 #include "promin/export.h"
 #include "promin/image.h"
+#include "promin/instances.h"
 #include "promin/progress.h"
 #include "promin/ray_counts.h"
 #include "promin/scene.h"
@@ -74,6 +75,9 @@ struct RendererOptions {
   std::string builder = "sah";
   /// A BVH file to read the tree from. Without one the tree is built.
   std::optional<std::filesystem::path> bvh = std::nullopt;
+  /// The objects that share the triangles of their meshes. A BVH file has the triangles of all objects, so `bvh` needs
+  /// Instancing::kNone if the scene has instances.
+  Instancing instances = Instancing::kAuto;
   /// The mode of the first pictures. The constructor compiles the pipeline of this mode. Pipelines of other modes are
   /// compiled at their first use.
   RenderMode mode = {};

@@ -15,6 +15,7 @@
 #include "bind.h"
 #include "device.h"
 #include "in_process.h"
+#include "records.h"
 #include "scene.h"
 #include "setup_stats.h"
 #include "watched.h"
@@ -49,14 +50,17 @@ nb::object give(std::vector<Value> values, size_t width) {
 class SharedCaster {
  public:
   SharedCaster(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::string& builder,
-               const std::optional<std::filesystem::path>& bvh, const nb::object& progress)
+               const std::optional<std::filesystem::path>& bvh, const std::string& instances,
+               const nb::object& progress)
       : device_(std::move(device)) {
     const gpu::Device& open = device_->get();
     std::unique_ptr<Caster> caster;
+    const auto choice = static_cast<Instancing>(find_name(instancing_names(), instances, "instances"));
     run_watched(progress, [&](const ProgressCallback& tell) {
       CasterOptions options;
       options.builder = builder;
       if (bvh) options.bvh = *bvh;
+      options.instances = choice;
       options.progress = tell;
       caster = std::make_unique<Caster>(open, scene, options);
     });
@@ -130,8 +134,9 @@ class SharedCaster {
 void bind_caster(nb::module_& module) {
   nb::class_<SharedCaster>(module, "Caster")
       .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::string&,
-                    const std::optional<std::filesystem::path>&, const nb::object&>(),
-           nb::arg("device"), nb::arg("scene"), nb::arg("builder"), nb::arg("bvh").none(), nb::arg("progress").none())
+                    const std::optional<std::filesystem::path>&, const std::string&, const nb::object&>(),
+           nb::arg("device"), nb::arg("scene"), nb::arg("builder"), nb::arg("bvh").none(), nb::arg("instances"),
+           nb::arg("progress").none())
       .def("cast", &SharedCaster::cast, nb::arg("rays").noconvert(), nb::arg("hits").noconvert(),
            nb::arg("progress").none())
       .def("occluded", &SharedCaster::occluded, nb::arg("rays").noconvert(), nb::arg("answers").noconvert(),

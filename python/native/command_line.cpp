@@ -55,6 +55,7 @@ nb::dict list_choices() {
   choices["error_in"] = write_names(work::error_space_names());
   choices["filter"] = write_names(names_of(PixelFilter()));
   choices["framing"] = write_names(framing_names());
+  choices["instances"] = write_names(instancing_names());
   choices["kind"] = write_names(names_of(LightKind()));
   choices["light"] = write_names(light_choice_names());
   choices["projection"] = write_names(names_of(Projection()));

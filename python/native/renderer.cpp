@@ -110,19 +110,21 @@ nb::dict write_rays(const RayCounts& rays) {
 class SharedRenderer {
  public:
   SharedRenderer(std::shared_ptr<OpenDevice> device, const Scene& scene, const std::vector<std::string>& aovs,
-                 const std::string& builder, const std::optional<std::filesystem::path>& bvh, bool has_error_target,
-                 const nb::dict& mode, std::optional<uint64_t> expected_samples, uint64_t texture_bytes,
-                 const nb::object& progress)
+                 const std::string& builder, const std::optional<std::filesystem::path>& bvh,
+                 const std::string& instances, bool has_error_target, const nb::dict& mode,
+                 std::optional<uint64_t> expected_samples, uint64_t texture_bytes, const nb::object& progress)
       : device_(std::move(device)), aovs_(read_aovs(aovs)) {
     named_.objects = scene.objects;
     named_.materials = scene.materials;
     const gpu::Device& open = device_->get();
     std::unique_ptr<Renderer> renderer;
     const RenderMode first_mode = read_mode(mode);
+    const auto choice = static_cast<Instancing>(find_name(instancing_names(), instances, "instances"));
     run_watched(progress, [&](const ProgressCallback& tell) {
       RendererOptions options;
       options.builder = builder;
       if (bvh) options.bvh = *bvh;
+      options.instances = choice;
       options.aovs = aovs_;
       options.has_error_target = has_error_target;
       options.mode = first_mode;
@@ -222,11 +224,11 @@ nb::list list_aovs() {
 void bind_renderer(nb::module_& module) {
   nb::class_<SharedRenderer>(module, "Renderer")
       .def(nb::init<std::shared_ptr<OpenDevice>, const Scene&, const std::vector<std::string>&, const std::string&,
-                    const std::optional<std::filesystem::path>&, bool, const nb::dict&, std::optional<uint64_t>,
-                    uint64_t, const nb::object&>(),
+                    const std::optional<std::filesystem::path>&, const std::string&, bool, const nb::dict&,
+                    std::optional<uint64_t>, uint64_t, const nb::object&>(),
            nb::arg("device"), nb::arg("scene"), nb::arg("aovs"), nb::arg("builder"), nb::arg("bvh").none(),
-           nb::arg("has_error_target"), nb::arg("mode"), nb::arg("expected_samples").none(), nb::arg("texture_bytes"),
-           nb::arg("progress").none())
+           nb::arg("instances"), nb::arg("has_error_target"), nb::arg("mode"), nb::arg("expected_samples").none(),
+           nb::arg("texture_bytes"), nb::arg("progress").none())
       .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("display"),
            nb::arg("scene_file"), nb::arg("progress").none())
       .def("set_lights", &SharedRenderer::set_lights)

@@ -17,6 +17,7 @@
 #include "command_line.h"
 #include "promin/error.h"
 #include "promin/framing.h"
+#include "promin/instances.h"
 #include "promin/lighting.h"
 #include "promin/load_scene.h"
 #include "promin/motion.h"
@@ -37,6 +38,7 @@ namespace {
 template <typename T, int Columns>
 using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+using Matrices = nb::ndarray<const double, nb::shape<-1, 4, 4>, nb::c_contig, nb::device::cpu>;
 
 /// Returns the rows of an array; empty if there is no array. The array's shape ensures that its rows have the type Row.
 template <typename Row, typename Array>
@@ -49,10 +51,10 @@ std::vector<Row> copy_rows(const std::optional<Array>& rows) {
 }
 
 /// Python stores matrices by rows, GLM by columns.
-dmat4 read_matrix(const Matrix& matrix) {
+dmat4 read_matrix(const double* numbers) {
   dmat4 result;
   for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) result[column][row] = matrix.data()[4 * row + column];
+    for (int column = 0; column < 4; ++column) result[column][row] = numbers[4 * row + column];
   }
   return result;
 }
@@ -101,12 +103,19 @@ void add_mesh(Scene& scene, const std::string& name, const std::optional<Rows<fl
   mesh.triangles = copy_rows<uvec3>(triangles);
   mesh.normals = copy_rows<vec3>(normals);
   mesh.colors = copy_rows<vec4>(colors);
-  scene.add(name, std::move(mesh), material, read_matrix(matrix));
+  scene.add(name, std::move(mesh), material, read_matrix(matrix.data()));
 }
 
 void add_shape(Scene& scene, const std::string& name, const std::string& kind, const nb::dict& record,
                uint32_t material, const Matrix& matrix) {
-  scene.add(name, read_shape(kind, record), material, read_matrix(matrix));
+  scene.add(name, read_shape(kind, record), material, read_matrix(matrix.data()));
+}
+
+void add_all_instances(Scene& scene, uint32_t object, const Matrices& matrices) {
+  std::vector<dmat4> transforms;
+  transforms.reserve(matrices.shape(0));
+  for (size_t i = 0; i < matrices.shape(0); ++i) transforms.push_back(read_matrix(matrices.data() + 16 * i));
+  add_instances(scene, object, transforms);
 }
 
 template <typename T>
@@ -204,6 +213,8 @@ void bind_scene(nb::module_& module) {
            nb::arg("matrix").noconvert())
       .def("add_shape", &add_shape, nb::arg("name"), nb::arg("kind"), nb::arg("record"), nb::arg("material"),
            nb::arg("matrix").noconvert())
+      .def("add_instances", &add_all_instances, nb::arg("object"), nb::arg("matrices").noconvert())
+      .def("object_count", [](const Scene& s) { return s.objects.size(); })
       .def("add_material", [](Scene& s, const nb::dict& record) { s.materials.push_back(read_material(record)); })
       .def("add_light", [](Scene& s, const nb::dict& record) { s.lights.push_back(read_light(record)); })
       .def("add_camera", [](Scene& s, const nb::dict& record) { s.cameras.push_back(read_camera(record)); })

@@ -47,13 +47,16 @@ class Caster:
         *,
         bvh: str | os.PathLike[str] | None = None,
         builder: str = "sah",
+        instances: str = "auto",
         progress: Progress = None,
     ) -> None:
         """device: a Device, a part of a device's name, an index, or None for the default device. bvh: a file that
         `promin-bvh build` has written, from which the tree is read. builder: "sah", "median" or "spatial"; the hits do
-        not depend on it. Raises UsageError, InputError for an invalid scene, DeviceError, RunError, Cancelled."""
+        not depend on it. The objects of `instances` share the triangles of their mesh: "auto" are those that save
+        much memory, "all" those with a mesh, "none" no objects, as a bvh needs. Raises UsageError, InputError for an
+        invalid scene, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
-        self._options = (str(builder), None if bvh is None else os.fsdecode(bvh))
+        self._options = (str(builder), None if bvh is None else os.fsdecode(bvh), str(instances))
         self._chosen = device
         self._make_private()
         self._open(progress)

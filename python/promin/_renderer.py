@@ -145,6 +145,7 @@ class Renderer:
         exposure: float | str = "auto",
         builder: str = "sah",
         bvh: str | os.PathLike[str] | None = None,
+        instances: str = "auto",
         texture_memory: int = 512 << 20,
         expected_samples: int | None = None,
         progress: Progress = None,
@@ -183,6 +184,7 @@ class Renderer:
         self._exposure = _stops_of(exposure)
         self._builder = str(builder)
         self._bvh = None if bvh is None else os.fsdecode(bvh)
+        self._instances = str(instances)
         self._texture_memory = texture_memory
         self._expected_samples = None if expected_samples is None else _count(expected_samples, "expected_samples")
         self._aovs = _names(aovs)
@@ -412,6 +414,7 @@ class Renderer:
             sorted({*aovs, *unasked}),
             self._builder,
             self._bvh,
+            self._instances,
             begins_with_target(view),
             mode_of(self._with_integrator(view)),
             self._expected_samples,
@@ -549,6 +552,7 @@ def render(
     ground: bool | None = None,
     exposure: float | str = "auto",
     builder: str = "sah",
+    instances: str = "auto",
     progress: Progress = None,
     camera: CameraLike = None,
     size: Size = None,
@@ -600,6 +604,7 @@ def render(
         ground=ground,
         exposure=exposure,
         builder=builder,
+        instances=instances,
         expected_samples=_count_samples(view),
         progress=progress,
     )

@@ -77,22 +77,30 @@ class _Mesh:
     material: int
     transform: NDArray[np.float64]
 
+    def __len__(self) -> int:
+        return 1
+
     def corners(self) -> NDArray[np.float64]:
         """Returns the vertices in world coordinates, in float64."""
         return self.vertices @ self.transform[:3, :3].T + self.transform[:3, 3]
 
-    def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> None:
+    def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Adds the mesh to the library's scene. Returns the translation from the stored vertices to the caller's."""
         vertices, transform = self.vertices, self.transform
+        moved = np.zeros(3)
         if transform is IDENTITY:
             vertices = vertices - center if center.any() else vertices
+            moved = center
         elif vertices.dtype == np.float64 and len(vertices):
             # The vertices are stored relative to the mesh's own middle, in float32; the transform stays in double.
             middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
             vertices = vertices - middle
+            moved = middle
             transform = _translation(-center) @ transform @ _translation(middle)
         else:
             transform = _translation(-center) @ transform
         scene.add_mesh(self.name, round_once(vertices), self.faces, self.normals, self.colors, self.material, transform)
+        return moved
 
 
 @dataclass(frozen=True)
@@ -103,9 +111,30 @@ class _Shape:
     material: int
     transform: NDArray[np.float64]
 
-    def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> None:
+    def __len__(self) -> int:
+        return 1
+
+    def add_to(self, scene: _promin.Scene, center: NDArray[np.float64]) -> NDArray[np.float64]:
         transform = _translation(-center) @ self.transform
         scene.add_shape(self.name, self.kind, self.record, self.material, np.ascontiguousarray(transform))
+        return np.zeros(3)
+
+
+@dataclass(frozen=True)
+class _Instances:
+    source: int
+    transforms: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.transforms)
+
+    def add_to(
+        self, scene: _promin.Scene, center: NDArray[np.float64], moved: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Adds the instances. `moved` is the translation that the source's add_to has returned."""
+        transforms = _translation(-center) @ self.transforms @ _translation(moved)
+        scene.add_instances(self.source, np.ascontiguousarray(transforms))
+        return moved
 
 
 class Scene:
@@ -129,7 +158,7 @@ class Scene:
         None: if some vertices are float64, it is the middle of the bounds of all vertices, rounded to eighths of the
         bounds' size or finer, so that a scene around the origin does not move; otherwise it is the origin."""
         self._file: _File | None = None
-        self._parts: list[_Mesh | _Shape] = []
+        self._parts: list[_Mesh | _Shape | _Instances] = []
         self._materials: list[Material] = []
         self._lights: list[Light] = []
         # All materials or all lights, including those of the file. Set when the caller changes one of them.
@@ -299,6 +328,23 @@ class Scene:
             radius_top=radius_top,
         )
 
+    def add_instances(self, object: int, transforms: ArrayLike) -> range:
+        """Adds objects that share the geometry, material and name of an object, and returns their numbers. Instances of
+        a mesh need little memory (docs/instances.md).
+
+        object: the number of an object of this scene that has a geometry. transforms: (n, 4, 4) for column vectors,
+        from the object's own space to the world, affine and not singular. They replace the object's own transform. The
+        space of an object of a file is that of the file's mesh. Raises UsageError."""
+        matrices: NDArray[np.float64] = _frozen(np.array(to_numbers(transforms, "transforms"), np.float64))
+        if matrices.ndim != 3 or matrices.shape[1:] != (4, 4):
+            raise UsageError(f"transforms have the shape {matrices.shape}; give (n, 4, 4)")
+        if isinstance(object, bool) or not isinstance(object, (int, np.integer)) or not 0 <= object < self._count():
+            raise UsageError(f"object is {object!r:.80}; give the number of an object of this scene")
+        first = self._count()
+        if len(matrices):
+            self._add(_Instances(int(object), matrices))
+        return range(first, first + len(matrices))
+
     def add_material(self, material: Material) -> int:
         """Adds a material and returns its number. The materials of a file come first."""
         materials = self._materials if self._all_materials is None else self._all_materials
@@ -441,13 +487,23 @@ class Scene:
         origins, _, directions, _ = split_rays(rays)
         origins = np.broadcast_to(origins, points.shape)
         directions = np.broadcast_to(directions, points.shape)
-        first = len(self._load_base().objects()) if self._file is not None else 0
-        for number, part in enumerate(self._parts, first):
-            if not isinstance(part, _Mesh):
-                continue
-            chosen = hits["object"] == number
-            triangles = part.corners()[part.faces[hits["primitive"][chosen]]]
-            points[chosen] = meet_planes(origins[chosen], directions[chosen], triangles, points[chosen])
+        meshes: dict[int, _Mesh] = {}
+        number = self._base_count()
+        for part in self._parts:
+            if isinstance(part, _Mesh):
+                meshes[number] = part
+                chosen = hits["object"] == number
+                triangles = part.corners()[part.faces[hits["primitive"][chosen]]]
+                points[chosen] = meet_planes(origins[chosen], directions[chosen], triangles, points[chosen])
+            elif isinstance(part, _Instances) and part.source in meshes:
+                mesh = meshes[part.source]
+                meshes.update((number + i, mesh) for i in range(len(part)))
+                chosen = (hits["object"] >= number) & (hits["object"] < number + len(part))
+                transforms = part.transforms[hits["object"][chosen] - number]
+                corners = np.asarray(mesh.vertices[mesh.faces[hits["primitive"][chosen]]], np.float64)
+                triangles = corners @ transforms[:, :3, :3].transpose(0, 2, 1) + transforms[:, None, :3, 3]
+                points[chosen] = meet_planes(origins[chosen], directions[chosen], triangles, points[chosen])
+            number += len(part)
         return points
 
     def __repr__(self) -> str:
@@ -504,8 +560,16 @@ class Scene:
                 scene.add_material(to_dict(material))
         elif self._parts and self._material_count() == 0:
             scene.add_material(to_dict(Phong()))
+        moves: dict[int, NDArray[np.float64]] = {}
+        number = self._base_count()
         for part in self._parts:
-            part.add_to(scene, center)
+            if isinstance(part, _Instances):
+                moved = part.add_to(scene, center, moves.get(part.source, np.zeros(3)))
+            else:
+                moved = part.add_to(scene, center)
+            if moved.any():
+                moves.update((number + i, moved) for i in range(len(part)))
+            number += len(part)
         if self._all_lights is not None:
             scene.set_lights([move_light(light, center) for light in self._all_lights])
         else:
@@ -541,10 +605,19 @@ class Scene:
             return len(self._all_materials)
         return len(self._materials) + (0 if self._file is None else len(self._load_base().materials()))
 
-    def _add(self, part: _Mesh | _Shape) -> int:
+    def _base_count(self) -> int:
+        """Returns the number of objects of the file."""
+        return 0 if self._file is None else self._load_base().object_count()
+
+    def _count(self) -> int:
+        return self._base_count() + sum(len(part) for part in self._parts)
+
+    def _add(self, part: _Mesh | _Shape | _Instances) -> int:
+        """Returns the number of the part's first object."""
+        number = self._count()
         self._parts.append(part)
         self._forget_native()
-        return (0 if self._file is None else len(self._load_base().objects())) + len(self._parts) - 1
+        return number
 
     def _add_shape(self, kind: str, place: dict[str, Any], **fields: Any) -> int:
         record = {name: _FIELDS.get(name, _real)(value) for name, value in fields.items()}

@@ -100,7 +100,7 @@ void put_aovs(uint pixel, Ray ray, Hit hit, ShadingPoint point) {
   vec3 measures = vec3(0.0, 0.0, INFINITY);
   if (is_hit) {
     albedo = uvec4(floatBitsToUint(albedo_color(point)),
-                   load_surface(hit.primitive).corners_material.w & SURFACE_MATERIAL_MASK);
+                   load_surface_of(hit.primitive, hit.part).corners_material.w & SURFACE_MATERIAL_MASK);
     position.xyz = floatBitsToUint(point.position);
     shading_normal.xyz = floatBitsToUint(point.normal);
     precise float along = hit.t * dot3(ray.direction, CAMERA.look.xyz);

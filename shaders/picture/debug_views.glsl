@@ -28,11 +28,11 @@ vec3 uv_color(Ray ray, Hit hit, vec4 normal_and_depth) {
 }
 
 vec3 object_color(Ray ray, Hit hit, vec4 normal_and_depth) {
-  return is_miss(hit) ? vec3(0.0) : color_of_hash(object_hash_of(load_primitive(hit.primitive)));
+  return is_miss(hit) ? vec3(0.0) : color_of_hash(object_hash_of(load_primitive_of(hit.primitive, hit.part)));
 }
 
 vec3 primitive_color(Ray ray, Hit hit, vec4 normal_and_depth) {
-  return is_miss(hit) ? vec3(0.0) : color_of_hash(primitive_hash_of(load_primitive(hit.primitive)));
+  return is_miss(hit) ? vec3(0.0) : color_of_hash(primitive_hash_of(load_primitive_of(hit.primitive, hit.part)));
 }
 
 vec3 depth_color(Ray ray, Hit hit, vec4 normal_and_depth) {

@@ -24,7 +24,7 @@ bool is_seen_through(MaterialRecord material) {
 }
 
 bool may_have_holes(uint index) {
-  SurfaceRecord surface = load_surface(index);
+  SurfaceRecord surface = load_surface_of(index, has(FEATURE_INSTANCES) && is_in_instance ? inside_part : PART_SIDE);
   return has_holes(material_of(surface), surface);
 }
 
@@ -44,11 +44,16 @@ float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3
 }
 
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge) {
-  SurfaceRecord surface = load_surface(index);
+  SurfaceRecord surface = load_surface_of(index, crossing.part);
   MaterialRecord material = material_of(surface);
   if (PASSES != 0u && is_on_open_edge && is_seen_through(material)) return true;
   // This cosine is computed in the same way as in shading.
   float facing = dot3(triangle_normal(p), direction);
+  if (is_instance_part(crossing.part)) {
+    direction = world_direction;
+    facing = dot3(instance_normal(p, crossing.part), direction);
+    if (has(FEATURE_HOLES)) p = place_about_origin(p, load_instance_look(crossing.part));
+  }
   if (has(FEATURE_ONE_SIDED) && passes_backs && facing > 0.0 && (flags_of(material) & MATERIAL_IS_ONE_SIDED) != 0u) {
     return true;
   }
@@ -63,7 +68,7 @@ bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool
 
 // Returns the opacity of a hit: 1 unless its material blends.
 float coverage_of_hit(Hit hit, vec3 direction) {
-  SurfaceRecord surface = load_surface(hit.primitive);
+  SurfaceRecord surface = load_surface_of(hit.primitive, hit.part);
   MaterialRecord material = material_of(surface);
   if ((flags_of(material) & MATERIAL_BLENDS) == 0u) return 1.0;
   if (!has(FEATURE_HOLES) || !has_holes(material, surface)) return material.cover.x;

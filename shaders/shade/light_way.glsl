@@ -41,7 +41,7 @@ vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord mat
 // Returns the fraction of the light that a face transmits, and the media behind it. Shadow rays run straight, so each
 // face is treated as if the ray came from its thinner side; there is then no total reflection.
 vec3 share_through(Hit hit, Ray ray, SurfaceRecord surface, MaterialRecord material, inout uvec2 media) {
-  Primitive p = load_primitive(hit.primitive);
+  Primitive p = load_primitive_of(hit.primitive, hit.part);
   GlassRecord record = load_glass(glass_number(material));
   bool is_thin = (record.bits.x & GLASS_IS_THIN) != 0u;
   vec3 normal = surface_point(ray, p, hit).normal;
@@ -75,7 +75,7 @@ bool goes_on_behind(inout LightWay way, Ray ray, Hit hit, uint layers) {
     way.arriving = vec3(share_behind(hit, ray.direction, way.arriving.x, layers));
     return way.arriving.x > 0.0;
   }
-  SurfaceRecord surface = load_surface(hit.primitive);
+  SurfaceRecord surface = load_surface_of(hit.primitive, hit.part);
   MaterialRecord material = material_of(surface);
   absorb_until(way, ray, hit.t);
   float coverage = coverage_of_hit(hit, ray.direction);

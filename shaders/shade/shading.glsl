@@ -103,10 +103,22 @@ float curvature_of(Primitive p, vec3 n0, vec3 n1, vec3 n2) {
   return mean;
 }
 
+// The part of the hit that is shaded, with FEATURE_INSTANCES. make_shading_point sets it.
+uint shaded_part = PART_SIDE;
+
+// Returns a normal of a vertex in the world.
+vec3 load_vertex_normal(uint vertex) {
+  vec3 normal = load_vertex(VIEW.first_index.z + vertex);
+  if (is_instance_part(shaded_part)) {
+    normal = to_world_normal(load_instance_map(shaded_part - FIRST_INSTANCE_PART), normal);
+  }
+  return normal;
+}
+
 void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, vec3 weights, bool is_flipped) {
-  vec3 n0 = load_vertex(VIEW.first_index.z + corners.x);
-  vec3 n1 = load_vertex(VIEW.first_index.z + corners.y);
-  vec3 n2 = load_vertex(VIEW.first_index.z + corners.z);
+  vec3 n0 = load_vertex_normal(corners.x);
+  vec3 n1 = load_vertex_normal(corners.y);
+  vec3 n2 = load_vertex_normal(corners.z);
   // The side of the geometric normal determines on which side the interpolated normal is used. The sign of the
   // interpolated normal follows the winding.
   float side = is_flipped ? -1.0 : 1.0;
@@ -114,10 +126,20 @@ void apply_vertex_normals(inout ShadingPoint point, Primitive p, uvec3 corners, 
   vec3 normal = normalize3(interpolated);
   if (max_abs(normal) == 0.0) return;
   point.normal = normal;
-  precise vec3 lifted = weights.x * lift_to_curve(point.position, corner0(p), n0 * side) +
-                        weights.y * lift_to_curve(point.position, corner1(p), n1 * side) +
-                        weights.z * lift_to_curve(point.position, corner2(p), n2 * side);
+  vec3 position = point.position;
+  if (is_instance_part(shaded_part)) {
+    // The corners are relative to the origin of the instance's mesh.
+    precise vec3 from_origin = weights.x * corner0(p) + weights.y * corner1(p) + weights.z * corner2(p);
+    position = from_origin;
+  }
+  precise vec3 lifted = weights.x * lift_to_curve(position, corner0(p), n0 * side) +
+                        weights.y * lift_to_curve(position, corner1(p), n1 * side) +
+                        weights.z * lift_to_curve(position, corner2(p), n2 * side);
   point.shadow_position = lifted;
+  if (is_instance_part(shaded_part)) {
+    precise vec3 moved = point.position + (lifted - position);
+    point.shadow_position = moved;
+  }
   if (has(FEATURE_TEXTURES)) {
     precise float curvature = side * curvature_of(p, n0, n1, n2);
     point.curvature = curvature;
@@ -166,10 +188,18 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
     precise vec4 sum = weights.x * load_vertex4(VIEW.first_texture.y + corners.x) +
                        weights.y * load_vertex4(VIEW.first_texture.y + corners.y) +
                        weights.z * load_vertex4(VIEW.first_texture.y + corners.z);
-    return vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
+    vec4 tangent = vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
+    if (is_instance_part(shaded_part)) {
+      InstanceLook look = load_instance_look(shaded_part);
+      tangent = vec4(to_world_direction(look, tangent.xyz), tangent.w * handedness_of(look));
+    }
+    return tangent;
   }
   bool is_second = slot != 0u && has_flag(load_slot(slot), TEXTURE_UV_SET);
-  return is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
+  vec4 own = is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
+  // A mirrored instance keeps the order of corners, so its winding is reversed.
+  if (is_instance_part(shaded_part)) own.w *= handedness_of(load_instance_look(shaded_part));
+  return own;
 }
 
 // Returns the normal from a normal texture. `number` is the number of its slot, and `texel` its value.
@@ -379,9 +409,11 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
 // (propagateNoContraction.cpp).
 void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec2 media, uint color,
                         out ShadingPoint point) {
-  Primitive p = load_primitive(hit.primitive);
-  SurfaceRecord record = load_surface(hit.primitive);
+  Primitive p = load_primitive_of(hit.primitive, hit.part);
+  SurfaceRecord record = load_surface_of(hit.primitive, hit.part);
   SurfacePoint surface = surface_point(ray, p, hit);
+  if (has(FEATURE_INSTANCES)) shaded_part = hit.part;
+  if (is_instance_part(hit.part)) p = place_about_origin(p, load_instance_look(hit.part));
   bool is_flipped = dot3(surface.normal, ray.direction) > 0.0;
   point.position = surface.position;
   point.geometric_normal = is_flipped ? -surface.normal : surface.normal;

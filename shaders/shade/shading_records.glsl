@@ -26,6 +26,8 @@ MaterialRecord load_material(uint index) {
                         shading_vector(first + 3u), shading_vector(first + 4u), shading_vector(first + 5u));
 }
 
+#include "shade/instance_surfaces.glsl"
+
 uint flags_of(MaterialRecord material) { return floatBitsToUint(material.emissive.w); }
 
 ExtensionRecord load_extension(uint index) {

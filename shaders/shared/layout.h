@@ -105,6 +105,19 @@ LAYOUT_CONSTANT CHILD_COUNT_MASK = 15u;
 LAYOUT_CONSTANT CHILD_FIRST_MASK = 0x07FFFFFFu;
 // Largest number of nodes, because traversal stores a node's index in 24 bits (family.glsl).
 LAYOUT_CONSTANT MAX_NODES = 0x00FFFFFFu;
+// With FEATURE_INSTANCES, a leaf of the upper level with one reference and this bit is an instance. The bits below are
+// the index of its two records, which follow the nodes and have their size. The first record: frame.xyz, lo.xyz, hi.xyz
+// = rows of R; their w = c; children = the mesh's max-norm radius around its origin, the index of the mesh's root,
+// the number of the instance's first primitive, the instance's max-norm radius in the world. The second record:
+// frame.xyz, lo.xyz, hi.xyz = rows of E; frame.w = the material of all triangles or NO_INSTANCE_MATERIAL; lo.w = bits:
+// INSTANCE_*.
+LAYOUT_CONSTANT CHILD_IS_INSTANCE = 0x84000000u;
+LAYOUT_CONSTANT CHILD_INSTANCE_MASK = 0xFC000000u;
+LAYOUT_CONSTANT CHILD_INSTANCE_INDEX = 0x03FFFFFFu;
+LAYOUT_CONSTANT INSTANCE_RECORDS = 2u;
+LAYOUT_CONSTANT INSTANCE_HASH_MASK = 0xFFFFu;        // hash of the object, as in Primitive::c.w
+LAYOUT_CONSTANT INSTANCE_IS_MIRRORED = 0x80000000u;  // R changes the handedness
+LAYOUT_CONSTANT NO_INSTANCE_MATERIAL = 0xFFFFFFFFu;
 
 // A primitive. The primitives of the tree come first, in leaf order, then the unbounded primitives. The kind determines
 // the meaning of a, b and c.x: the comment at the kind's pack() and its shader file in primitives/ define it. c.y is

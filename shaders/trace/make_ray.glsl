@@ -28,9 +28,11 @@ vec3 signs_of(vec3 v) { return vec3(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1
 
 // Sets the two origins of the box test from the ray's origin and direction.
 void pad_origin(inout Ray ray) {
-  precise float reach = max_abs(ray.origin - VIEW.tree_bounds.xyz) + VIEW.tree_bounds.w;
-  precise vec3 padding =
-      signs_of(ray.direction) * (BOX_PADDING * reach + ORIGIN_PADDING * abs(ray.origin));
+  vec4 bounds = level_bounds();
+  float of_reach = BOX_PADDING;
+  if (has(FEATURE_INSTANCES)) of_reach = is_in_instance ? BOX_PADDING : UPPER_PADDING;
+  precise float reach = max_abs(ray.origin - bounds.xyz) + bounds.w;
+  precise vec3 padding = signs_of(ray.direction) * (of_reach * reach + ORIGIN_PADDING * abs(ray.origin));
   precise vec3 near_origin = ray.origin + padding;
   precise vec3 far_origin = ray.origin - padding;
   ray.near_origin = near_origin;

@@ -72,6 +72,8 @@ uint meet_children(uint node) {
     vec4 exit = lesser(far_t_x, lesser(far_t_y, far_t_z));
     // The limit is slightly larger than the remaining distance, because t is rounded when the shift is added.
     precise float limit = limits[slot] - SHIFT_TO_CULL_BY * shifts[slot];
+    // In an instance the shift may be smaller than the remaining distance.
+    if (has(FEATURE_INSTANCES)) limit = in_level(slot, limit + 4.0 * UNIT_ROUNDOFF * limits[slot]);
     met = add_met(met, lessThanEqual(entry, lesser(exit, vec4(limit))), entry);
   }
 

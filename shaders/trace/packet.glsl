@@ -35,7 +35,8 @@ const uint SKIPS_EXIT = 0x10000u;
 float skipped_until = -1.0;
 uint skipped_object = 0u;
 bool is_skipped(float t, Primitive p, bool leaves) {
-  return t <= skipped_until && (object_hash_of(p) | (leaves ? SKIPS_EXIT : 0u)) == skipped_object;
+  uint object = has(FEATURE_INSTANCES) && is_in_instance ? inside_hash : object_hash_of(p);
+  return t <= skipped_until && (object | (leaves ? SKIPS_EXIT : 0u)) == skipped_object;
 }
 
 // Resets the state of a ray to its start.
@@ -97,12 +98,22 @@ Crossing not_skipped(uint slot, Crossing crossing, Primitive p) {
 // Stores the crossing if it is nearer than the hit so far, or equally near with a lower number. The hit therefore does
 // not depend on the tree.
 void keep_nearest(uint slot, Crossing crossing, uint primitive, uint order, bool asks_for_any) {
-  precise float t = crossing.t + shifts[slot];
+  precise float t = in_world(slot, crossing.t) + shifts[slot];
+  if (has(FEATURE_INSTANCES)) {
+    // In an instance the ray's own tmin is only a lower bound.
+    if (!(t > unmoved_tmins[slot])) return;
+  }
   if (PASSES != 0u) {
     if (t < passed_t[slot] || (t == passed_t[slot] && order <= passed_order[slot])) return;
   }
   if (crossing.t > packet[slot].tmin && (t < limits[slot] || (t == limits[slot] && order < found[slot].order))) {
     found[slot] = Hit(t, crossing.u, crossing.v, crossing.part, primitive, order);
     limits[slot] = asks_for_any ? -1.0 : t;
+  } else if (has(FEATURE_INSTANCES)) {
+    // If the scene has too many primitives, those of an instance have the same number.
+    bool is_tie = t == limits[slot] && order == found[slot].order && primitive < found[slot].primitive;
+    if (crossing.t > packet[slot].tmin && is_tie && found[slot].primitive != NO_PRIMITIVE) {
+      found[slot] = Hit(t, crossing.u, crossing.v, crossing.part, primitive, order);
+    }
   }
 }

@@ -21,7 +21,7 @@ float given_tmaxs[PACKET_SIZE];
 const float PLAIN_UNITS = 1048576.0;  // 2^20
 
 void take_crossing(uint slot, Crossing crossing, uint primitive, uint order, uint leaves) {
-  precise float t = crossing.t + shifts[slot];
+  precise float t = in_world(slot, crossing.t) + shifts[slot];
   precise float given_t = t * units[slot];
   bool counts = crossing.t > packet[slot].tmin && t < limits[slot] && given_t > given_tmins[slot] &&
                 given_t < given_tmaxs[slot];
@@ -126,7 +126,8 @@ void intersect_packet_with_triangle(Primitive p, uint index, bool asks_for_any) 
     may_another_be_crossed = false;
     [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
       if (slot == next) {
-        take_crossing(slot, crossing, index, order_of(p), 0u);
+        if (has(FEATURE_INSTANCES) && is_in_instance) crossing.part = inside_part;
+        take_crossing(slot, crossing, index, number_of(p), 0u);
         may_be_crossed[slot] = false;
       }
       may_another_be_crossed = may_another_be_crossed || may_be_crossed[slot];
@@ -141,7 +142,7 @@ bool glance_at_triangle(Primitive p, uint index) {
   bool is_sure[PACKET_SIZE];
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
     ShearedTriangle sheared = shear_triangle(packet[slot], p);
-    Glance glance = glance_at(sheared, packet[slot].shear.z, packet[slot].tmin, limits[slot]);
+    Glance glance = glance_at(sheared, packet[slot].shear.z, packet[slot].tmin, in_level(slot, limits[slot]));
     bool may_be_crossed = sheared.least >= 0.0 && limits[slot] >= 0.0;
     precise float inverse_limit = 1.0 / PLAIN_UNITS;
     bool is_plain = shifts[slot] == 0.0 && units[slot] <= PLAIN_UNITS && units[slot] >= inverse_limit;

@@ -17,8 +17,10 @@ struct SurfacePoint {
 #include "trace/primitives/cone.glsl"
 #include "trace/primitives/box.glsl"
 #include "trace/primitives/capsule.glsl"
+#include "trace/instances.glsl"
 
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
+  if (is_instance_part(hit.part)) return instance_surface(p, hit);
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
   if (has(FEATURE_##FEATURE) && kind_of(p) == NUMBER) return PREFIX##_surface(ray, p, hit);
 #include "promin/kinds/primitives.def"

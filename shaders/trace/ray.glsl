@@ -21,7 +21,7 @@ struct Hit {
   float t;
   float u;  // weights of a triangle's second and third corner
   float v;
-  uint part;       // the face of an analytic shape that was hit: PART_*
+  uint part;       // the face of an analytic shape that was hit: PART_*; in an instance, its number (instances.glsl)
   uint primitive;  // index into `primitives`; NO_PRIMITIVE on a miss
   uint order;      // number in the scene; at equal t the lower number wins
 };
@@ -30,6 +30,7 @@ const uint NO_PRIMITIVE = 0xFFFFFFFFu;
 const uint PART_SIDE = 0u;
 const uint PART_BOTTOM = 1u;
 const uint PART_TOP = 2u;
+const uint FIRST_INSTANCE_PART = 8u;  // above the parts of all shapes
 
 // The crossing of a ray with one primitive: the crossing with the smallest t > tmin, or NO_CROSSING.
 struct Crossing {
@@ -86,3 +87,5 @@ Crossing nearest_crossing(Ray ray, float entry, uint entry_part, float exit, uin
 Crossing nearest_crossing(Ray ray, Inside inside) {
   return nearest_crossing(ray, inside.entry, inside.entry_part, inside.exit, inside.exit_part);
 }
+
+#include "trace/level.glsl"

@@ -46,6 +46,19 @@ uint stack[STACK_SIZE + 1u];  // the families of the nodes above, and one entry 
 const uint DONE = 0xFFFFFFFFu;
 const uint IN_LEAF = 0xFFFFFFFEu;  // the lane is in the leaf that it has entered
 
+// The upper level, while the ray is in an instance (FEATURE_INSTANCES): its family, and the top of its stack.
+uint upper_family = 0u;
+uint upper_stack_top = 0u;
+
+// Returns the index of the first entry of the stack that belongs to the current level.
+uint bottom_of_level() {
+  uint bottom = 0u;
+  if (has(FEATURE_INSTANCES)) bottom = upper_stack_top;
+  return bottom;
+}
+
+bool is_instance(uint child) { return (child & CHILD_INSTANCE_MASK) == CHILD_IS_INSTANCE; }
+
 // Returns the next remaining child, or DONE. Without `takes` nothing changes. The function has no branches, because CPU
 // drivers execute branches for all lanes.
 uint take_child(bool takes) {
@@ -53,7 +66,7 @@ uint take_child(bool takes) {
   uint node = has_child ? node_of_family(descent.family) : 0u;
   uint child = next_of_family(descent.family, load_children(node));
   uint left = without_next(descent.family);
-  bool pops = has_child && left == NO_FAMILY && descent.stack_top > 0u;
+  bool pops = has_child && left == NO_FAMILY && descent.stack_top > bottom_of_level();
   descent.stack_top -= pops ? 1u : 0u;
   uint above = stack[descent.stack_top];
   descent.family = has_child ? (pops ? above : left) : descent.family;
@@ -177,6 +190,9 @@ uint go_through_leaf(uint current, bool asks_for_any) {
     for (uint i = 0u; i < STEPS_TOGETHER; ++i) current = step_together(current);
   }
   if (is_inner(current) || current == DONE) return current;
+  if (has(FEATURE_INSTANCES)) {
+    if (is_instance(current)) return current;
+  }
   if (current != IN_LEAF) enter_leaf(current);
   intersect_leaf(asks_for_any);
   if (waits()) return IN_LEAF;
@@ -215,6 +231,16 @@ void descend(bool asks_for_any) {
   } while (has_waited);
 }
 
+#include "trace/change_level.glsl"
+
+void descend_levels(bool asks_for_any) {
+  if (has(FEATURE_INSTANCES)) {
+    descend_two_levels(asks_for_any);
+  } else {
+    descend(asks_for_any);
+  }
+}
+
 // Traces one octant after the other: first the octant of the first ray, then the octant of the first remaining ray.
 void descend_by_octants(bool asks_for_any) {
   float waiting[PACKET_SIZE];
@@ -233,14 +259,14 @@ void descend_by_octants(bool asks_for_any) {
       waiting[slot] = joins ? -1.0 : waiting[slot];
       are_some_left = are_some_left || waiting[slot] >= 0.0;
     }
-    descend(asks_for_any);
+    descend_levels(asks_for_any);
   } while (are_some_left);
 }
 
 void descend_as_they_are(bool asks_for_any) {
   if (PACKET_SIZE == 1u) {
     octant = packet[0].inverse_direction;
-    descend(asks_for_any);
+    descend_levels(asks_for_any);
   } else {
     descend_by_octants(asks_for_any);
   }
@@ -282,6 +308,11 @@ void descend_from_nearby(bool asks_for_any) {
 void trace_packet(bool asks_for_any) {
   [[unroll]] for (uint slot = 0u; slot < PACKET_SIZE; ++slot) {
     shifts[slot] = 0.0;
+    if (has(FEATURE_INSTANCES)) {
+      unmoved_tmins[slot] = packet[slot].tmin;
+      to_world[slot] = 1.0;
+      to_level[slot] = 1.0;
+    }
     found[slot] = Hit(packet[slot].tmax, 0.0, 0.0, PART_SIDE, NO_PRIMITIVE, 0u);
     limits[slot] = packet[slot].tmin < packet[slot].tmax ? packet[slot].tmax : -1.0;
   }

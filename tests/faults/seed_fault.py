@@ -48,6 +48,23 @@ FAULTS = {
             (r"= b2\.x \* a2\.y - b2\.y \* a2\.x;", "= fused(b2.x, a2.y, -(b2.y * a2.x));"),
         ]
     },
+    "instance_rotated_first": {
+        "trace/change_level.glsl": [
+            (r"= upper_rays\[slot\]\.origin - map\.origin;", "= upper_rays[slot].origin;"),
+            (r"(times_rows\([^;]*, near\)),", r"\1 - times_rows(map.r0, map.r1, map.r2, map.origin),"),
+        ]
+    },
+    "instance_unpadded": {"trace/level.glsl": [(r"UPPER_PADDING = [^;]*;", "UPPER_PADDING = 0.0;")]},
+    "instance_lift_small": {
+        "trace/instances.glsl": [(r"UNIT_ROUNDOFF \* \(h \* own_lift", "0.02 * UNIT_ROUNDOFF * (h * own_lift")]
+    },
+    "instance_normals_by_e": {
+        "trace/instances.glsl": [
+            (r"times_columns\(map[^;]*, own_normal\);", "to_world_direction(look, own_normal);"),
+        ]
+    },
+    "ties_reversed": {"trace/packet.glsl": [(r"limits\[slot\] && order < found", "limits[slot] && order > found")]},
+    "instance_t_unscaled": {"trace/level.glsl": [(r"t \* to_world\[slot\];", "t;")]},
     "nothing_precise": {"trace/primitives/triangle.glsl": [(r"\bprecise ", "")]},
     # These are faults of pictures (tests/gpu/boards_test.cpp).
     "srgb_is_linear": {"shade/textures.glsl": [(r"return vec3\(code\.x <= 0\.04045[^;]*;", "return code;")]},

@@ -397,10 +397,11 @@ TEST_F(GltfExtensionsTest, BadInstancesAreRefused) {
 
 TEST_F(GltfExtensionsTest, TooManyInstancesAreRefusedBeforeTheyAreTaken) {
   GltfBuilder gltf = instanced_gltf(json::object());
-  // The file has 2^14 + 1 copies of 2^14 triangles.
-  gltf.json["meshes"][0]["primitives"][0]["indices"] = gltf.add(std::vector<uint8_t>(3 << 14, 0), "SCALAR");
-  instances_of(gltf)["SCALE"] = gltf.add(std::vector<float>(3 * ((1 << 14) + 1), 1.0F), "VEC3");
-  EXPECT_THAT(refusal_of(gltf), HasProblem("scene.size.limit 16385 16384 1"));
+  // The file has 2^12 instances of a mesh with 2^12 + 1 primitives, but a scene has at most 2^24 objects.
+  json& primitives = gltf.json["meshes"][0]["primitives"];
+  primitives = std::vector<json>((1 << 12) + 1, primitives[0]);
+  instances_of(gltf)["SCALE"] = gltf.add(std::vector<float>(3 << 12, 1.0F), "VEC3");
+  EXPECT_THAT(refusal_of(gltf), HasProblem("scene.size.limit 0 4096 4097"));
 }
 
 }  // namespace

@@ -562,9 +562,10 @@ std::vector<MessageCase> cases_of_geometry() {
       {"scene.size.limit",
        [] {
          GltfBuilder gltf = triangle_gltf();
-         primitive(gltf)["indices"] = gltf.add(std::vector<uint8_t>(3 << 14, 0), "SCALAR");
+         json& primitives = gltf.json["meshes"][0]["primitives"];
+         primitives = std::vector<json>((1 << 12) + 1, primitives[0]);
          gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
-             gltf.add(std::vector<float>(3 * ((1 << 14) + 1), 1.0F), "VEC3");
+             gltf.add(std::vector<float>(3 << 12, 1.0F), "VEC3");
          load_text(gltf.text());
        }},
       spoil_strictly("gltf.image.missing",

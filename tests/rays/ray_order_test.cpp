@@ -14,7 +14,7 @@
 namespace promin {
 namespace {
 
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr float kUnboundedRay = std::numeric_limits<float>::infinity();
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 /// Returns a camera's rays, pixel by pixel, towards a cube of half side 1 at the origin.
@@ -24,7 +24,7 @@ std::vector<Ray> make_camera_rays(uint32_t width, uint32_t height) {
     for (uint32_t x = 0; x < width; ++x) {
       const vec3 direction((static_cast<float>(x) + 0.5F) / static_cast<float>(width) - 0.5F,
                            0.5F - (static_cast<float>(y) + 0.5F) / static_cast<float>(height), -1.0F);
-      rays.push_back({vec3(0.0F, 0.0F, 3.0F), 0.0F, direction, kInfinite});
+      rays.push_back({vec3(0.0F, 0.0F, 3.0F), 0.0F, direction, kUnboundedRay});
     }
   }
   return rays;
@@ -70,7 +70,7 @@ TEST(RayOrder, IsAPermutation) {
   std::vector<Ray> rays = shuffle(make_camera_rays(300, 100));
   rays[5].origin.x = kNotANumber;
   rays[6].direction = vec3(0.0F);
-  rays[7].direction = vec3(kInfinite, 1.0F, 0.0F);
+  rays[7].direction = vec3(kUnboundedRay, 1.0F, 0.0F);
   rays[8].origin = vec3(1e38F);
   std::vector<uint32_t> order = sort(rays, kCube);
   std::sort(order.begin(), order.end());
@@ -79,10 +79,10 @@ TEST(RayOrder, IsAPermutation) {
 }
 
 TEST(RayOrder, RaysThatMissTheCubeComeLastInTheirOrder) {
-  const Ray hit{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F), kInfinite};
-  const Ray away{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, 1.0F), kInfinite};
-  const Ray beside{vec3(2.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F), kInfinite};
-  const Ray invalid{vec3(kNotANumber), 0.0F, vec3(0.0F, 0.0F, -1.0F), kInfinite};
+  const Ray hit{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F), kUnboundedRay};
+  const Ray away{vec3(0.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, 1.0F), kUnboundedRay};
+  const Ray beside{vec3(2.0F, 0.0F, 3.0F), 0.0F, vec3(0.0F, 0.0F, -1.0F), kUnboundedRay};
+  const Ray invalid{vec3(kNotANumber), 0.0F, vec3(0.0F, 0.0F, -1.0F), kUnboundedRay};
   const std::vector<Ray> rays = {away, hit, invalid, beside, hit};
   EXPECT_EQ(sort(rays, kCube), (std::vector<uint32_t>{1, 4, 0, 2, 3}));
 }

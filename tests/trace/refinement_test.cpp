@@ -29,7 +29,7 @@ struct Refined {
   uint64_t samples = 0;
 };
 
-View make_view(float error, uint32_t least = 8, uint32_t most = 256) {
+View make_refined_view(float error, uint32_t least = 8, uint32_t most = 256) {
   View view;
   view.size = uvec2(96, 64);
   view.error_target = {.error = error, .min_samples = least, .max_samples = most};
@@ -147,10 +147,10 @@ TEST(RefinementTest, ClaimsHoldOf95In100Pixels) {
   const std::pair<const char*, Scene> scenes[] = {
       {"discs and floor", discs_and_floor}, {"wires", wires}, {"waves", waves}};
   for (const auto& [name, scene] : scenes) {
-    const std::vector<dvec3> truth = find_truth(make_view(1.0F), scene);
+    const std::vector<dvec3> truth = find_truth(make_refined_view(1.0F), scene);
     for (const auto& [error, least_samples] : test::cases_of<std::pair<float, uint32_t>>(
              {{1.0F / 16.0F, 4U}, {1.0F / 64.0F, 8U}, {1.0F / 16.0F, 8U}, {1.0F / 128.0F, 8U}}, 2)) {
-      const View view = make_view(error, least_samples);
+      const View view = make_refined_view(error, least_samples);
       const Share share = judge_claims(refine(view, scene), view, truth);
       std::printf("%-16s 1/%-3g from %u: %5zu pixels refined, %.2f %% honest\n", name, 1.0 / static_cast<double>(error),
                   least_samples, share.refined, 100.0 * share.honest);
@@ -171,7 +171,7 @@ double share_missed(double width, uint32_t least_samples) {
     const auto line = [&](const dvec2& p) {
       return vec3(std::abs(glm::dot(p - dvec2(48.3, 32.1), normal)) < 0.5 * width ? 0.8F : 0.0F);
     };
-    const View view = make_view(1.0F / 64.0F, least_samples);
+    const View view = make_refined_view(1.0F / 64.0F, least_samples);
     const Refined refined = refine(view, line);
     for (size_t pixel = 0; pixel < refined.means.size(); ++pixel) {
       const dvec2 corner(pixel % view.size.x, pixel / view.size.x);
@@ -208,7 +208,7 @@ TEST(RefinementTest, ThinLinesMayLieBetweenAllSamples) {
 }
 
 TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
-  const View view = make_view(1.0F / 64.0F);
+  const View view = make_refined_view(1.0F / 64.0F);
   const Refined refined = refine(view, discs_and_floor);
   size_t unmet = 0;
   for (size_t i = 0; i < refined.means.size(); ++i) {
@@ -226,7 +226,7 @@ TEST(RefinementTest, APixelStopsWhereItsClaimIsSmallEnough) {
 // A picture with a positive exposure is refined as if its light were brighter.
 TEST(RefinementTest, ErrorsAreOfWhatIsShownAsWhite) {
   const auto dimmed = [](const dvec2& p) { return discs_and_floor(p) / 64.0F; };
-  View view = make_view(1.0F / 64.0F);
+  View view = make_refined_view(1.0F / 64.0F);
   const Refined expected = refine(view, discs_and_floor);
   view.error_target->white = 1.0F / 64.0F;
   const Refined refined = refine(view, dimmed);
@@ -268,7 +268,7 @@ TEST(RefinementTest, AClaimIsShownAsWhatIsFarthestWithinIt) {
 // An unlit surface and a lit one beside it have the same light. The light has no edge, but the displayed picture has
 // one.
 TEST(RefinementTest, EdgesOfUnlitSurfacesAreRefinedAsShown) {
-  View view = make_view(1.0F / 64.0F);
+  View view = make_refined_view(1.0F / 64.0F);
   const auto count_samples = [&](const DisplayTransform& display) {
     view.error_target->display = display;
     Refinement refinement(view, {uvec2(0), view.size}, true);
@@ -311,7 +311,7 @@ TEST(RefinementTest, AClaimThatIsNoNumberIsNeverSmallEnough) {
   }
   // Therefore the pixel takes all samples.
   for (int channel = 0; channel < 3; ++channel) {
-    View view = make_view(1.0F / 64.0F);
+    View view = make_refined_view(1.0F / 64.0F);
     const Refined refined = refine(view, [&](const dvec2& p) {
       vec3 radiance(0.5F);
       if (p.x < 1.0 && p.y < 1.0) radiance[channel] = infinite;
@@ -327,7 +327,7 @@ TEST(RefinementTest, ErrorsAsTheyAreShownAskForMoreInTheDarkAndForLessInTheLight
   const auto edge_of = [](float dark, float bright) {
     return [=](const dvec2& p) { return vec3(p.x + 0.31 * p.y < 50.0 ? bright : dark); };
   };
-  View linear = make_view(1.0F / 64.0F);
+  View linear = make_refined_view(1.0F / 64.0F);
   View shown = linear;
   shown.error_target->display.emplace();
   EXPECT_GT(refine(shown, edge_of(0.0F, 0.02F)).samples, refine(linear, edge_of(0.0F, 0.02F)).samples);
@@ -343,7 +343,7 @@ TEST(RefinementTest, ErrorsAsTheyAreShownAskForMoreInTheDarkAndForLessInTheLight
 }
 
 TEST(RefinementTest, WhatIsFlatTakesTheFirstSamplesAlone) {
-  const View view = make_view(1.0F / 4096.0F);
+  const View view = make_refined_view(1.0F / 4096.0F);
   const Refined refined = refine(view, [](const dvec2&) { return vec3(0.3F, 7.0F, 0.0F); });
   for (const uint32_t count : refined.counts) EXPECT_EQ(count, 8U);
   EXPECT_EQ(refined.means.front(), vec3(0.3F, 7.0F, 0.0F));
@@ -354,7 +354,7 @@ TEST(RefinementTest, WhatIsFlatTakesTheFirstSamplesAlone) {
 // batches happen to differ more take twice as many.
 TEST(RefinementTest, AnEdgeTakesWhatItsContrastAsksFor) {
   const auto edge = [](const dvec2& p) { return vec3(p.x + 0.31 * p.y < 50.0 ? 0.25F : 0.0F); };
-  const Refined refined = refine(make_view(1.0F / 64.0F), edge);
+  const Refined refined = refine(make_refined_view(1.0F / 64.0F), edge);
   const auto with_more_than = [&](uint32_t samples) {
     return std::ranges::count_if(refined.counts, [&](uint32_t count) { return count > samples; });
   };
@@ -364,7 +364,7 @@ TEST(RefinementTest, AnEdgeTakesWhatItsContrastAsksFor) {
 }
 
 TEST(RefinementTest, ACropHasThePixelsOfTheWhole) {
-  const View view = make_view(1.0F / 64.0F);
+  const View view = make_refined_view(1.0F / 64.0F);
   const Refined whole = refine(view, discs_and_floor);
   for (const PixelWindow& window : {PixelWindow{uvec2(0), uvec2(1)}, PixelWindow{uvec2(13, 20), uvec2(41, 37)},
                                     PixelWindow{uvec2(95, 0), uvec2(96, 64)}}) {
@@ -380,7 +380,7 @@ TEST(RefinementTest, ACropHasThePixelsOfTheWhole) {
 }
 
 TEST(RefinementTest, ItDoesNotMatterHowManyAreTracedAtOnce) {
-  const View view = make_view(1.0F / 64.0F);
+  const View view = make_refined_view(1.0F / 64.0F);
   const PixelWindow window{uvec2(0), view.size};
   const Refined expected = refine(view, wires, window, 1U << 20);
   for (const size_t most : {1U, 8U, 1000U}) EXPECT_EQ(refine(view, wires, window, most).means, expected.means) << most;
@@ -388,7 +388,7 @@ TEST(RefinementTest, ItDoesNotMatterHowManyAreTracedAtOnce) {
 
 // The forecast for the edge also has the correct magnitude.
 TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
-  const View view = make_view(1.0F / 16.0F);
+  const View view = make_refined_view(1.0F / 16.0F);
   const PixelWindow window{uvec2(0), view.size};
   Refinement refinement(view, window);
   run(refinement, discs_and_floor, 5000);
@@ -400,7 +400,7 @@ TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
     const double taken = static_cast<double>(refinement.sample_count()) - before;
     EXPECT_GT(forecast, 0.6 * taken) << error;
     EXPECT_LT(forecast, 2.0 * taken) << error;
-    const Refined expected = refine(make_view(error), discs_and_floor);
+    const Refined expected = refine(make_refined_view(error), discs_and_floor);
     const Refined refined = results_of(refinement);
     EXPECT_EQ(refined.means, expected.means);
     EXPECT_EQ(refined.claims, expected.claims);
@@ -410,7 +410,7 @@ TEST(RefinementTest, ASmallerErrorAfterALargerIsAsTheSmallerAtOnce) {
 
 // The forecast is checked from the end of the first samples on.
 TEST(RefinementTest, WhatAllWillTakeIsForetold) {
-  const View view = make_view(1.0F / 64.0F);
+  const View view = make_refined_view(1.0F / 64.0F);
   const auto total = static_cast<double>(refine(view, waves).samples);
   Refinement refinement(view, {uvec2(0), view.size});
   std::vector<vec3> seen;

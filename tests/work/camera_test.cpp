@@ -35,7 +35,7 @@ dmat3 matrix_in_use(const Camera& camera) {
   return {dvec3(glm::cross(camera.look, camera.up)), dvec3(camera.up), -dvec3(camera.look)};
 }
 
-bool has_same_bits(const vec3& a, const vec3& b) {
+bool are_same_bits(const vec3& a, const vec3& b) {
   for (int i = 0; i < 3; ++i) {
     if (std::bit_cast<uint32_t>(static_cast<float>(a[i])) != std::bit_cast<uint32_t>(static_cast<float>(b[i]))) {
       return false;
@@ -187,19 +187,19 @@ TEST(FreeCamera, GivesBackThePoseItTookToTheBit) {
   const Camera given = FreeCamera(taken).camera();
   EXPECT_EQ(given.name, "front");
   EXPECT_EQ(given.yfov, 1.1F);
-  EXPECT_TRUE(has_same_bits(given.eye, taken.eye));
-  EXPECT_TRUE(has_same_bits(given.look, taken.look));
-  EXPECT_TRUE(has_same_bits(given.up, taken.up));
+  EXPECT_TRUE(are_same_bits(given.eye, taken.eye));
+  EXPECT_TRUE(are_same_bits(given.look, taken.look));
+  EXPECT_TRUE(are_same_bits(given.up, taken.up));
 
   FreeCamera moved(taken);
   moved.move(1, 0, 0);
-  EXPECT_TRUE(has_same_bits(moved.camera().look, taken.look));
-  EXPECT_TRUE(has_same_bits(moved.camera().up, taken.up));
+  EXPECT_TRUE(are_same_bits(moved.camera().look, taken.look));
+  EXPECT_TRUE(are_same_bits(moved.camera().up, taken.up));
 
   const FreeCamera posed = FreeCamera::from_pose(taken.eye, taken.look, taken.up);
-  EXPECT_TRUE(has_same_bits(posed.camera().eye, taken.eye));
-  EXPECT_TRUE(has_same_bits(posed.camera().look, taken.look));
-  EXPECT_TRUE(has_same_bits(posed.camera().up, taken.up));
+  EXPECT_TRUE(are_same_bits(posed.camera().eye, taken.eye));
+  EXPECT_TRUE(are_same_bits(posed.camera().look, taken.look));
+  EXPECT_TRUE(are_same_bits(posed.camera().up, taken.up));
 }
 
 TEST(FreeCamera, ATakenPoseIsOrthonormalOnceRotated) {

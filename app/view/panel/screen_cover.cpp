@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/choose_instances.h"
 #include "scene/facets.h"
+#include "scene/placed_bounds.h"
 
 namespace promin::app {
 namespace {
@@ -101,10 +103,19 @@ double ScreenCover::cost_of(const WindowArea& area) const {
 ScreenCover find_cover(const Scene& scene, const Camera& camera, double aspect_ratio) {
   ScreenCover cover;
   const FreeCamera pose(camera);
-  any_facet(scene, [&](const Facet& facet) {
+  const auto raise = [&](const Facet& facet) {
     raise_facet(cover, facet.corners, pose, aspect_ratio);
     return false;
-  });
+  };
+  // Instances may have billions of triangles, so their boxes count.
+  const std::vector<bool> is_instance = choose_instances(scene, Instancing::kAuto);
+  any_facet(
+      scene, [&](size_t object) { return is_instance[object]; }, raise);
+  if (std::ranges::count(is_instance, true) == 0) return cover;
+  const std::vector<Bounds> boxes = bounds_of_objects(scene);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    if (is_instance[i]) FacetFinder<decltype(raise)>{scene, scene.objects[i], raise}.use_box(boxes[i]);
+  }
   return cover;
 }
 

@@ -261,6 +261,7 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   options.builder = request.choice.builder;
   if (request.motion == motion_) options.bvh = request.choice.bvh;
   options.more_features = features_;
+  options.instances = request.choice.instances;
   options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
   options.progress = [this](double fraction) {
     built_ = fraction;
@@ -269,7 +270,7 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   };
   throw_if_invalid(*scene);
   auto host = std::make_shared<HostScene>();
-  host->scene = world::flatten(*scene);
+  host->scene = world::flatten(*scene, world::Purpose::kPictures, options.instances);
   host->scene.environment = shown.environment();
   host->glass_solids = std::make_shared<const GlassSolids>(host->scene);
   options.repack = [&host, least = stack_size_](PackedScene packed) {

@@ -25,6 +25,7 @@ namespace promin::app {
 /// The user's choice of the builder of a scene's tree, and of the lights that are on.
 struct SceneChoice {
   std::string builder;
+  Instancing instances = Instancing::kAuto;
   std::optional<std::filesystem::path> bvh;
   /// Indices of the scene's lights that are off, in order. Indices that a scene does not have are ignored.
   std::vector<uint32_t> lights_off;

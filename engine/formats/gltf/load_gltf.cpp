@@ -6,11 +6,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
 #include <variant>
 
+#include "core/count_of.h"
 #include "core/rounding.h"
 #include "formats/gltf/animations.h"
 #include "formats/gltf/cameras.h"
@@ -26,6 +28,7 @@
 #include "formats/gltf/variants.h"
 #include "motion/deform.h"
 #include "motion/node_state.h"
+#include "motion/place_mesh.h"
 #include "motion/skin.h"
 #include "promin/motion.h"
 #include "scene/limits.h"
@@ -35,11 +38,10 @@ namespace {
 
 using nlohmann::json;
 
-/// The largest number of triangles of a scene. Nodes may show one mesh many times, so the file's size does not limit
-/// it.
+/// The largest number of triangles of all meshes. Views of buffers may overlap, so the file's size does not limit it.
 constexpr uint64_t kMaxTriangles = uint64_t{1} << 28;
-/// The largest number of objects. Objects are numbered in 32 bits, and the last two numbers mean "no object".
-constexpr uint64_t kMaxObjects = (uint64_t{1} << 32) - 2;
+/// The largest number of objects. Nodes may show one mesh many times, so the file's size does not limit it.
+constexpr uint64_t kMaxObjects = uint64_t{1} << 24;
 
 /// Converts the nodes of a document to a scene.
 class SceneReader {
@@ -137,18 +139,15 @@ class SceneReader {
   bool has_room_for(uint64_t instance_count, const PlacedNode& placed) {
     const auto mesh = static_cast<size_t>(document_.nodes[static_cast<size_t>(placed.node)].mesh);
     const uint64_t primitive_count = document_.meshes[mesh].primitives.size();
-    uint64_t triangle_count = 0;
-    for (size_t i = 0; i < primitive_count; ++i) triangle_count += count_gltf_triangles(document_, mesh, i);
-    // The code divides, because products may not fit into 64 bits.
-    const uint64_t triangle_room = kMaxTriangles - std::min(triangle_count_, kMaxTriangles);
-    const bool has_room = triangle_count <= triangle_room / instance_count &&
-                          primitive_count <= (kMaxObjects - scene_.objects.size()) / instance_count;
-    if (has_room) return true;
+    const uint64_t room = kMaxObjects - std::min<uint64_t>(scene_.objects.size(), kMaxObjects);
+    // The code divides, because the product may not fit into 64 bits.
+    if (primitive_count <= room / instance_count) return true;
     report_.refuse("scene.size.limit",
-                   "the mesh has too many instances (" + std::to_string(instance_count) + "), triangles (" +
-                       std::to_string(triangle_count) + ") or primitives (" + std::to_string(primitive_count) +
-                       ") for a scene",
-                   "nodes[" + std::to_string(placed.node) + "]", "use fewer instances, or a simpler mesh");
+                   "the scene has " + std::to_string(scene_.objects.size()) + " objects, and then " +
+                       std::to_string(instance_count) + " instances of a mesh with " +
+                       count_of(primitive_count, "primitive"),
+                   "nodes[" + std::to_string(placed.node) + "]",
+                   "use fewer, because promin supports at most " + std::to_string(kMaxObjects) + " objects");
     return false;
   }
 
@@ -201,7 +200,9 @@ class SceneReader {
     }
     const uint32_t geometry = connect_mesh(placed, primitive, link);
     if (geometry == Object::kNoGeometry) return;
-    place_gltf_mesh(placed, geometry, place_of(mesh, primitive), scene_, object, report_);
+    const auto [box, is_new] = boxes_.try_emplace(geometry);
+    if (is_new) box->second = bounds_of_positions(std::get<Mesh>(scene_.geometries[geometry]));
+    place_gltf_mesh(placed, geometry, box->second, place_of(mesh, primitive), scene_, object, report_);
   }
 
   /// Reads the geometry of an object that is hidden in the nodes' own pose.
@@ -233,10 +234,11 @@ class SceneReader {
   }
 
   void count_triangles(uint32_t geometry, const PlacedNode& placed) {
+    if (!counted_.insert(geometry).second) return;
     triangle_count_ += primitive_count(scene_.geometries[geometry]);
     if (triangle_count_ <= kMaxTriangles) return;
     report_.refuse("scene.size.limit", "the scene has more than " + std::to_string(kMaxTriangles) + " triangles",
-                   "nodes[" + std::to_string(placed.node) + "]", "use the mesh in fewer nodes, or simplify it");
+                   "nodes[" + std::to_string(placed.node) + "]", "simplify its meshes");
   }
 
   uint32_t add(Geometry geometry) {
@@ -340,7 +342,12 @@ class SceneReader {
   std::vector<dmat4> world_from_node_;
   std::map<std::tuple<size_t, size_t, GltfMeshNeeds>, KnownMesh> read_meshes_;
   std::map<std::tuple<size_t, size_t, GltfMeshNeeds, std::vector<double>, int>, KnownMesh> posed_meshes_;
+  /// The bounds of the positions of each mesh that an object shows.
+  std::map<uint32_t, Bounds> boxes_;
+  /// The number of triangles of all meshes.
   uint64_t triangle_count_ = 0;
+  /// The geometries that were counted.
+  std::set<uint32_t> counted_;
   uint32_t default_material_ = kNoMaterial;
 };
 

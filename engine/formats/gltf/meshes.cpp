@@ -394,12 +394,12 @@ uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t 
   return count < 3 ? 0 : count - 2;
 }
 
-void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
-                     Object& object, LoadReport& report) {
+void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const Bounds& box, const std::string& place,
+                     Scene& scene, Object& object, LoadReport& report) {
   object.geometry = geometry;
   object.world_from_object = placed.world_from_object;
   const Mesh& mesh = std::get<Mesh>(scene.geometries[geometry]);
-  if (!is_mesh_in_range(mesh, placed.world_from_object)) {
+  if (!is_mesh_in_range(mesh, box, placed.world_from_object)) {
     report.refuse("gltf.position.far", "a vertex lies beyond 1e15 in the world",
                   "nodes[" + std::to_string(placed.node) + "]",
                   "use a smaller translation or scale in it and its parents");

@@ -41,8 +41,8 @@ uint64_t count_gltf_triangles(const GltfDocument& document, size_t mesh, size_t 
 
 /// Adds the object that shows a mesh at a node. Its geometry is the mesh at `geometry`. If the node's transform is
 /// singular, it is a new mesh to which the transform is already applied, without normals if they vanish. Reports a
-/// vertex beyond 1e15 in the world. `place` names the primitive.
-void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const std::string& place, Scene& scene,
-                     Object& object, LoadReport& report);
+/// vertex beyond 1e15 in the world. `box` has the bounds of the mesh's positions, and `place` names the primitive.
+void place_gltf_mesh(const PlacedNode& placed, uint32_t geometry, const Bounds& box, const std::string& place,
+                     Scene& scene, Object& object, LoadReport& report);
 
 }  // namespace promin

@@ -92,6 +92,11 @@ bool fill_requests(const OrderedRays& ordered, std::span<RayRecord> requests) {
   return is_any_scaled;
 }
 
+[[noreturn]] void throw_too_many(const world::Scene& scene) {
+  throw RunError({"scene.size.limit", "the instances of the scene have more primitives than there are numbers for hits",
+                  scene.file.string(), "use fewer, because hits have numbers below 4294967295"});
+}
+
 Hit hit_at(float t, const HitRecord& record, const PrimitiveNumbers& numbers) {
   const PrimitiveId id = primitive_of_order(numbers, record.a.y);
   Hit hit;
@@ -163,6 +168,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     features = packed.features.common_with(primitive_features());
     stats.features = feature_names(features);
     numbers = std::move(packed.numbers);
+    if (numbers.are_instances_whole) throw_too_many(the_scene);
     copies = CopiedHits(packed.copies, numbers);
     cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
     // The tree refers to each primitive at least once.
@@ -346,7 +352,8 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
 Caster::Caster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Caster::Caster(const gpu::Device& device, const Scene& scene, const CasterOptions& options) {
   throw_if_invalid(scene);
-  impl_ = std::make_unique<Impl>(device, world::flatten(scene, world::Purpose::kHits), TunedCasterOptions{options, {}});
+  impl_ = std::make_unique<Impl>(device, world::flatten(scene, world::Purpose::kHits, options.instances),
+                                 TunedCasterOptions{options, {}});
 }
 Caster::~Caster() = default;
 Caster::Caster(Caster&&) noexcept = default;

@@ -63,7 +63,7 @@ inline Renderer make_renderer(const gpu::Device& device, const world::Scene& sce
   return RendererAccess::make(device, scene, TunedRendererOptions{options});
 }
 inline Renderer make_renderer(const gpu::Device& device, const Scene& scene, const TunedRendererOptions& options) {
-  return RendererAccess::make(device, world::flatten(scene), options);
+  return RendererAccess::make(device, world::flatten(scene, world::Purpose::kPictures, options.instances), options);
 }
 
 inline RenderResult render_sample(Renderer& renderer, const View& view, uint32_t sample,

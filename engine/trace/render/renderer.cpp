@@ -34,7 +34,8 @@ struct __attribute__((visibility("hidden"))) Renderer::Impl {
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::Renderer(const gpu::Device& device, const Scene& scene, const RendererOptions& options) {
   throw_if_invalid(scene);
-  *this = RendererAccess::make(device, world::flatten(scene), TunedRendererOptions{options});
+  *this = RendererAccess::make(device, world::flatten(scene, world::Purpose::kPictures, options.instances),
+                               TunedRendererOptions{options});
 }
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;

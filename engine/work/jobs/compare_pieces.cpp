@@ -44,7 +44,14 @@ void count(PieceDifference& difference, double value, double most) {
 }
 
 /// Returns the box of a primitive that was hit.
-Bounds bounds_of_part(const world::Shape& shape, uint32_t primitive) {
+Bounds bounds_of_part(const world::Scene& scene, uint32_t object, uint32_t primitive) {
+  const auto instance = std::ranges::lower_bound(scene.instances, object, {}, &world::Instance::object);
+  if (instance != scene.instances.end() && instance->object == object) {
+    const Mesh& mesh = scene.meshes[instance->mesh];
+    if (primitive >= mesh.triangles.size()) return {};
+    const Bounds box = world::bounds_of_triangle(mesh, primitive);
+    return world::bounds_of(world::map_of(*instance), {&box, 1});
+  }
   const auto find = [&](const auto& some) -> Bounds {
     using Some = std::decay_t<decltype(some)>;
     if constexpr (std::is_same_v<Some, world::Mesh>) {
@@ -55,7 +62,7 @@ Bounds bounds_of_part(const world::Shape& shape, uint32_t primitive) {
       return promin::bounds_of(some);
     }
   };
-  return std::visit(find, shape);
+  return std::visit(find, scene.objects[object].shape);
 }
 
 }  // namespace
@@ -79,7 +86,8 @@ PieceDifference compare_parts(const PicturePart& there, const PicturePart& anew,
   return difference;
 }
 
-HitComparison::HitComparison(const Scene& scene) : scene_(world::flatten(scene, world::Purpose::kHits)) {}
+HitComparison::HitComparison(const Scene& scene)
+    : scene_(world::flatten(scene, world::Purpose::kHits, Instancing::kAuto)) {}
 
 void HitComparison::compare(std::span<const Ray> rays, std::span<const Hit> there, std::span<const Hit> anew) {
   for (size_t i = 0; i < rays.size(); ++i) take(difference_of(rays[i], there[i], anew[i]));
@@ -114,7 +122,7 @@ double HitComparison::scale_of(const Ray& ray, const Hit& hit) const {
   if (const auto* plane = std::get_if<world::Plane>(&shape)) {
     return glm::distance(origin, dvec3(plane->point)) + std::abs(double{hit.t}) * glm::length(dvec3(ray.direction));
   }
-  const Bounds box = bounds_of_part(shape, static_cast<uint32_t>(hit.primitive));
+  const Bounds box = bounds_of_part(scene_, static_cast<uint32_t>(hit.object), static_cast<uint32_t>(hit.primitive));
   if (box.is_empty()) return 0.0;
   return glm::distance(origin, dvec3(box.center())) + 0.5 * glm::distance(dvec3(box.lo), dvec3(box.hi));
 }

@@ -31,6 +31,7 @@ Json json_of_scene(const RunStats& stats) {
   for (size_t i = 0; i < kObjectNames.size(); ++i) json[std::string(kObjectNames[i])] = stats.scene.objects[i];
   json["primitives"] = stats.scene.primitives;
   json["triangles"] = stats.scene.triangles;
+  json["stored_triangles"] = stats.scene.stored_triangles;
   json["degenerate_triangles"] = stats.setup.degenerate_triangles;
   json["materials"] = stats.material_count;
   json["lights"] = stats.light_count;
@@ -138,6 +139,10 @@ Metadata describe_picture(const RunStats& stats) {
     metadata.emplace_back("promin:animation", stats.motion.animations.empty()
                                                   ? "0"
                                                   : fmt::format("{}", fmt::join(stats.motion.animations, ", ")));
+  }
+  const bool has_instances = std::ranges::count(stats.setup.features, "instances") > 0;
+  if (has_instances || stats.instances != Instancing::kAuto) {
+    metadata.emplace_back("promin:instances", instancing_names()[static_cast<size_t>(stats.instances)]);
   }
   if (stats.errors.empty()) return metadata;
   const ErrorTarget& target = *stats.view->error_target;

@@ -23,6 +23,8 @@ struct RunStats {
   std::string scene_file;
   /// The pose of the scene.
   MotionOptions motion = {};
+  /// The choice of instances.
+  Instancing instances = Instancing::kAuto;
   SceneCounts scene;
   size_t object_count = 0;
   size_t material_count = 0;

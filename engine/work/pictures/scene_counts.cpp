@@ -24,6 +24,7 @@ SceneCounts count_scene(const Scene& scene) {
                                bytes_of(mesh->triangle_materials);
     }
   }
+  std::vector<bool> is_counted(scene.geometries.size(), false);
   for (const Object& object : scene.objects) {
     if (object.geometry == Object::kNoGeometry) {
       ++counts.objects[0];
@@ -32,7 +33,10 @@ SceneCounts count_scene(const Scene& scene) {
     const Geometry& geometry = scene.geometries[object.geometry];
     ++counts.objects[1 + geometry.index()];
     counts.primitives += primitive_count(geometry);
-    if (std::holds_alternative<Mesh>(geometry)) counts.triangles += primitive_count(geometry);
+    if (!std::holds_alternative<Mesh>(geometry)) continue;
+    counts.triangles += primitive_count(geometry);
+    if (!is_counted[object.geometry]) counts.stored_triangles += primitive_count(geometry);
+    is_counted[object.geometry] = true;
   }
   return counts;
 }

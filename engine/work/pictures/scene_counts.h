@@ -25,6 +25,8 @@ struct SceneCounts {
   std::array<uint64_t, kObjectNames.size()> objects{};
   uint64_t primitives = 0;
   uint64_t triangles = 0;
+  /// The number of triangles of all meshes that objects show, each mesh counted once.
+  uint64_t stored_triangles = 0;
   /// The size in bytes of vertices, triangles and shapes in the host's memory.
   uint64_t geometry_bytes = 0;
 };

@@ -32,6 +32,7 @@ Scene load_for(const TracingOptions& options, RunStats& stats, const Messages& c
   for (const std::string& warning : scene.warnings) console.warn(options.scene.string() + ": " + warning);
   stats.scene_file = options.scene.filename().string();
   stats.motion = options.motion;
+  stats.instances = options.instances;
   stats.scene = count_scene(scene);
   stats.object_count = scene.objects.size();
   stats.material_count = scene.materials.size();

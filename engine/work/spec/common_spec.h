@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "jobs/job.h"
+#include "promin/instances.h"
 #include "promin/load_scene.h"
 #include "promin/math.h"
 
@@ -46,6 +47,7 @@ struct TracingOptions {
   MotionOptions motion;
   std::optional<std::string> builder;
   std::optional<std::filesystem::path> bvh;
+  Instancing instances = Instancing::kAuto;
 
   // Each process chooses the following members, so they are not in a specification's file.
 
@@ -69,6 +71,7 @@ template <typename Options>
 void choose_tree(const TracingOptions& from, Options& to) {
   if (from.builder) to.builder = *from.builder;
   to.bvh = from.bvh;
+  to.instances = from.instances;
 }
 
 /// The default for the smallest number of pieces of a job with enough work. If a process is killed, one piece is lost,

@@ -98,6 +98,7 @@ template <typename Spec>
 void add_loading(Table<Spec>& table) {
   table.add("builder", PROMIN_AT(tracing.builder), Text(), {.affects_bits = false, .replaces = {"bvh"}});
   table.add_file("bvh", PROMIN_AT(tracing.bvh), {.affects_bits = false, .replaces = {"builder"}});
+  table.add("instances", PROMIN_AT(tracing.instances), NameOf<Instancing>{instancing_names()}, {.usual = "auto"});
   table.add_flag("strict", PROMIN_AT(tracing.load.is_strict));
   table.add_file("root", PROMIN_AT(tracing.load.root), kNoBits);
   table.add("animation", PROMIN_AT(tracing.motion.animations), Animations());

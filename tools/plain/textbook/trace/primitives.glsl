@@ -160,6 +160,8 @@ Crossing intersect_capsule(Ray ray, Primitive p) {
   return nearest;
 }
 
+#include "trace/instances.glsl"
+
 SurfacePoint surface_point(Ray ray, Primitive p, Hit hit) {
   vec3 position = ray.origin + hit.t * ray.direction;
   vec3 from_center = position - p.a.xyz;
