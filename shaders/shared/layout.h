@@ -157,7 +157,7 @@ LAYOUT_CONSTANT MATERIAL_TEXELS = 6u;
 LAYOUT_CONSTANT MATERIAL_MODEL_MASK = 0xFFu;
 LAYOUT_CONSTANT MATERIAL_HAS_HOLES = 0x100u;  // the surface is absent where the texture's alpha is small
 LAYOUT_CONSTANT MATERIAL_IS_ONE_SIDED = 0x200u;
-LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;    // the surface blends with the surfaces behind it, by alpha
+LAYOUT_CONSTANT MATERIAL_BLENDS = 0x400u;           // the surface blends with the surfaces behind it, by alpha
 LAYOUT_CONSTANT MATERIAL_CATCHES_SHADOWS = 0x800u;  // an unlit material that shows only shadows
 LAYOUT_CONSTANT MATERIAL_GLASS_SHIFT = 16u;  // from this bit on: number of the GlassRecord, counted from 1; 0 without
                                              // one
