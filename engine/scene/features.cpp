@@ -263,7 +263,7 @@ FeatureMask all_features() {
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) features |= FEATURE_##FEATURE;
 #define PROMIN_REQUEST(FEATURE, BIT, NAME)
 #include "shared/features.def"
-  return features;
+  return features.without(FEATURE_INSTANCES);
 }
 
 std::vector<std::string> feature_names(FeatureMask features) {

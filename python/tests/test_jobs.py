@@ -92,7 +92,7 @@ def test_frames_of_a_path(scene: Path, tmp_path: Path, run_promin: RunPromin) ->
         job.merge([tmp_path / "early.##.png"], frames=[-1])
     assert not (tmp_path / "early.00.png").exists()
     make_all(job)
-    with fails(promin.UsageError, "output.frames.one"):
+    with fails(promin.UsageError, "film.fps.missing"):
         job.merge([tmp_path / "one.png"])
     job.merge([tmp_path / "cut.##.png"])
     for number in ("00", "01"):

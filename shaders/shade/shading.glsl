@@ -191,14 +191,18 @@ vec4 tangent_at(uvec4 corners, vec3 weights, Primitive p, CornerUvs uvs, uint sl
     vec4 tangent = vec4(sum.xyz, sum.w < 0.0 ? -1.0 : 1.0);
     if (is_instance_part(shaded_part)) {
       InstanceLook look = load_instance_look(shaded_part);
-      tangent = vec4(to_world_direction(look, tangent.xyz), tangent.w * handedness_of(look));
+      precise float handedness = tangent.w * handedness_of(look);
+      tangent = vec4(to_world_direction(look, tangent.xyz), handedness);
     }
     return tangent;
   }
   bool is_second = slot != 0u && has_flag(load_slot(slot), TEXTURE_UV_SET);
   vec4 own = is_second ? tangent_of(p, uvs.a.zw, uvs.b.zw, uvs.c.zw) : tangent_of(p, uvs.a.xy, uvs.b.xy, uvs.c.xy);
   // A mirrored instance keeps the order of corners, so its winding is reversed.
-  if (is_instance_part(shaded_part)) own.w *= handedness_of(load_instance_look(shaded_part));
+  if (is_instance_part(shaded_part)) {
+    precise float handedness = own.w * handedness_of(load_instance_look(shaded_part));
+    own.w = handedness;
+  }
   return own;
 }
 
@@ -539,7 +543,8 @@ LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRec
   vec3 normal = has_coat ? point.coat.normal : point.normal;
   precise float alpha = max(roughness * roughness, LEAST_ALPHA);
   RoundLight seen = round_light(light, point.position);
-  bool is_mixed = alpha * alpha < seen.cap;
+  precise float alpha2 = alpha * alpha;
+  bool is_mixed = alpha2 < seen.cap;
   vec2 u = sample_pair_point();
   bool is_of_lobe = is_mixed && u.x > 0.5;
   precise float x = is_mixed ? 2.0 * u.x - (is_of_lobe ? 1.0 : 0.0) : u.x;
