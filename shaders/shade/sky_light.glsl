@@ -32,9 +32,11 @@ float mean_above_horizon(float cosine, float spread) {
 // Returns about the mean of the clamped cosine over a square of this side, from the cosine of its middle. It is 0 only
 // if the whole square lies below the horizon.
 float cosine_of_square(float cosine, float side) {
-  float widest = mean_above_horizon(cosine, min(WIDEST_UNIT_SQUARE * side, WIDEST_SQUARE));
+  precise float widest_spread = WIDEST_UNIT_SQUARE * side;
+  precise float usual_spread = USUAL_UNIT_SQUARE * side;
+  float widest = mean_above_horizon(cosine, min(widest_spread, WIDEST_SQUARE));
   precise float least = SHARE_OF_WIDEST * widest;
-  return max(mean_above_horizon(cosine, min(USUAL_UNIT_SQUARE * side, USUAL_SQUARE)), least);
+  return max(mean_above_horizon(cosine, min(usual_spread, USUAL_SQUARE)), least);
 }
 
 // A direction of the sky.
