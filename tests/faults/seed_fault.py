@@ -54,7 +54,6 @@ FAULTS = {
             (r"(times_rows\([^;]*, near\)),", r"\1 - times_rows(map.r0, map.r1, map.r2, map.origin),"),
         ]
     },
-    "instance_unpadded": {"trace/level.glsl": [(r"UPPER_PADDING = [^;]*;", "UPPER_PADDING = 0.0;")]},
     "instance_lift_small": {
         "trace/instances.glsl": [(r"UNIT_ROUNDOFF \* \(h \* own_lift", "0.02 * UNIT_ROUNDOFF * (h * own_lift")]
     },
