@@ -45,8 +45,8 @@ FeatureMask features_of(DebugView view);
 /// Returns whether a picture with these features displays unlit surfaces or a backdrop without changing their colours.
 bool shows_unlit(FeatureMask features, DebugView view);
 
-/// Returns all features that a scene without instances may use. Scenes with instances have kernels of their own, because
-/// a second level of the tree slows all rays down and changes the number of their steps.
+/// Returns all features that a scene without instances may use. Scenes with instances have kernels of their own,
+/// because a second level of the tree slows all rays down and changes the number of their steps.
 FeatureMask all_features();
 
 /// Returns the names of the features in a mask, for `promin info`.

@@ -216,7 +216,8 @@ def size_of(view: View) -> tuple[int, ...]:
 
 def member_of(name: str, value: object) -> object:
     """Returns a value as it is written in a specification (docs/usage.md, "Specifications"): a text, a truth value, a
-    number or a list of three. Raises UsageError if the value is neither a text nor as many numbers as the member accepts."""
+    number or a list of three. Raises UsageError if the value is neither a text nor as many numbers as the member
+    accepts."""
     if isinstance(value, (str, bool)):
         return value
     try:
