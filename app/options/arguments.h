@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -45,6 +46,14 @@ class OptionValues {
   dvec3 vector(double max) const;
   /// Reads one of `choices`.
   const std::string& choice(std::span<const std::string_view> choices) const;
+
+  /// Reads a name of an enumeration, whose values are the indices of `names`. The first `hidden` names are not for
+  /// users.
+  template <typename Enum>
+  Enum name(std::span<const std::string_view> names, size_t hidden = 0) const {
+    const auto found = std::ranges::find(names, choice(names.subspan(hidden)));
+    return static_cast<Enum>(found - names.begin());
+  }
 
   /// Reads the only word by a function that throws WrongValue.
   template <typename Read>

@@ -35,10 +35,7 @@ void add_pose_options(OptionTable& table, PoseOptions& pose) {
   table.add("--from", fmt::format("{}", fmt::join(framing_names(), "|")),
             "Show the whole scene from this side and ignore its cameras [the scene's first camera; if it has none, "
             "three-quarter, or inside if the scene is a room]. three-quarter shows a flat scene from the front",
-            [&](const OptionValues& w) {
-              const auto place = std::ranges::find(framing_names(), w.choice(framing_names()));
-              pose.from = static_cast<Framing>(place - framing_names().begin());
-            });
+            [&](const OptionValues& w) { pose.from = w.name<Framing>(framing_names()); });
   table.add(
       "--fit", "X",
       fmt::format(

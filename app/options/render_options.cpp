@@ -15,14 +15,12 @@
 
 #include "core/count_of.h"
 #include "core/suggest.h"
-#include "image/color_words.h"
 #include "image/picture_endings.h"
 #include "options/arguments.h"
 #include "options/job_options.h"
 #include "options/load_options.h"
 #include "options/pose_options.h"
 #include "options/tracing_options.h"
-#include "options/typed_words.h"
 #include "promin/aovs.h"
 #include "promin/error.h"
 #include "promin/image.h"
@@ -70,13 +68,6 @@ PixelWindow read_window(const OptionValues& words) {
     words.refuse("--crop contains no pixels, because it needs X0 < X1 and Y0 < Y1");
   }
   return window;
-}
-
-/// Reads a name of an enumeration. The first `hidden` names are not for users.
-template <typename Enum>
-Enum read_name(const OptionValues& words, std::span<const std::string_view> names, size_t hidden = 0) {
-  const auto place = std::find(names.begin(), names.end(), words.choice(names.subspan(hidden)));
-  return static_cast<Enum>(place - names.begin());
 }
 
 BackgroundChoice read_background(const OptionValues& words) {
@@ -131,7 +122,7 @@ std::vector<uint32_t> read_numbers(const OptionValues& words) {
 /// Reads a debug view. It also accepts the name of the AOV.
 DebugView read_shading(const OptionValues& words) {
   const OptionValues canonical = words.text() == kNormal ? words.with({std::string(kNormals)}) : words;
-  return read_name<DebugView>(canonical, debug_view_names());
+  return canonical.name<DebugView>(debug_view_names());
 }
 
 template <typename Number>
@@ -148,7 +139,7 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
             "Light that is added if the scene has no light or no sky. soft is the studio with soft shadows: a sun 10 "
             "degrees wide, --integrator direct and --ground [studio; classic scenes: headlight]",
-            [&look, lights](const OptionValues& w) { look.light = read_name<LightChoice>(w, lights, 1); });
+            [&look, lights](const OptionValues& w) { look.light = w.name<LightChoice>(lights, 1); });
   table.add(
       "--ground", "on|off",
       "Show the shadow of the scene on a ground under it, which is otherwise invisible [off; with --light soft: on]",
@@ -175,7 +166,7 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add(
       "--tone-mapping", fmt::format("{}", fmt::join(tone_mapping_names(), "|")),
       "Curve that compresses light that is too bright for PNG files and the window [neutral; classic scenes: none]",
-      [&](const OptionValues& w) { look.tone_mapping = read_name<ToneMapping>(w, tone_mapping_names()); });
+      [&](const OptionValues& w) { look.tone_mapping = w.name<ToneMapping>(tone_mapping_names()); });
   table.add_flag(
       "--dither",
       "Add noise of less than one 8-bit step to PNG files and the window. It hides bands in smooth gradients",
@@ -210,7 +201,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
             [&](const OptionValues& w) { view.size = w.read(work::read_size); });
   table.add("--filter", fmt::format("{}", fmt::join(pixel_filter_names(), "|")),
             "Filter that weights samples by their distance from the pixel's centre [box]",
-            [&](const OptionValues& w) { view.filter = read_name<PixelFilter>(w, pixel_filter_names()); });
+            [&](const OptionValues& w) { view.filter = w.name<PixelFilter>(pixel_filter_names()); });
 #define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) \
   table.add(option_of(#NAME), PLACEHOLDER, HELP,                           \
             [&](const OptionValues& w) { view.NAME = read_number<TYPE>(w, MIN, MAX); });
@@ -223,7 +214,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
   table.add("--integrator", fmt::format("{}", fmt::join(integrator_names(), "|")),
             "Method that computes light. whitted: the light of the environment reaches every point. direct: objects "
             "also block the light of the environment, which gives soft shadows and takes more samples [whitted]",
-            [&](const OptionValues& w) { view.integrator = read_name<Integrator>(w, integrator_names()); });
+            [&](const OptionValues& w) { view.integrator = w.name<Integrator>(integrator_names()); });
   table.add("--lights-off", "INDICES", "Indices of lights to switch off, counted from 0 and separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });
   add_look_options(table, view.look);
@@ -282,7 +273,7 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
             [&, read_power](const OptionValues& w) { error.max_samples = read_power(w, "--max-spp"); });
   table.add("--error-in", fmt::format("{}", fmt::join(error_space_names(), "|")),
             "With --target-error: measure the error in linear light or in the displayed picture [linear]",
-            [&](const OptionValues& w) { error.space = read_name<ErrorSpace>(w, error_space_names()); });
+            [&](const OptionValues& w) { error.space = w.name<ErrorSpace>(error_space_names()); });
 }
 
 void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual) {
@@ -292,7 +283,7 @@ void add_sample_options(OptionTable& table, RenderSpec& options, std::string_vie
             fmt::format("Replaces --spp: {}, {} or {} samples per pixel. best adds samples until the error of "
                         "displayed colours is at most one 8-bit step [normal]",
                         1, kDefaultSamples, kHighSamples),
-            [&](const OptionValues& w) { options.quality = read_name<Quality>(w, quality_names()); });
+            [&](const OptionValues& w) { options.quality = w.name<Quality>(quality_names()); });
 }
 
 void add_render_options(CLI::App& command, RenderSpec& options) {
@@ -368,7 +359,7 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   table.add("--depth", fmt::format("{}", fmt::join(depth_kind_names(), "|")),
             "Distance that --aov depth writes. ray is the distance from the eye, plane the distance along the "
             "direction of view [ray]",
-            [&](const OptionValues& w) { options.view.depth_kind = read_name<DepthKind>(w, depth_kind_names()); });
+            [&](const OptionValues& w) { options.view.depth_kind = w.name<DepthKind>(depth_kind_names()); });
   table.add_flag(
       "--half",
       "Store colours, normals and coverage of an EXR as 16-bit floats, with a relative error of at most 1/2048",
@@ -376,7 +367,7 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
   table.add("--compression", fmt::format("{}", fmt::join(exr_compression_names(), "|")),
             "Lossless compression of an EXR [zip]", [&](const OptionValues& w) {
               options.names_compression = true;
-              options.exr.compression = read_name<ExrCompression>(w, exr_compression_names());
+              options.exr.compression = w.name<ExrCompression>(exr_compression_names());
             });
   table.add("--features", "scene|all",
             "Features to compile into the kernels: the features that the scene uses, or all features, for measurements "

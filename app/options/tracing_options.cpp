@@ -4,8 +4,6 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "options/arguments.h"
 #include "options/load_options.h"
 #include "promin/renderer.h"
@@ -50,11 +48,7 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
       "--instances", fmt::format("{}", fmt::join(instancing_names(), "|")),
       "Objects that share the triangles of their mesh: those that save much memory, no object, or all with meshes "
       "[auto]",
-      [&](const OptionValues& w) {
-        const auto names = instancing_names();
-        const auto found = std::ranges::find(names, w.choice(names));
-        options.instances = static_cast<Instancing>(found - names.begin());
-      });
+      [&](const OptionValues& w) { options.instances = w.name<Instancing>(instancing_names()); });
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
   add_motion_options(table, options.motion);

@@ -41,7 +41,7 @@ std::vector<AnimationClock::Clip> list_clips(const Scene& scene) {
   return clips;
 }
 
-/// Returns the clip that shows these animations; -1 if there is none.
+/// Returns the clip that shows these animations; -1 if no clip does.
 int find_clip(const std::vector<AnimationClock::Clip>& clips, const std::vector<uint32_t>& animations) {
   if (animations.size() == 1) return static_cast<int>(animations[0]);
   const bool is_all = animations.size() > 1 && animations.size() + 1 == clips.size();

@@ -32,7 +32,7 @@ class AnimationClock {
   double time_s() const { return time_s_; }
   double speed() const { return speed_; }
   bool is_playing() const { return is_playing_; }
-  /// Returns the duration of the current clip in seconds; 0 if there is none.
+  /// Returns the duration of the current clip in seconds; 0 without a clip.
   double duration_s() const { return clip_ < 0 ? 0.0 : clips_[static_cast<size_t>(clip_)].duration_s; }
   /// Returns the pose to show.
   const MotionOptions& pose() const { return pose_; }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "core/radical_inverse.h"
 #include "environment/octahedron.h"
 #include "environment/shrink_panorama.h"
 #include "environment/sky_map.h"
@@ -125,13 +126,6 @@ struct LobeSample {
   /// The weight of the next coarser map.
   float coarser;
 };
-
-/// Returns number i of van der Corput's sequence to the base 2.
-double radical_inverse(uint32_t i) {
-  double inverse = 0.0;
-  for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5) inverse += (i & 1) != 0 ? digit : 0.0;
-  return inverse;
-}
 
 /// Returns samples of a lobe: half vectors that are distributed by GGX at Hammersley points. A sample stands for the
 /// solid angle 4 / (n D) and is read from the map whose texels have this size (Colbert and Krivanek, GPU Gems 3, ch.

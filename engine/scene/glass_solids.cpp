@@ -102,11 +102,11 @@ struct Contains {
   }
 };
 
-/// Returns a mesh with the positions and triangles of another.
-Mesh corners_of(const Mesh& mesh) {
+/// Returns a mesh of positions and triangles alone.
+Mesh make_corners(std::vector<vec3> positions, std::vector<uvec3> triangles) {
   Mesh corners;
-  corners.positions = mesh.positions;
-  corners.triangles = mesh.triangles;
+  corners.positions = std::move(positions);
+  corners.triangles = std::move(triangles);
   return corners;
 }
 
@@ -155,7 +155,7 @@ void GlassSolids::add_instances(const world::Scene& scene) {
     if (!bounds_volume(scene.materials[material])) continue;
     std::shared_ptr<const Mesh>& shared = meshes[instance.mesh];
     if (shared == nullptr) {
-      shared = std::make_shared<const Mesh>(corners_of(mesh));
+      shared = std::make_shared<const Mesh>(make_corners(mesh.positions, mesh.triangles));
       boxes[instance.mesh] = BoundsOf()(mesh);
     }
     const world::InstanceMap map = world::map_of(instance);
@@ -170,7 +170,9 @@ GlassSolids::GlassSolids(const world::Scene& scene) {
     if (!bounds_volume(scene.materials[material])) continue;
     solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape), nullptr, {}});
     // Only the positions and triangles are needed.
-    if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) *mesh = corners_of(*mesh);
+    if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) {
+      *mesh = make_corners(std::move(mesh->positions), std::move(mesh->triangles));
+    }
   }
   add_instances(scene);
   std::ranges::stable_sort(solids_, std::greater(), [](const Solid& solid) { return volume_of(solid.bounds); });

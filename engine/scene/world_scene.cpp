@@ -211,9 +211,10 @@ Bounds bounds_of(const world::InstanceMap& map, std::span<const Bounds> boxes) {
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Object& object : scene.objects) bounds.extend(std::visit(BoundsOfShape{}, object.shape));
+  std::vector<Bounds> boxes;
+  for (const Mesh& mesh : scene.meshes) boxes.push_back(BoundsOfShape()(mesh));
   for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const Bounds box = BoundsOfShape()(mesh);
+    const Bounds& box = boxes[instance.mesh];
     if (!box.is_empty()) bounds.extend(bounds_of(map_of(instance), {&box, 1}));
   }
   return bounds;

@@ -373,7 +373,7 @@ class Renderer:
         return to_record(self._with_integrator(view), camera, shown, self._lit().default_max_depth()), shown
 
     def _with_integrator(self, view: View) -> View:
-        """Returns the view with the integrator that suits the light if it has none."""
+        """Returns the view with an integrator: its own, or the one that suits the light."""
         return replace(view, integrator="direct") if view.integrator is None and self._light == "soft" else view
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:

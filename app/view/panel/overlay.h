@@ -81,7 +81,7 @@ struct OverlayContent {
   std::string message;
   bool is_failure = false;
   std::vector<Camera> bookmarks;
-  /// The clock of the scene's animations, which the user can change; null if there is none.
+  /// The clock of the scene's animations, which the user can change; null during a replay.
   AnimationClock* clock = nullptr;
   /// The path that the user is typing; null if there is none.
   PathEntry* entry = nullptr;

@@ -186,7 +186,7 @@ class ScenePreparer {
                                             std::shared_ptr<const gpu::Device> device);
   /// Returns the average exposure, computed for the first view.
   float meter_exposure(const ShownScene& shown, TunedRendererOptions options, const RenderMode& mode) const;
-  /// Returns the picture of a scene, on a new device if there is none.
+  /// Returns the picture of a scene, on a new device if `device` is null.
   ReadyPicture make_first(std::shared_ptr<const Scene> scene, const PictureRequest& request,
                           std::shared_ptr<const gpu::Device> device = nullptr);
   /// Returns the picture, which is traced on the device `on`.

@@ -170,13 +170,16 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
   return zoom(camera, pose.zoom);
 }
 
-Camera turn_around(const Scene& scene, const ViewOptions& options, const Camera& camera, double degrees) {
+Camera turn_around(const Scene& scene, const ViewOptions& options, const Camera& camera, double steps,
+                   uint32_t step_count) {
+  constexpr double kTurnDeg = 360.0;
   const PoseOptions& pose = options.pose;
   const bool is_framed = !pose.eye && find_file_camera(scene, options) == nullptr;
   const dvec3 target = pose.look_at ? *pose.look_at - scene.center
                        : is_framed  ? middle_of(frame_of(scene))
                                     : orbit_target(scene, camera);
-  return orbit_camera(camera, target, {.azimuth_deg = degrees}, vec3(pose.up.value_or(dvec3(0.0, 1.0, 0.0))));
+  return orbit_camera(camera, target, {.azimuth_deg = kTurnDeg * steps / step_count},
+                      vec3(pose.up.value_or(dvec3(0.0, 1.0, 0.0))));
 }
 
 Camera pose_camera(const Scene& scene, const Camera& own, const PoseOptions& pose, const uvec2& size,

@@ -31,9 +31,11 @@ Camera make_camera(const Scene& scene, const ViewOptions& options, float aspect_
 Camera pose_camera(const Scene& scene, const Camera& camera, const PoseOptions& pose, const uvec2& size,
                    const Messages& console);
 
-/// Returns the camera of a view after a part of a turn around the scene, to the right. Its distance from the axis does
-/// not change. The axis goes through the point at which it looks, or through the middle of the scene that it frames.
-Camera turn_around(const Scene& scene, const ViewOptions& options, const Camera& camera, double degrees);
+/// Returns the camera of a view after some of the steps that make a whole turn around the scene, to the right. Its
+/// distance from the axis does not change. The axis goes through the point at which it looks, or through the middle of
+/// the scene that it frames.
+Camera turn_around(const Scene& scene, const ViewOptions& options, const Camera& camera, double steps,
+                   uint32_t step_count);
 
 /// Returns a sentence if no camera sees anything of the scene in pictures of this size; `options` suggest options that
 /// would show the scene. Returns an empty text if a camera may see something.

@@ -138,13 +138,18 @@ Ffmpeg::~Ffmpeg() {
   end();
 }
 
+int Ffmpeg::wait() {
+  int status = 0;
+  if (process_ <= 0) return status;
+  const pid_t process = std::exchange(process_, -1);
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
 void Ffmpeg::end() {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
-  if (process_ > 0) {
-    const pid_t process = std::exchange(process_, -1);
-    while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
-    }
-  }
+  wait();
   if (messages_ >= 0) ::close(std::exchange(messages_, -1));
 }
 
@@ -163,9 +168,7 @@ void Ffmpeg::write(std::span<const uint8_t> bytes) {
       bytes = bytes.subspan(static_cast<size_t>(count));
     } else if (errno != EINTR) {
       // ffmpeg has ended. Its messages are complete when it is waited for.
-      const pid_t process = std::exchange(process_, -1);
-      while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
-      }
+      wait();
       fail();
     }
   }
@@ -173,11 +176,7 @@ void Ffmpeg::write(std::span<const uint8_t> bytes) {
 
 void Ffmpeg::finish() {
   ::close(std::exchange(input_, -1));
-  const pid_t process = std::exchange(process_, -1);
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0) {
-    if (errno != EINTR) break;
-  }
+  const int status = wait();
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
   end();
 }

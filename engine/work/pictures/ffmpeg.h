@@ -32,6 +32,8 @@ class Ffmpeg {
   void finish();
 
  private:
+  /// Waits until the process has ended, unless it was waited for before. Returns its status.
+  int wait();
   void end();
   [[noreturn]] void fail();
 

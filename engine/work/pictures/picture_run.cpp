@@ -33,9 +33,8 @@ std::vector<Camera> cameras_of(const PictureRun& run) {
 /// Sets the cameras of a turntable, which move once around the scene. `camera` is the camera of the first frame.
 void turn_frames(std::vector<PlannedFrame>& frames, uint32_t count, const Scene& scene, const ViewOptions& view,
                  const Camera& camera) {
-  constexpr double kTurnDeg = 360.0;
   for (PlannedFrame& frame : frames) {
-    frame.camera = turn_around(scene, view, camera, kTurnDeg * *frame.number / count);
+    frame.camera = turn_around(scene, view, camera, *frame.number, count);
   }
 }
 

@@ -8,21 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/radical_inverse.h"
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/camera_path.h"
 #include "work/pictures/view_setup.h"
 
 namespace promin::work {
 namespace {
-
-/// Returns the radical inverse of a number in base 2, a fraction of 1.
-double van_der_corput(uint32_t i) {
-  double fraction = 0.0;
-  for (double digit = 0.5; i != 0; i >>= 1U, digit *= 0.5) {
-    if ((i & 1U) != 0) fraction += digit;
-  }
-  return fraction;
-}
 
 template <typename Value>
 void add_values(const std::vector<Value>& more, std::vector<Value>& sum) {
@@ -75,9 +67,7 @@ PlannedFrame frame_between(const PictureRun& run, const PlannedFrame& frame, dou
     moment.camera = path.camera_after(*frame.number, fraction * interval_s);
     put_lens(run.options.view, *moment.camera);
   } else if (run.options.turntable) {
-    constexpr double kTurnDeg = 360.0;
-    moment.camera =
-        turn_around(run.scene, run.options.view, *frame.camera, kTurnDeg * fraction / *run.options.turntable);
+    moment.camera = turn_around(run.scene, run.options.view, *frame.camera, fraction, *run.options.turntable);
   }
   if (frame.time_s) moment.time_s = *frame.time_s + fraction * interval_s;
   return moment;
@@ -89,7 +79,7 @@ TracedFrame trace_open_shutter(FrameRenderers& renderers, const PictureRun& run,
   const uint32_t count = view.samples_per_pixel;
   RenderResult sum;
   for (uint32_t i = 0; i < count; ++i) {
-    const PlannedFrame moment = frame_between(run, frame, shutter * van_der_corput(i));
+    const PlannedFrame moment = frame_between(run, frame, shutter * radical_inverse(i));
     Renderer& renderer = renderers.at(moment);
     View view_then = view;
     RunStats unused;
