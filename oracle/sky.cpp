@@ -133,16 +133,27 @@ struct PanoramaRadiance {
   }
 };
 
+/// Returns a direction after the rotation that takes the unit vector `up` to +Y by the shortest way (the formula of
+/// Rodrigues).
+dvec3 stand_up(const dvec3& direction, const dvec3& up) {
+  const dvec3 axis = glm::cross(up, dvec3(0, 1, 0));
+  const double cosine = up.y;
+  if (cosine < -1 + 1e-12) return {-direction.x, -direction.y, direction.z};
+  return cosine * direction + glm::cross(axis, direction) + glm::dot(axis, direction) / (1 + cosine) * axis;
+}
+
 /// The radiance of an environment's sky by direction.
 class SkyRadiance {
  public:
   explicit SkyRadiance(const Environment& environment)
       : sine_(std::sin(static_cast<double>(environment.rotation))),
         cosine_(std::cos(static_cast<double>(environment.rotation))),
+        up_(environment.up),
         intensity_(static_cast<double>(environment.intensity)),
         sky_(std::visit([](const auto& sky) { return prepare(sky); }, environment.sky)) {}
 
-  dvec3 operator()(const dvec3& direction) const {
+  dvec3 operator()(const dvec3& in_world) const {
+    const dvec3 direction = stand_up(in_world, up_);
     // The sky is rotated from +Z towards +X, so the direction is rotated by the same angle the other way.
     const dvec3 in_sky(direction.x * cosine_ - direction.z * sine_, direction.y,
                        direction.x * sine_ + direction.z * cosine_);
@@ -158,6 +169,7 @@ class SkyRadiance {
 
   double sine_;
   double cosine_;
+  dvec3 up_;
   double intensity_;
   Prepared sky_;
 };

@@ -118,6 +118,9 @@ struct SkyDescription {
 std::string describe_sky(const Environment& environment) {
   std::string text = std::visit(SkyDescription(), environment.sky);
   if (!environment.has_sky()) return text;
+  if (environment.up != vec3(0.0F, 1.0F, 0.0F)) {
+    text += fmt::format(", up is {:.4g} {:.4g} {:.4g}", environment.up.x, environment.up.y, environment.up.z);
+  }
   if (environment.rotation != 0.0F) {
     text += fmt::format(", turned by {:.4g} degrees", glm::degrees(environment.rotation));
   }

@@ -185,13 +185,17 @@ void add_environment_options(OptionTable& table, EnvironmentOptions& options) {
             "Equirectangular panorama that surrounds the scene, .hdr or .exr. Its middle is in the direction -Z [the "
             "scene's own sky]",
             [&](const OptionValues& w) { options.panorama = w.text(); });
-  table.add("--environment-rotation", "DEG", "Turn the sky about +Y, from +Z towards +X, by this angle in degrees [0]",
-            [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+  table.add(
+      "--environment-rotation", "DEG",
+      "Turn the sky about its upward direction by this angle in degrees. If +Y is up, it turns from +Z towards +X [0]",
+      [&](const OptionValues& w) { options.rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
   table.add("--environment-intensity", "X", "Multiply the sky's radiance by this factor [1]",
             [&](const OptionValues& w) { options.intensity = w.real(0, 0.0, kMaxIntensity); });
-  table.add("--light-rotation", "DEG",
-            "Turn the sky and directional lights about +Y, from +Z towards +X, by this angle in degrees [0]",
-            [&](const OptionValues& w) { options.light_rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
+  table.add(
+      "--light-rotation", "DEG",
+      "Turn the sky and directional lights about the sky's upward direction by this angle in degrees. If +Y is up, "
+      "they turn from +Z towards +X [0]",
+      [&](const OptionValues& w) { options.light_rotation_deg = w.real(0, -kMaxRotationDeg, kMaxRotationDeg); });
 }
 
 void add_view_options(OptionTable& table, ViewOptions& view) {

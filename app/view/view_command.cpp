@@ -111,7 +111,7 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   opened.view = make_view(*scene, view_options, console);
   if (!options.replay) warn_of_empty_pictures(*scene, {&opened.view.camera, 1}, opened.view.size, console);
   const LookOptions& look = options.view.look;
-  const AssumedLight assumed = light_up(*scene, look, opened.environment);
+  const AssumedLight assumed = light_up(*scene, look, opened.environment, upward_direction(*scene, view_options));
   const DisplayTransform display = choose_display(*scene, look, opened.view.mode.debug_view);
   const std::string assumptions = describe_assumptions(*scene, view_options, assumed, display);
   if (!assumptions.empty()) console.note(assumptions);

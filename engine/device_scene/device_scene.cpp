@@ -68,7 +68,7 @@ std::vector<uvec4> make_tables(std::span<const Material> materials) {
 }
 
 bool are_skies_equal(const Environment& a, const Environment& b) {
-  return a.sky == b.sky && a.rotation == b.rotation && a.intensity == b.intensity;
+  return a.sky == b.sky && a.up == b.up && a.rotation == b.rotation && a.intensity == b.intensity;
 }
 
 /// Returns whether the environment lights objects.

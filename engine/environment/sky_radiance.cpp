@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "environment/studio.h"
+#include "scene/upright.h"
 
 namespace promin {
 namespace {
@@ -63,7 +64,8 @@ struct Radiance {
 
 dvec3 sky_radiance(const Environment& environment, const dvec3& direction) {
   if (!environment.has_sky()) return dvec3(environment.ambient);
-  const dvec3 own = turn_back(glm::normalize(direction), static_cast<double>(environment.rotation));
+  const dvec3 upright = turn_to_y(environment.up, glm::normalize(direction));
+  const dvec3 own = turn_back(upright, static_cast<double>(environment.rotation));
   return static_cast<double>(environment.intensity) * std::visit(Radiance{own}, environment.sky);
 }
 

@@ -12,6 +12,7 @@
 #include "promin/error.h"
 #include "scene/framing.h"
 #include "scene/scene_hull.h"
+#include "scene/upright.h"
 
 namespace promin {
 namespace {
@@ -80,15 +81,6 @@ dvec2 turn_by(double degrees) {
 dvec3 turn_around(const dvec3& v, const dvec3& axis, double degrees) {
   const dvec2 turn = turn_by(degrees);
   return turn.y * v + turn.x * glm::cross(axis, v) + (1.0 - turn.y) * glm::dot(axis, v) * axis + 0.0;
-}
-
-/// Returns the shortest rotation from +Y to a unit vector. The columns are the images of X, Y and Z.
-dmat3 turn_up_to(const dvec3& up) {
-  if (up.y <= -1.0 + 1e-12) return dmat3({-1, 0, 0}, {0, -1, 0}, {0, 0, 1});
-  const double s = 1.0 / (1.0 + up.y);
-  return {{up.y + s * up.z * up.z, -up.x, 0.0 - s * up.x * up.z},
-          up,
-          {0.0 - s * up.x * up.z, 0.0 - up.z, up.y + s * up.x * up.x}};
 }
 
 dvec3 normalize_up(const vec3& up) {

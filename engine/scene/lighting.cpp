@@ -10,6 +10,7 @@
 
 #include "scene/framing.h"
 #include "scene/light_kinds.h"
+#include "scene/upright.h"
 
 namespace promin {
 namespace {
@@ -136,8 +137,10 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
     environment.intensity = kStudioFill * unexposed;
     return assumed;
   }
-  scene.lights.push_back(make_studio_light(front, static_cast<float>(kStudioLightPower * power_per_lux(scene))));
-  if (is_soft) scene.lights.back().angle = kSoftSunAngle;
+  Light lamp = make_studio_light(front, static_cast<float>(kStudioLightPower * power_per_lux(scene)));
+  lamp.direction = vec3(turn_from_y(environment.up, lamp.direction));
+  if (is_soft) lamp.angle = kSoftSunAngle;
+  scene.lights.push_back(lamp);
   assumed.has_studio_light = true;
   return assumed;
 }
@@ -145,10 +148,12 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
 float front_of(const Scene& scene) {
   if (scene.cameras.empty()) return 0.0F;
   const Camera& camera = scene.cameras.front();
-  vec3 to_viewer = -camera.look;
+  const vec3 look(turn_to_y(scene.environment.up, camera.look));
+  vec3 to_viewer = -look;
   if (std::max(std::abs(to_viewer.x), std::abs(to_viewer.z)) < kLeastHorizontalLook) {
     // A viewer who looks from above stands at the lower edge of the picture.
-    to_viewer = camera.look.y < 0.0F ? -camera.up : camera.up;
+    const vec3 top(turn_to_y(scene.environment.up, camera.up));
+    to_viewer = look.y < 0.0F ? -top : top;
   }
   return std::atan2(to_viewer.x, to_viewer.z);
 }

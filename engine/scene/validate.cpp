@@ -284,6 +284,8 @@ class Validation {
   void check_environment(const Environment& environment) {
     check_color(environment.ambient, "environment.ambient");
     check_color(environment.background, "environment.background");
+    check("scene.environment.up", std::abs(glm::length(environment.up) - 1.0F) <= kDirectionTolerance,
+          "the sky's upward direction is not a unit vector", "environment.up", "normalise it");
     check("scene.number.range", std::isfinite(environment.rotation), "the rotation is not finite",
           "environment.rotation", "use an angle");
     check("scene.number.range", environment.intensity >= 0.0F && environment.intensity <= kMaxPower,

@@ -15,7 +15,8 @@ namespace promin {
 /// horizon, with four soft lamps that show form and gloss. The studio is oriented to the viewer by `front`. A separate
 /// light casts the shadows: make_studio_light (promin/lighting.h).
 struct Studio {
-  /// The azimuth from which the viewer looks at the scene, in radians about +Y from +Z towards +X. Finite.
+  /// The azimuth from which the viewer looks at the scene, in radians about +Y of the sky from +Z towards
+  /// +X. Finite.
   float front = 0.0F;
 
   /// Returns whether both environments look the same.
@@ -82,7 +83,10 @@ struct Environment {
   std::variant<std::monostate, Studio, GradientSky, Panorama> sky{};
   /// True if camera rays see the sky. It has no effect in a scene without a sky.
   bool shows_sky = false;
-  /// Rotation of the sky about +Y from +Z towards +X, in radians, finite.
+  /// The direction of the world that the sky's +Y has, a unit vector. The shortest rotation from +Y to `up` turns the
+  /// whole sky: if +Z is up, the sky's +Z is -Y of the world.
+  vec3 up{0.0F, 1.0F, 0.0F};
+  /// Rotation of the sky about its +Y from +Z towards +X, in radians, finite.
   float rotation = 0.0F;
   /// Factor by which the sky's radiance is multiplied, finite and not negative.
   float intensity = 1.0F;

@@ -51,7 +51,8 @@ struct AssumedLight {
 /// Adds the chosen light to a scene that has no sky (neither a sky of Environment nor ambient light) or no lights. A
 /// scene without a sky also gets the studio's backdrop, unless it is classic or has a background. After the exposure,
 /// the backdrop is as bright behind glass, in mirrors and with Aovs::alpha as elsewhere. In the studio, Phong materials
-/// without ambient factors use their diffuse factors. Throws InputError as bounds_of() does.
+/// without ambient factors use their diffuse factors. The studio and its light stand on Environment::up. Throws
+/// InputError as bounds_of() does.
 PROMIN_EXPORT AssumedLight light_scene(Scene& scene, LightChoice choice = LightChoice::kAuto);
 
 /// Grey at the top of the studio's backdrop, in linear light. The backdrop is a gradient for scenes without a
@@ -65,11 +66,12 @@ inline constexpr float kSoftSunAngle = 0.174532925F;
 /// The studio's intensity in a scene with lights, before it is divided by the exposure.
 inline constexpr float kStudioFill = 0.3F;
 
-/// Returns the azimuth from which the first camera views a scene, for Studio::front; 0 without a camera.
+/// Returns the azimuth from which the first camera views a scene, about Environment::up, for Studio::front; 0 without a
+/// camera.
 PROMIN_EXPORT float front_of(const Scene& scene);
 
-/// Returns the directional light of a studio with this front (radians, as Studio::front). The light comes from 35
-/// degrees to the left of the viewer and 40 degrees above. `power` is its diffuse and its specular power.
+/// Returns the directional light of a studio with this front (radians, as Studio::front). +Y is up. The light
+/// comes from 35 degrees to the left of the viewer and 40 degrees above. `power` is its diffuse and its specular power.
 PROMIN_EXPORT Light make_studio_light(float front, float power = kStudioLightPower);
 
 /// Returns the exposure that suits a scene's lights, in stops (DisplayTransform::exposure_ev), a multiple of 1/2. The

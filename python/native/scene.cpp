@@ -139,7 +139,7 @@ Scene light(const Scene& scene, const std::string& choice, const std::string& sp
   Scene lit = scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
     const work::EnvironmentChoice surroundings(options.environment);
-    work::light_up(lit, options.look, surroundings);
+    work::light_up(lit, options.look, surroundings, work::upward_direction(lit, options));
     lit.warnings = surroundings.warnings();
   });
   return lit;

@@ -237,10 +237,15 @@ def to_spec(members: Mapping[str, object]) -> str:
     return json.dumps({"promin_render_spec": 1, **given})
 
 
+def pose_of(view: View) -> dict[str, object]:
+    """Returns the members of a specification for the view's camera, except a Camera."""
+    named = None if view.camera is None or isinstance(view.camera, Camera) else str(view.camera)
+    return {"camera": named, **{name: getattr(view, name) for name in POSE}}
+
+
 def camera_spec(view: View) -> str:
     """Returns the specification of the view's camera."""
-    named = None if view.camera is None or isinstance(view.camera, Camera) else str(view.camera)
-    return to_spec({"camera": named, **{name: getattr(view, name) for name in POSE}})
+    return to_spec(pose_of(view))
 
 
 def limit_of(view: View) -> float | None:

@@ -316,6 +316,26 @@ TEST(SkyTest, RotationTurnsFromZToX) {
   EXPECT_LT(max_error(irradiance_over_pi(sky, moved), 3.0 * irradiance_over_pi(pack_sky(plain), direction)), 0.01);
 }
 
+TEST(SkyTest, ItStandsOnUp) {
+  Environment standing = make_panorama({512, 256}, smooth_light);
+  standing.rotation = 0.7F;
+  Environment lying = standing;
+  const dvec3 direction = glm::normalize(dvec3(0.3, 0.2, 0.9));
+  const std::pair<vec3, dvec3> kTurned[] = {
+      {vec3(0, 0, 1), dvec3(direction.x, -direction.z, direction.y)},
+      {vec3(0, -1, 0), dvec3(-direction.x, -direction.y, direction.z)},
+      {vec3(1, 0, 0), dvec3(direction.y, -direction.x, direction.z)},
+      {vec3(0.0F, 0.6F, 0.8F),
+       dvec3(direction.x, 0.6 * direction.y - 0.8 * direction.z, 0.8 * direction.y + 0.6 * direction.z)}};
+  for (const auto& [up, moved] : kTurned) {
+    lying.up = up;
+    EXPECT_LT(max_error(sky_radiance(lying, moved), sky_radiance(standing, direction)), 1e-6) << up.x << up.y << up.z;
+  }
+  EXPECT_LT(max_error(irradiance_over_pi(pack_sky(lying), kTurned[3].second),
+                      irradiance_over_pi(pack_sky(standing), direction)),
+            0.01);
+}
+
 TEST(SkyTest, AGradientHasItsColorsAtTheEnds) {
   Environment environment;
   const GradientSky gradient = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), 1.0F, 0.5F};

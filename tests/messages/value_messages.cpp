@@ -121,6 +121,7 @@ std::vector<MessageCase> cases_of_scenes() {
       spoil("scene.weight.range", [](Scene& s) { metal_of(s).roughness = 2; }),
       spoil("scene.number.range", [](Scene& s) { metal_of(s).ior = -1; }),
       spoil("scene.number.range", [](Scene& s) { s.environment.intensity = -1; }),
+      spoil("scene.environment.up", [](Scene& s) { s.environment.up = vec3(0, 0, 2); }),
       spoil("scene.texture.set",
             [](Scene& s) {
               add_image(s, {});

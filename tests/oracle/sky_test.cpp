@@ -126,6 +126,14 @@ TEST(SurroundingsTest, APanoramaHasMinusZInItsMiddleAndTurns) {
   // The rotation is from +Z towards +X, so it moves the pixel at -Z to -X.
   environment.rotation = static_cast<float>(kHalfTurn / 2);
   EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, -half}).x, 3, 1e-6L);
+  // If +Z is up, the front is -Y: the middle of the picture lies at +Y, and its right is at +X.
+  environment.rotation = 0;
+  environment.up = vec3(0, 0, 1);
+  EXPECT_NEAR(Surroundings(environment).radiance({half, half, 0}).x, 3, 1e-9L);
+  EXPECT_NEAR(Surroundings(environment).radiance({-half, -half, 0}).x, 1, 1e-9L);
+  // If -Y is up, the front stays and left is right.
+  environment.up = vec3(0, -1, 0);
+  EXPECT_NEAR(Surroundings(environment).radiance({-half, 0, -half}).x, 3, 1e-9L);
 }
 
 }  // namespace

@@ -264,6 +264,24 @@ TEST(StudioTest, ItStandsByTheFirstCamera) {
   EXPECT_EQ(scene.lights[0].direction, make_studio_light(front_of(scene)).direction);
 }
 
+TEST(StudioTest, ItStandsOnUp) {
+  // This camera stands at -Y, which is the front if +Z is up, or to the right of it.
+  Camera camera;
+  camera.look = vec3(0.0F, 1.0F, 0.0F);
+  camera.up = vec3(0.0F, 0.0F, 1.0F);
+  for (const bool is_turned : {false, true}) {
+    if (is_turned) camera.look = vec3(-1.0F, 0.0F, 0.0F);
+    Scene scene = physical_scene();
+    scene.environment.up = vec3(0.0F, 0.0F, 1.0F);
+    scene.cameras = {camera};
+    light_scene(scene);
+    const float front = std::get<Studio>(scene.environment.sky).front;
+    EXPECT_FLOAT_EQ(front, is_turned ? 0.5F * kPi : 0.0F);
+    const vec3 upright = make_studio_light(front).direction;
+    EXPECT_LT(glm::distance(scene.lights[0].direction, vec3(upright.x, -upright.z, upright.y)), 1e-6F);
+  }
+}
+
 TEST(StudioTest, ItsLightComesFromTheViewersUpperLeft) {
   for (const float front : {0.0F, 0.5F, -2.0F, kPi}) {
     const vec3 to_light = -make_studio_light(front).direction;

@@ -226,6 +226,12 @@ TEST(LightUpTest, OnlyAClassicSceneWithoutLightsGetsAHeadlight) {
   EXPECT_EQ(other.lights[0].kind, LightKind::kDirectional);
 }
 
+Scene make_ball() {
+  Scene scene;
+  scene.add("ball", Sphere{.center = dvec3(1.0, 2.0, 3.0)});
+  return scene;
+}
+
 Scene make_viewed_ball() {
   Scene scene = make_viewed_scene();
   scene.add("ball", Sphere{.center = dvec3(1.0, 2.0, 3.0)});
@@ -264,6 +270,38 @@ TEST(LightUpTest, SoftLightHasAGroundAndTheIntegratorDirect) {
   EXPECT_EQ(mode_of(options).integrator, Integrator::kDirect);
   options.integrator = Integrator::kWhitted;
   EXPECT_EQ(mode_of(options).integrator, Integrator::kWhitted);
+}
+
+TEST(LightUpTest, LightAndGroundStandOnTheScenesUp) {
+  const auto plane_of = [](const Scene& scene) {
+    return std::get<Plane>(scene.geometries[scene.objects.back().geometry]);
+  };
+  Scene standing = make_viewed_ball();
+  Scene lying = make_viewed_ball();
+  Scene slanted = make_viewed_ball();
+  const vec3 z(0.0F, 0.0F, 1.0F);
+  light_up(standing, {.light = LightChoice::kSoft});
+  light_up(lying, {.light = LightChoice::kSoft}, {}, z);
+  light_up(slanted, {.light = LightChoice::kSoft}, {}, vec3(0.6F, 0.0F, 0.8F));
+  EXPECT_EQ(plane_of(lying).normal, z);
+  // The ball of radius 1 lies at (1, 2, 3).
+  EXPECT_NEAR(plane_of(standing).point.y, 1.0F, 1e-3F);
+  EXPECT_NEAR(plane_of(lying).point.z, 2.0F, 1e-3F);
+  EXPECT_NEAR(glm::dot(plane_of(slanted).point, plane_of(slanted).normal), 2.0F, 1e-3F);
+  EXPECT_TRUE(validate(slanted).empty());
+}
+
+TEST(UpwardDirectionTest, ItIsThatOfFramedScenes) {
+  ViewOptions options;
+  const Scene without_camera = make_ball();
+  EXPECT_FALSE(upward_direction(without_camera, options));
+  options.pose.up = dvec3(0.0, 0.0, 2.0);
+  EXPECT_EQ(upward_direction(without_camera, options), vec3(0.0F, 0.0F, 1.0F));
+  EXPECT_FALSE(upward_direction(make_viewed_ball(), options)) << "the camera of the file is rolled";
+  options.pose.from = Framing::kFront;
+  EXPECT_TRUE(upward_direction(make_viewed_ball(), options));
+  options.pose.eye = dvec3(5.0);
+  EXPECT_FALSE(upward_direction(without_camera, options)) << "the picture's own direction";
 }
 
 TEST(LightUpTest, TheBackgroundIsTheUsers) {
@@ -385,11 +423,6 @@ TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
 }
 
 /// Returns a ball at (1, 2, 3), in a file that has no camera.
-Scene make_ball() {
-  Scene scene;
-  scene.add("ball", Sphere{.center = dvec3(1.0, 2.0, 3.0)});
-  return scene;
-}
 
 Camera camera_of(const Scene& scene, const PoseOptions& pose, const uvec2& size = uvec2(100)) {
   ViewOptions options;

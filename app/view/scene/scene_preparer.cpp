@@ -75,8 +75,8 @@ std::vector<SceneOn> SceneCopies::list() const {
 std::vector<Light> ShownScene::lights() const {
   std::vector<Light> lights = scene->lights;
   switch_lights(lights, choice.lights_off);
-  Environment unused;
-  turn_light(surroundings.light_rotation_deg, unused, lights);
+  Environment turned = scene->environment;
+  turn_light(surroundings.light_rotation_deg, turned, lights);
   return lights;
 }
 
@@ -176,9 +176,9 @@ std::optional<ReadyPicture> ScenePreparer::take() {
 void ScenePreparer::read() {
   step_ = Step::kReading;
   is_posing_ = false;
-  work_.start([this, request = asked_] {
+  work_.start([this, request = asked_, up = base_->environment.up] {
     const auto scene = std::make_shared<Scene>(load_posed(file_, load_, request.motion, sources_));
-    light_up(*scene, look_, environment_);
+    light_up(*scene, look_, environment_, up);
     base_ = scene;
     return make_first(scene, request);
   });

@@ -86,7 +86,7 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   if (const std::string note = describe_file_camera(scene, view, *stats.view); !note.empty()) console.note(note);
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
-  AssumedLight assumed = light_up(scene, view.look, surroundings);
+  AssumedLight assumed = light_up(scene, view.look, surroundings, upward_direction(scene, view));
   if (options.aovs.alpha) assumed.has_background = false;  // With alpha, no picture shows a background.
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);

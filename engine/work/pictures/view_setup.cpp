@@ -91,7 +91,16 @@ View make_view(const Scene& scene, const ViewOptions& options, const Messages& c
   return view;
 }
 
-AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings) {
+std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& options) {
+  const PoseOptions& pose = options.pose;
+  const bool is_framed = !options.given_camera && !pose.eye && find_file_camera(scene, options) == nullptr;
+  if (!is_framed || !pose.up) return {};
+  return vec3(glm::normalize(*pose.up));
+}
+
+AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings,
+                      const std::optional<vec3>& up) {
+  if (up) scene.environment.up = *up;
   surroundings.replace_sky(scene);
   AssumedLight assumed = light_scene(scene, look.light);
   surroundings.adjust_sky(scene);

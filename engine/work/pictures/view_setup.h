@@ -36,8 +36,14 @@ RenderMode mode_of(const ViewOptions& options);
 /// Gives a camera the lens of the options.
 void put_lens(const ViewOptions& options, Camera& camera);
 
-/// Sets the scene's environment, lights and background from the options. Throws the same errors as light_scene().
-AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings = {});
+/// Returns the upward direction of the scene, a unit vector, if the options give it (PoseOptions::up) for a camera that
+/// frames the scene. Otherwise it is empty, because `up` then belongs to the picture.
+std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& options);
+
+/// Sets the scene's environment, lights and background from the options. If `up` is given, the light and the ground
+/// stand on it. Throws the same errors as light_scene().
+AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings = {},
+                      const std::optional<vec3>& up = {});
 
 /// Sets the background of an environment to the requested one.
 void show_background(const BackgroundChoice& background, Environment& environment);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "environment/read_panorama.h"
+#include "scene/upright.h"
 
 namespace promin::work {
 
@@ -14,9 +15,9 @@ void turn_light(double degrees, Environment& environment, std::span<Light> light
   environment.rotation += static_cast<float>(angle);
   for (Light& light : lights) {
     if (light.kind != LightKind::kDirectional) continue;
-    const dvec3 way(light.direction);
-    light.direction = vec3(dvec3(way.x * std::cos(angle) + way.z * std::sin(angle), way.y,
-                                 way.z * std::cos(angle) - way.x * std::sin(angle)));
+    const dvec3 way = turn_to_y(environment.up, light.direction);
+    light.direction = vec3(turn_from_y(environment.up, dvec3(way.x * std::cos(angle) + way.z * std::sin(angle), way.y,
+                                                             way.z * std::cos(angle) - way.x * std::sin(angle))));
   }
 }
 

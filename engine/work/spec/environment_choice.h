@@ -20,16 +20,16 @@ inline constexpr double kMaxIntensity = 1e15;
 struct EnvironmentOptions {
   /// A panorama that replaces the scene's sky.
   std::optional<std::filesystem::path> panorama;
-  /// Rotation of the sky about +Y, in degrees.
+  /// Rotation of the sky about its upward direction, in degrees.
   double rotation_deg = 0.0;
   /// Factor by which the sky's radiance is multiplied.
   double intensity = 1.0;
-  /// Rotation of the sky and of all lights without a position about +Y, in degrees.
+  /// Rotation of the sky and of all lights without a position about the sky's upward direction, in degrees.
   double light_rotation_deg = 0.0;
 };
 
-/// Rotates a sky and the lights that shine in one direction of the world about +Y, from +Z towards +X. An angle of 0
-/// changes no bit.
+/// Rotates a sky and the lights that shine in one direction of the world about the sky's upward direction. If that is
+/// +Y, the rotation is from +Z towards +X. An angle of 0 changes no bit.
 void turn_light(double degrees, Environment& environment, std::span<Light> lights);
 
 /// The options with the panorama, which is read once for any number of scenes.
