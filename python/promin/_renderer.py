@@ -153,21 +153,22 @@ class Renderer:
     ) -> None:
         """aovs: the AOVs of the pictures, with the names of include/promin/aovs.h: "depth", "normal", "object", ...,
         and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
-        Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it. If
-        this view frames the scene, the light that is added and the ground stand on its `up`. light: the light that is added to a scene without light: "auto", "studio", "headlight", "none" or "soft". The
-        soft light is the studio with soft shadows of its lamps and its sky, and with a ground. ground: True if a ground
-        under the scene shows its shadow, False if not; None: only with soft light. background:
-        the background, as in `promin render --background`. Three sRGB numbers from 0 to 1, a name such as "white", or
-        "#80a0ff" are a colour that pictures show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone
-        mapped. "environment" shows the environment that lights the scene. None: the scene's background, or a grey
-        gradient. environment: the file of an equirectangular panorama, which replaces the scene's sky.
-        environment_rotation: degrees by which the sky is rotated about its `up`, from +Z towards +X. light_rotation: the same
-        rotation for the sky and the directional lights. environment_intensity: factor of the sky's radiance. exposure:
-        stops by which pictures are displayed brighter, -64 to 64; "auto": an exposure that suits the scene's light, 0
-        for most scenes. texture_memory: the largest number of bytes for textures. expected_samples: the approximate
-        number of samples of all pixels of all pictures together; if it is small, kernels are used that compile faster
-        and trace slower, with the same bits; None: a large number. The other arguments are those of a Caster. Raises
-        UsageError, InputError, DeviceError, RunError, Cancelled."""
+        Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
+        If this view frames the scene, the light that is added and the ground stand on its `up`. light: the light that
+        is added to a scene without light: "auto", "studio", "headlight", "none" or "soft". The soft light is the studio
+        with soft shadows of its lamps and its sky, and with a ground. ground: True if a ground under the scene shows
+        its shadow, False if not; None: only with soft light. background: the background, as in `promin render
+        --background`. Three sRGB numbers from 0 to 1, a name such as "white", or "#80a0ff" are a colour that pictures
+        show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone mapped. "environment" shows the environment
+        that lights the scene. None: the scene's background, or a grey gradient. environment: the file of an
+        equirectangular panorama, which replaces the scene's sky. environment_rotation: degrees by which the sky is
+        rotated about its `up`, from +Z towards +X. light_rotation: the same rotation for the sky and the directional
+        lights. environment_intensity: factor of the sky's radiance. exposure: stops by which pictures are displayed
+        brighter, -64 to 64; "auto": an exposure that suits the scene's light, 0 for most scenes. texture_memory: the
+        largest number of bytes for textures. expected_samples: the approximate number of samples of all pixels of all
+        pictures together; if it is small, kernels are used that compile faster and trace slower, with the same bits;
+        None: a large number. The other arguments are those of a Caster. Raises UsageError, InputError, DeviceError,
+        RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
