@@ -15,6 +15,7 @@
 #include "oracle/normal_error.h"
 #include "oracle/samples.h"
 #include "oracle/sky_light.h"
+#include "oracle/smooth_lobe.h"
 #include "oracle/surface.h"
 #include "oracle/verdict.h"
 #include "scene/light_kinds.h"
@@ -134,44 +135,6 @@ Illumination illuminate_flat(const Light& light, const Vector& position, const s
   return {glm::normalize(to_point), strength, glm::length(to_point)};
 }
 
-/// The lobe of a metallic-roughness material from which directions to lights may be chosen.
-struct SmoothLobe {
-  Vector normal{0};
-  Vector to_eye{0};
-  Real alpha = 1;
-
-  Real cosine_to_eye() const { return std::max(glm::dot(to_eye, normal), 0x1p-10L); }
-
-  /// Returns the direction that the lobe's visible normal at a point of the unit square reflects to the eye.
-  Vector place(const std::array<Real, 2>& u) const {
-    const Vector helper = std::abs(normal.x) < 0.57L ? Vector(1, 0, 0) : Vector(0, 1, 0);
-    const Vector across = glm::normalize(glm::cross(normal, helper));
-    const Vector along = glm::cross(normal, across);
-    const Vector wide =
-        glm::normalize(Vector(alpha * glm::dot(to_eye, across), alpha * glm::dot(to_eye, along), cosine_to_eye()));
-    // A point of the cap of the unit sphere that the stretched eye's direction sees, by areas.
-    const auto [x, y] = place_on_disc(u);
-    const Real share = x * x + y * y;
-    const Real azimuth = std::atan2(y, x);
-    const Real height = 1 - share * (1 + wide.z);
-    const Real aside = std::sqrt(std::max(1 - height * height, Real(0)));
-    const Vector sum = Vector(aside * std::cos(azimuth), aside * std::sin(azimuth), height) + wide;
-    const Vector local = glm::normalize(Vector(alpha * sum.x, alpha * sum.y, std::max(sum.z, Real(0))));
-    const Vector half = local.x * across + local.y * along + local.z * normal;
-    return glm::reflect(-to_eye, half);
-  }
-  /// Returns the density of place() per steradian: D G1 / (4 N.V).
-  Real density(const Vector& direction) const {
-    const Vector sum = to_eye + direction;
-    if (glm::length(sum) < 0x1p-12L) return 0;
-    const Real v = cosine_to_eye();
-    const Real theta = 2 * std::asin(std::min(glm::distance(glm::normalize(sum), normal) / 2, Real(1)));
-    const Real tangent2 = 1 / (v * v) - 1;
-    const Real masking = 2 / (1 + std::sqrt(1 + alpha * alpha * tangent2));
-    return microfacet_density(theta, alpha) * masking / (4 * v);
-  }
-};
-
 /// Returns the light of one point of a ball or of a disc in the sky. The strength is the radiance divided by the
 /// density, for a light whose irradiance is the power of the light without size.
 Illumination illuminate_sized(const Light& light, const Vector& position, const std::array<Real, 2>& u,
@@ -234,6 +197,8 @@ Illumination illuminate(const Light& light, const Vector& position) {
 /// The largest number of surfaces that blend along a ray, and the smallest fraction of the light from behind for which
 /// a ray continues.
 constexpr uint32_t kMostLayers = 64;
+/// The first pair of dimensions that chooses a scattered ray's direction.
+constexpr uint32_t kFirstDirectionPair = 0x40000000;
 constexpr Real kLeastShareBehind = 1.0L / 1024;
 
 /// The smallest weight of a mirror ray that is traced if the environment can replace it.
@@ -348,6 +313,10 @@ struct Way {
   bool is_of_metal = false;
   /// The largest roughness of the mirrors.
   Real roughness = 0;
+  /// With Integrator::kPath: the fraction of the environment's light that the ray sees, and whether a diffuse surface
+  /// has scattered it.
+  Real environment_share = 1;
+  bool is_diffused = false;
   Cone cone;
   RayError error;
   /// With glass: the media that contain the ray, and the number of rays that its sample has followed.
@@ -367,8 +336,9 @@ class Tracer {
       : scene_(scene),
         has_lens_(has_lens),
         textures_(scene),
-        surroundings_(scene.environment, integrator == Integrator::kDirect),
+        surroundings_(scene.environment, integrator != Integrator::kWhitted),
         sky_light_(scene.environment),
+        scatters_(integrator == Integrator::kPath),
         has_glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const Material& m) { return glass_of(m).is_clear; })) {}
 
@@ -433,7 +403,10 @@ class Tracer {
     beyond = way.media;
     if (glass_of(*point.material).exists) {
       point.face = way.media.meet(*point.material, point.side < 0, color_of(way.weight), beyond);
+      // Straight rays see each face as from its thinner side.
+      if (way.is_diffused && point.face->from > point.face->to) std::swap(point.face->from, point.face->to);
     }
+    point.is_after_diffusion = way.is_diffused;
     point.slots = slots_of(*point.material);
     for (TextureSlot& slot : point.slots) {
       if (!textures_.shows(slot, point.on_triangle)) slot = {};
@@ -559,8 +532,9 @@ class Tracer {
                                            const Vector& direction) {
     const auto* material = std::get_if<MetallicRoughness>(&point.material->model);
     if (material == nullptr) return std::nullopt;
-    const Real roughness = material->clearcoat > 0 ? material->clearcoat_roughness * texels[kCoatRoughnessSlot].g
-                                                   : material->roughness * texels[kMetallicRoughnessSlot].g;
+    Real roughness = material->clearcoat > 0 ? material->clearcoat_roughness * texels[kCoatRoughnessSlot].g
+                                             : material->roughness * texels[kMetallicRoughnessSlot].g;
+    if (point.is_after_diffusion) roughness = std::max(roughness, kRoughnessAfterDiffusion);
     return SmoothLobe{point.normal, -direction, std::max(roughness * roughness, 0.002L)};
   }
 
@@ -690,6 +664,11 @@ class Tracer {
 
   /// Returns the radiance of a ray that hits nothing.
   Radiance beyond(const Ray& ray, const Way& way) const {
+    Radiance seen;
+    seen.add(Vector(way.environment_share), whole_beyond(ray, way));
+    return seen;
+  }
+  Radiance whole_beyond(const Ray& ray, const Way& way) const {
     const Environment& environment = scene_.environment;
     if (!way.is_mirrored && !(surroundings_.has_sky() && environment.shows_sky)) {
       return {Vector(environment.background)};
@@ -707,7 +686,8 @@ class Tracer {
     const Coverage coverage = coverage_of(*point.material, point.on_triangle);
     const Vector behind = way.weight * (1 - coverage.value);
     const bool goes_on = coverage.value < 1 && way.layers < kMostLayers && largest(behind) >= kLeastShareBehind;
-    const Radiance seen = has_glass_ && !goes_on
+    const Radiance seen = scatters_ ? trace_scattered(ray, hit, point, error, way, beyond, goes_on)
+                          : has_glass_ && !goes_on
                               ? trace_glass(ray, hit, point, error, way, beyond)
                               : trace_surface(ray, hit, point, error, way, goes_on ? 0 : way.bounces);
     if (!goes_on) return seen;
@@ -740,6 +720,61 @@ class Tracer {
     sum.add(response.mirror_weight, brought);
     sum.error += response.weight_error * largest(brought.color);
     return sum;
+  }
+
+  SlotTexels look_up_textures(const SurfacePoint& point) const {
+    SlotTexels texels;
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      texels[slot] = textures_.look_up(point.slots[slot], point.on_triangle).value;
+    }
+    return texels;
+  }
+
+  /// Returns the light of a point and of one ray in which it scatters light (Integrator::kPath). A point that blends
+  /// with the surface behind it scatters none.
+  Radiance trace_scattered(const Ray& ray, const Hit& hit, const SurfacePoint& point, const PointError& error,
+                           const Way& way, const Media& beyond, bool blends) const {
+    const Vector direction = glm::normalize(ray.direction);
+    const BoundedResponse response = respond_with_textures(point, direction, error, way);
+    const Vector left = blends ? Vector(1) : way.media.left_after(hit.t * glm::length(ray.direction));
+    Radiance sum = response.sent;
+    Radiance dimmed;
+    if (blends || way.bounces == 0) {
+      if (response.mirror_weight != Vector(0)) sum.add(response.instead);
+      dimmed.add(left, sum);
+      return dimmed;
+    }
+    const SlotTexels texels = look_up_textures(point);
+    const Scattered scattered = scatter(point, texels, direction, error, surroundings_,
+                                        sample_pair(way.sample, kFirstDirectionPair + way.step));
+    const bool is_of_body = scattered.lobe == kDiffuseLobe || scattered.lobe == kBehindLobe;
+    const bool is_beyond = scattered.lobe == kBehindLobe || scattered.lobe == kGlassLobe;
+    const Real outside = glm::dot(scattered.direction, point.geometric_normal);
+    if (scattered.weight == Vector(0) || (is_of_body && (is_beyond ? -outside : outside) <= 0)) {
+      dimmed.add(left, sum);
+      return dimmed;
+    }
+    Way here = way;
+    here.weight *= left;
+    // The state of the path is that of a mirror ray or of a refracted ray, in another direction.
+    BoundedResponse single = response;
+    single.mirror_weight = single.through = scattered.weight;
+    single.mirror_roughness = single.blur = 0;
+    single.is_deflected = response.is_deflected && !way.is_diffused;
+    Sent next = scattered.lobe == kGlassLobe ? send_beyond(ray, hit, point, error, here, single, beyond)
+                                             : send_mirrored(ray, hit, point, error, here, single);
+    next.ray.direction = scattered.direction;
+    if (is_of_body) {
+      next.ray.origin = is_beyond ? point.position - point.lift * point.geometric_normal
+                                  : point.shadow_position + point.lift * point.geometric_normal;
+      next.way.error.direction = error.normal + response.normal_error + 8 * kRoundoff;
+    }
+    next.way.is_diffused = way.is_diffused || is_of_body;
+    if (scattered.lobe != kGlassLobe || !way.is_diffused) next.way.environment_share = scattered.environment_share;
+    const Radiance brought = trace(next.ray, find(next.ray, next.way, {.passes_backs = true}), next.way);
+    sum.add(scattered.weight, brought);
+    dimmed.add(left, sum);
+    return dimmed;
   }
 
   /// A ray that continues from a point.
@@ -892,6 +927,7 @@ class Tracer {
   Textures textures_;
   Surroundings surroundings_;
   SkyLight sky_light_;
+  bool scatters_;
   bool has_glass_;
 };
 

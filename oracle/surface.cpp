@@ -9,6 +9,8 @@
 
 #include "oracle/distance.h"
 #include "oracle/lobe.h"
+#include "oracle/samples.h"
+#include "oracle/smooth_lobe.h"
 
 namespace promin::oracle {
 namespace {
@@ -127,6 +129,22 @@ Radiance bound_stretched(const Lobe& lobe, const GrainWays& ways, const GrainAlp
   return {color, sum};
 }
 
+/// The fractions of light that lobes send to the eye, by ScatteringLobe.
+using LobeWeights = std::array<Vector, kLobeCount>;
+
+/// Returns a direction whose density is its cosine to the normal divided by pi.
+Vector place_by_cosine(const Vector& normal, const std::array<Real, 2>& u) {
+  const auto [x, y] = place_on_disc(u);
+  const Vector helper = std::abs(normal.x) < 0.57L ? Vector(1, 0, 0) : Vector(0, 1, 0);
+  const Vector across = glm::normalize(glm::cross(normal, helper));
+  return x * across + y * glm::cross(normal, across) + std::sqrt(std::max(1 - x * x - y * y, Real(0))) * normal;
+}
+
+/// Returns the direction on the outer side of a surface, mirrored at it if necessary.
+Vector outward(const Vector& direction, const Vector& geometric_normal) {
+  return glm::dot(direction, geometric_normal) < 0 ? glm::reflect(direction, geometric_normal) : direction;
+}
+
 /// All data that a material model needs.
 struct Glimpse {
   const SurfacePoint& point;
@@ -184,6 +202,15 @@ class PhongSurface {
     return {share};
   }
 
+  LobeWeights lobes() const { return {diffuse_, Vector(0), reflection_, Vector(0), through_}; }
+  Scattered scatter(ScatteringLobe lobe, const std::array<Real, 2>& u) const {
+    if (lobe == kDiffuseLobe) return {lobe, place_by_cosine(normal_, u), diffuse_};
+    if (lobe == kGlassLobe) {
+      return {lobe, at_.point.is_after_diffusion ? at_.direction : refraction_.direction, through_, 1};
+    }
+    return {lobe, outward(glm::reflect(at_.direction, normal_), at_.point.geometric_normal), reflection_, 1};
+  }
+
   Response finish(const Radiance& sent) const {
     return {sent, reflection_, normal_, 0, {}, through_, refraction_, normal_, is_bent_, 0};
   }
@@ -210,6 +237,8 @@ class UnlitSurface {
   Radiance own() const { return {color_}; }
   static SkyWays sky_ways() { return {{}, {}, Vector(0, 1, 0), 0}; }
   Radiance contribution(const ArrivingLight&) const { return {}; }
+  static LobeWeights lobes() { return {}; }
+  static Scattered scatter(ScatteringLobe /*lobe*/, const std::array<Real, 2>& /*u*/) { return {}; }
   Response finish(const Radiance& sent) const {
     return {sent, Vector(0), Vector(0), 0, {}, Vector(0), {}, Vector(0), false, 0};
   }
@@ -239,6 +268,15 @@ MetallicRoughness with_textures(MetallicRoughness material, const SlotTexels& te
       static_cast<float>(std::lerp(Real(material.iridescence_thickness_minimum),
                                    Real(material.iridescence_thickness_maximum), texels[kIridescenceThicknessSlot].g));
   scale(material.anisotropy, texels[kAnisotropySlot].b);
+  return material;
+}
+
+/// Returns the material as rays see it after a diffuse surface.
+MetallicRoughness after_diffusion(MetallicRoughness material, const SurfacePoint& point) {
+  if (!point.is_after_diffusion) return material;
+  const auto least = static_cast<float>(kRoughnessAfterDiffusion);
+  material.roughness = std::max(material.roughness, least);
+  material.clearcoat_roughness = std::max(material.clearcoat_roughness, least);
   return material;
 }
 
@@ -299,7 +337,7 @@ std::optional<Grain> find_grain(const MetallicRoughness& material, const Glimpse
 class MetallicRoughnessSurface {
  public:
   MetallicRoughnessSurface(const MetallicRoughness& material, const Glimpse& at)
-      : material_(with_textures(material, at.texels)),
+      : material_(after_diffusion(with_textures(material, at.texels), at.point)),
         at_(at),
         normal_(bend_normal(at.point, kNormalSlot, at.texels[kNormalSlot], material.normal_scale, at.direction)),
         coat_normal_(bend_normal(at.point, kCoatNormalSlot, at.texels[kCoatNormalSlot], material.clearcoat_normal_scale,
@@ -386,6 +424,41 @@ class MetallicRoughnessSurface {
     return coated;
   }
 
+  LobeWeights lobes() const {
+    const Real below = 1 - coat_.weight();
+    return {below * (albedo() + sheen_.reflectance()), below * sheen_.left() * albedo_from_behind(),
+            below * reflectance(), Vector(coat_.weight() * coat_.reflectance()), finish({}).through};
+  }
+  Scattered scatter(ScatteringLobe lobe, const std::array<Real, 2>& u) const {
+    if (lobe == kGlassLobe) return scatter_through_glass(u);
+    if (lobe == kBehindLobe) return {lobe, place_by_cosine(-normal_, u), lobes()[kBehindLobe]};
+    if (lobe == kDiffuseLobe) {
+      const Vector direction = place_by_cosine(normal_, u);
+      const Real cosine = glm::dot(normal_, direction);
+      Vector sum = albedo();
+      if (sheen_.exists()) {
+        sum = sheen_.left(cosine) * sum +
+              sheen_.highlight(angles_of(normal_, at_.to_eye(), direction)) * (std::numbers::pi_v<Real> / cosine);
+      }
+      return {lobe, direction, (1 - coat_.weight()) * sum};
+    }
+    const bool is_of_coat = lobe == kCoatLobe;
+    const Vector& normal = is_of_coat ? coat_normal_ : normal_;
+    const Real roughness = is_of_coat ? material_.clearcoat_roughness : material_.roughness;
+    const Real share = is_of_coat ? coat_.sharpness() : sharpness_below();
+    if (roughness * roughness <= 0.002L) {
+      return {lobe, outward(glm::reflect(at_.direction, normal), at_.point.geometric_normal), lobes()[lobe], share};
+    }
+    const SmoothLobe facets{normal, at_.to_eye(), roughness * roughness};
+    const Vector direction = facets.place(u);
+    const Real cosine = glm::dot(normal, direction);
+    if (!(cosine > 0)) return {lobe, direction, Vector(0), share};
+    const LobeAngles at = angles_of(normal, at_.to_eye(), direction);
+    const Vector sent = is_of_coat ? Vector(coat_.weight() * coat_.highlight(at))
+                                   : (1 - coat_.weight()) * sheen_.left(cosine) * lobe_.highlight(at);
+    return {lobe, outward(direction, at_.point.geometric_normal), sent / facets.density(direction), share};
+  }
+
   Response finish(const Radiance& sent) const {
     Response response;
     response.sent = sent;
@@ -421,6 +494,26 @@ class MetallicRoughnessSurface {
     return bound_stretched(lobe_, {grain_->local(at_.to_eye()), grain_->local(arriving.to_light)}, grain_->alphas,
                            error);
   }
+  /// Returns the light through glass: through a facet, if the glass is rough and the facet does not reflect totally.
+  Scattered scatter_through_glass(const std::array<Real, 2>& u) const {
+    const Response response = finish({});
+    Scattered through{kGlassLobe, at_.direction, response.through, 1};
+    if (at_.point.is_after_diffusion) return through;
+    through.direction = refraction_.direction;
+    const Real alpha = response.is_deflected ? response.blur * response.blur : Real(0);
+    if (alpha <= 0.002L) return through;
+    const Vector facet = SmoothLobe{normal_, at_.to_eye(), alpha}.facet(u);
+    Vector direction = glm::reflect(glm::reflect(at_.direction, facet), normal_);
+    if (!at_.point.face->is_thin) {
+      const Real ratio = at_.point.face->from / at_.point.face->to;
+      const Vector along = ratio * (at_.direction - glm::dot(at_.direction, facet) * facet);
+      const Real sine2 = glm::dot(along, along);
+      if (sine2 >= 1) return through;
+      direction = along - std::sqrt(1 - sine2) * facet;
+    }
+    if (glm::dot(direction, at_.point.geometric_normal) < 0) through.direction = direction;
+    return through;
+  }
   /// Sets the face. Returns the cosine on its thinner side, which the lobe uses.
   Real meet_face() {
     if (grain_) material_.roughness = static_cast<float>(grain_->alphas.mean_roughness());
@@ -430,7 +523,7 @@ class MetallicRoughnessSurface {
     refraction_ = refract(at_.direction, normal_, at_.point.geometric_normal, face);
     material_ = beside(material_, face, refraction_.is_total);
     if (!refraction_.is_total) share_ = material_.transmission;
-    if (face.is_thin || face.from == face.to) return seen;
+    if (face.is_thin || face.from == face.to || at_.point.is_after_diffusion) return seen;
     return face.from <= face.to ? refraction_.cosine : refraction_.cosine_beyond;
   }
   /// The fraction of light that is scattered and not transmitted: albedo() to this side, and the next function for
@@ -553,6 +646,30 @@ SkyWays sky_ways(const SurfacePoint& point, const SlotTexels& texels, const Vect
                  const Surroundings& surroundings) {
   const Glimpse at{point, texels, direction, error, surroundings};
   return std::visit([&](const auto& model) { return make_surface(model, at).sky_ways(); }, point.material->model);
+}
+
+Scattered scatter(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
+                  const Surroundings& surroundings, const std::array<Real, 2>& u) {
+  const Glimpse at{point, texels, direction, error, surroundings};
+  return std::visit(
+      [&](const auto& model) -> Scattered {
+        const auto surface = make_surface(model, at);
+        const LobeWeights lobes = surface.lobes();
+        Real sum = 0;
+        for (const Vector& lobe : lobes) sum += largest(lobe);
+        Real before = 0;
+        for (size_t i = 0; i < kLobeCount; ++i) {
+          const Real share = sum > 0 ? largest(lobes[i]) / sum : Real(0);
+          if (share > 0 && u[0] < before + share) {
+            Scattered scattered = surface.scatter(ScatteringLobe(i), {(u[0] - before) / share, u[1]});
+            scattered.weight /= share;
+            return scattered;
+          }
+          before += share;
+        }
+        return {};
+      },
+      point.material->model);
 }
 
 Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,

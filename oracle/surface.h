@@ -60,6 +60,9 @@ enum Slot : size_t {
 using Slots = std::array<TextureSlot, kSlotCount>;
 Slots slots_of(const Material& material);
 
+/// The roughness that surfaces have at least after a diffuse one.
+constexpr Real kRoughnessAfterDiffusion = static_cast<Real>(0.55F);
+
 /// A hit with the data for shading. All normals are unit vectors and face the ray.
 struct SurfacePoint {
   Vector position{0};
@@ -80,6 +83,8 @@ struct SurfacePoint {
   TrianglePoint on_triangle;
   /// The material's texture slots; empty if no texture is shown.
   Slots slots;
+  /// True if a diffuse surface has scattered the ray. The surface is then rough, and its glass does not bend rays.
+  bool is_after_diffusion = false;
 };
 
 /// The values of all textures at a point; 1 for a missing texture.
@@ -139,12 +144,29 @@ struct Response {
   Real blur = 0;
 };
 
+/// The parts of a surface that scatter light to the eye, in the order in which samples choose them.
+enum ScatteringLobe : size_t { kDiffuseLobe, kBehindLobe, kMirrorLobe, kCoatLobe, kGlassLobe, kLobeCount };
+
+/// A direction in which a surface scatters a path.
+struct Scattered {
+  ScatteringLobe lobe = kDiffuseLobe;
+  Vector direction{0};
+  /// The light that the lobe sends to the eye, divided by the density of the direction and the chance of the lobe.
+  Vector weight{0};
+  /// The fraction of the environment's light that the path receives. The rest is that of a source.
+  Real environment_share = 0;
+};
+
 /// Returns the normal that a normal texture's texel describes, seen along `direction`. It rotates the point's normal in
 /// the frame of its tangent, if it has one.
 Vector bend_normal(const SurfacePoint& point, Slot slot, const Texel& texel, Real scale, const Vector& direction);
 
 SkyWays sky_ways(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
                  const Surroundings& surroundings);
+
+/// Returns the direction that a point of the unit square chooses.
+Scattered scatter(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,
+                  const Surroundings& surroundings, const std::array<Real, 2>& u);
 
 /// Returns the response for a ray along the unit vector `direction`.
 Response respond(const SurfacePoint& point, const SlotTexels& texels, const Vector& direction, const PointError& error,

@@ -38,7 +38,7 @@ struct SceneConstants {
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;
   uint32_t light_count = 0;
-  /// The number of sources with Integrator::kDirect: the lights, and the environment if it gives light.
+  /// The number of sources with Integrator::kDirect or kPath: the lights, and the environment if it gives light.
   uint32_t source_count = 0;
   vec3 ambient{0.0F};
   vec3 background{0.0F};

@@ -38,7 +38,8 @@ std::span<const std::string_view> depth_kind_names() {
 }
 
 std::span<const std::string_view> integrator_names() {
-  static constexpr std::array kNames = {std::string_view("whitted"), std::string_view("direct")};
+  static constexpr std::array kNames = {std::string_view("whitted"), std::string_view("direct"),
+                                        std::string_view("path")};
   return kNames;
 }
 

@@ -12,7 +12,7 @@ namespace promin {
 
 /// A light's contribution at a hit point.
 struct ExplainedSource {
-  /// The value of `light` for the light of the environment, with Integrator::kDirect.
+  /// The value of `light` for the light of the environment, with Integrator::kDirect and kPath.
   static constexpr uint32_t kSky = 0xFFFFFFFF;
 
   /// Index into Scene::lights, or kSky.

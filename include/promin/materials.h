@@ -149,9 +149,9 @@ struct Unlit {
   /// Texture whose values multiply `color`.
   TextureSlot color_texture = {};
   /// True if the surface shows only the shadows on it: what is behind it, multiplied by the fraction of light that
-  /// arrives. Only light from infinity counts: directional lights, and the environment with Integrator::kDirect.
-  /// `color` is then the light that arrives without shadows: the irradiance divided by pi. In pictures with alpha, the
-  /// alpha of the surface is the fraction of light that is missing.
+  /// arrives. Only light from infinity counts: directional lights, and the environment with Integrator::kDirect or
+  /// kPath. `color` is then the light that arrives without shadows: the irradiance divided by pi. In pictures with
+  /// alpha, the alpha of the surface is the fraction of light that is missing.
   bool catches_shadows = false;
 };
 

@@ -25,8 +25,9 @@ struct PixelWindow {
 
 /// The method that computes the light of a picture. kWhitted is Whitted's: lights cast shadows, and the light of the
 /// environment reaches every point. With kDirect objects also block the light of the environment (docs/model.md, "Skies
-/// with shadows").
-enum class Integrator : uint32_t { kWhitted, kDirect };
+/// with shadows"). With kPath surfaces also scatter light to other surfaces, up to View::max_depth times
+/// (docs/model.md, "Scattered light").
+enum class Integrator : uint32_t { kWhitted, kDirect, kPath };
 
 /// Returns the names to display, indexed by Integrator. The first name is "whitted".
 PROMIN_EXPORT std::span<const std::string_view> integrator_names();

@@ -36,6 +36,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #define load_sum(record) load_record(record)
 #include "picture/path.glsl"
 #include "picture/tree.glsl"
+#include "picture/scatter.glsl"
 #include "shared/group_rows.glsl"
 #include "picture/camera.glsl"
 #include "shared/loop_check.glsl"
@@ -321,7 +322,11 @@ uint put_path(Path path) {
   pixels[record_of_weight(number, 0u)].xyz = floatBitsToUint(path.weight);
   pixels[record + RECORD_RADIANCE].xyz = floatBitsToUint(path.radiance);
   store_part_of_ray(path);
-  if (has(FEATURE_SAMPLED_LIGHT)) pixels[record + RECORD_SAMPLE].xy = uvec2(sample_key, sample_number);
+  if (has(FEATURE_SCATTERING)) {
+    store_scattering(number);
+  } else if (has(FEATURE_SAMPLED_LIGHT)) {
+    pixels[record + RECORD_SAMPLE].xy = uvec2(sample_key, sample_number);
+  }
   words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
   words[path_list(turn) + number] = number;
   return number;
@@ -392,6 +397,16 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on
     uint number = put_path(path);
     if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
     ++pass_count;
+  } else if (has(FEATURE_SCATTERING)) {
+    if (!is_on_surface || !leads_on(point, 0u) || !scatter(path, point, 0u, false)) {
+      finish_path(path);
+      return;
+    }
+    uint number = put_path(path);
+    if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
+    bool is_refracted = has(FEATURE_GLASS) && path.kind == LOG_REFRACTION;
+    refraction_count += is_refracted ? 1u : 0u;
+    ray_count.z += is_refracted ? 0u : 1u;
   } else if (has(FEATURE_GLASS) && is_on_surface) {
     leave_glass(path, point);
   } else if (is_on_surface && leads_on(point, 0u) && bounce(path, point)) {
@@ -414,6 +429,8 @@ void leave_one_by_one() {
     bool is_on_surface = is_lit[0] && DEBUG_VIEW != DEBUG_VIEW_OCCLUSION;
     bool takes_part = is_inside[0];
     if (HAS_SAMPLE_POINTS != 0u) choose_sample(sample_ids[0], 0u);
+    environment_share = 1.0;
+    is_diffused = false;
     [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
       if (i != at) continue;
       path = paths[i];
@@ -436,7 +453,8 @@ void leave_one_by_one() {
 
 // glslang 12 writes an invalid module for three constants with ||.
 const uint LEAVES_ONE_BY_ONE =
-    FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_LIGHT_AOVS) | FEATURE_BIT(FEATURE_SHADOW_CATCHERS);
+    FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_LIGHT_AOVS) | FEATURE_BIT(FEATURE_SHADOW_CATCHERS) |
+    FEATURE_BIT(FEATURE_SCATTERING);
 
 void leave() {
   if (LEAVES_ONE_BY_ONE != 0u) {

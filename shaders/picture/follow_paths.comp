@@ -36,6 +36,7 @@ layout(local_size_x = BLOCK_SIZE * BLOCK_SIZE) in;
 #define load_sum(record) uintBitsToFloat(pixels[record])
 #include "picture/path.glsl"
 #include "picture/tree.glsl"
+#include "picture/scatter.glsl"
 #include "picture/turns.glsl"
 #include "picture/ray_bins.glsl"
 #include "shared/group_rows.glsl"
@@ -180,6 +181,20 @@ uint ask_ray(uint number, Path path) {
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
 
+// With FEATURE_SCATTERING: requests the ray in which the point scatters the path. If there is none, does the same as
+// ask_mirror.
+uint ask_scattered(uint number, inout Path path, ShadingPoint point, bool touches) {
+  bool goes_on =
+      leads_on(point, bounces_of(path)) && scatter(path, point, turn / turns_of_bounce() + 1u, touches);
+  if (has(FEATURE_GLASS)) store_glass(number, path, 0u, true);
+  if (!goes_on) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
+  bool is_refracted = has(FEATURE_GLASS) && path.kind == LOG_REFRACTION;
+  refraction_count += is_refracted ? 1u : 0u;
+  mirror_ray_count += is_refracted ? 0u : 1u;
+  store_scattering(number);
+  return ask_ray(number, path);
+}
+
 // Requests the path's mirror ray. If there is none, requests the turn after the shadow rays for which the path waits.
 uint ask_mirror(uint number, inout Path path, ShadingPoint point) {
   if (!leads_on(point, bounces_of(path)) || !bounce(path, point)) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
@@ -267,6 +282,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
     vec3 beyond = is_of_camera ? radiance_behind(ray.origin, normalize3(ray.direction), true)
                                : radiance_beyond(ray.origin, ray.direction, path.roughness);
+    if (has(FEATURE_SCATTERING)) beyond *= environment_share;
     if (has(FEATURE_UNLIT_SHARE) && is_of_camera) add_backdrop(path, beyond);
     add_radiance(path, beyond, 1.0);
     add_beyond(path, beyond);
@@ -300,6 +316,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
     vec3 behind = is_of_camera ? radiance_behind(ray.origin, path.direction, true)
                                : radiance_beyond(ray.origin, ray.direction, path.roughness);
+    if (has(FEATURE_SCATTERING)) behind *= environment_share;
     precise vec3 shown = path.weight * behind;
     if (catches_shadows(point)) path.weight = shown;
     store_vector(record_of_weight(number, turn), path.weight);
@@ -317,6 +334,9 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     end_path_log(path.radiance, coverage);
     if (has(FEATURE_GLASS)) store_vector(record_of_weight(number, turn), path.weight);
     if (has(FEATURE_BLENDING) && coverage < 1.0) return ask_through(number, path, ray, hit, coverage);
+    if (has(FEATURE_SCATTERING)) {
+      return ask_scattered(number, path, point, has(FEATURE_GLASS) && hit.t <= skipped_until);
+    }
     if (has(FEATURE_GLASS)) return ask_beyond(number, path, point, hit.t <= skipped_until);
     return ask_mirror(number, path, point);
   }
@@ -326,6 +346,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
 }
 
 void follow(uint number, bool has_ray, Ray ray, Hit hit) {
+  if (has(FEATURE_SCATTERING)) load_scattering(number);
   uint record = record_of_path(number);
   Path path;
   path.pixel = pixels[record + RECORD_ORIGIN].w;

@@ -86,7 +86,8 @@ void add_backdrop(Path path, vec3 seen) {
 }
 
 // True if rays of the stream belong to several parts. If not, all of them are mirror rays.
-const uint STREAM_HAS_PARTS = FEATURE_BIT(FEATURE_LIGHT_AOVS) & KEEPS_PROGRESS;
+const uint STREAM_HAS_PARTS =
+    FEATURE_BIT(FEATURE_LIGHT_AOVS) & (KEEPS_PROGRESS | FEATURE_BIT(FEATURE_SCATTERING));
 
 // Shift in w of PART_SEEN: the lower bits are the part of the current point; the bits from this one on are the part of
 // the path's ray.

@@ -83,8 +83,10 @@ void go_through(inout Path path, Ray ray, float t, uint order, float coverage) {
   ++path.layers;
 }
 
-// Returns whether the path continues with a mirror ray at the point. `bounce` is the number of this bounce.
+// Returns whether the path continues with a mirror ray at the point, or with a scattered one. `bounce` is the number of
+// this bounce.
 bool leads_on(ShadingPoint point, uint bounce) {
+  if (has(FEATURE_SCATTERING)) return bounce < most_bounces();
   return has(FEATURE_MIRRORS) && bounce < most_bounces() && max_abs(mirror_weight(point)) > 0.0;
 }
 

@@ -57,7 +57,8 @@ uint turn;
 uint records_of_path;
 const uint PATH_RECORDS = STREAM_PATH_RECORDS + STREAM_BEHIND_RECORDS * FEATURE_BIT(FEATURE_DIFFUSE_TRANSMISSION) +
                           STREAM_SAMPLE_RECORDS * FEATURE_BIT(FEATURE_SAMPLED_LIGHT);
-const uint RECORD_SAMPLE = PATH_RECORDS - 1u;  // x, y = the sample's key and number (samples.glsl)
+const uint RECORD_SAMPLE = PATH_RECORDS - 1u;  // x, y = the sample's key and number (samples.glsl); with
+                                               // FEATURE_SCATTERING: z, w = the state of scatter.glsl
 const uint SOURCE_RECORDS = STREAM_SOURCE_RECORDS + STREAM_SAMPLE_RECORDS * FEATURE_BIT(FEATURE_SAMPLED_LIGHT);
 void begin_stream() {
   first_record = stream.place.x;

@@ -80,12 +80,15 @@ float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint colo
   bool is_thin = (record.bits.x & GLASS_IS_THIN) != 0u;
   Face face;
   make_face(number, is_thin || !lets_through, lets_through && leaves, media, color, face);
+  // After a diffuse surface, rays run straight through glass, like shadow rays.
+  bool is_straight = has(FEATURE_SCATTERING) && least_roughness > 0.0;
+  if (is_straight) face = Face(min(face.from, face.to), max(face.from, face.to), face.beyond);
   vec3 normal = seen > 0.0 ? point.normal : point.geometric_normal;
   float cosine = clamp(-dot3(normal, direction), SMALLEST_NORMAL, 1.0);
   float k = cosine2_beyond(face, cosine);
   float beyond = sqrt(max(k, 0.0));
   bool is_total = !(k > 0.0);
-  bool is_bent = lets_through && !is_thin && face.from != face.to;
+  bool is_bent = lets_through && !is_thin && !is_straight && face.from != face.to;
   if (is_bent) {
     vec3 refracted;
     is_total = !refract_at(point, direction, face, refracted);

@@ -18,6 +18,10 @@ const float INVERSE_PI = 0.318309886;
 float lobe_share;
 float coat_share;
 
+// With FEATURE_SCATTERING: the least roughness of surfaces, which is not 0 after a diffuse surface. Glass then does not
+// bend rays.
+float least_roughness = 0.0;
+
 // Returns whether a source is the environment.
 bool is_of_sky(LightRecord light) { return LIGHT_KIND_COUNT == 0u || light.kind.x == LIGHT_SKY; }
 

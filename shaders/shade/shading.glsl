@@ -404,6 +404,17 @@ Sheen seen_sheen(Sheen sheen, float cosine) {
   return Sheen(sheen.color, sheen.roughness, load_sheen_share(max(cosine, LEAST_COSINE), sheen.roughness));
 }
 
+// Sets the roughness that surfaces have after a diffuse one (scatter.glsl).
+void roughen(inout ShadingPoint point) {
+  if (!has(FEATURE_METALLIC_ROUGHNESS) || model_of(point) != MATERIAL_METALLIC_ROUGHNESS) return;
+  MaterialRecord material = point.material;
+  material.c.x = max(material.c.x, least_roughness);
+  point.material = material;
+  Coat coat = point.coat;
+  coat.roughness = max(coat.roughness, least_roughness);
+  if (has(FEATURE_COATS)) point.coat = coat;
+}
+
 #include "shade/faces.glsl"
 
 // Makes the shading point of a hit. `direction` is the ray's unit direction, `cone_width` the width of its pixel's cone
@@ -449,6 +460,7 @@ void make_shading_point(Ray ray, vec3 direction, Hit hit, float cone_width, uvec
   if (has(FEATURE_TEXTURES) && (record.corners_material.w & SURFACE_HAS_UVS) != 0u) {
     apply_textures(point, p, record.corners_material, weights, surface.normal, is_flipped, direction, cone_width);
   }
+  if (has(FEATURE_SCATTERING)) roughen(point);
   float cosine = -dot3(point.normal, direction);
   if (has(FEATURE_ANISOTROPY)) stretch(point, direction);
   if (HAS_FACES) cosine = meet_face(point, direction, media, color, is_flipped);
@@ -505,20 +517,27 @@ float density_of_lobe(vec3 normal, float alpha, vec3 to_eye, vec3 direction) {
   return density;
 }
 
-// Returns a direction in which a lobe reflects light to the eye, for a point of the unit square: by visible normals
-// (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
-vec3 choose_from_lobe(vec3 normal, float alpha, vec3 to_eye, vec2 u) {
-  vec3 across;
-  vec3 along;
-  make_frame(normal, across, along);
-  precise vec3 stretched = vec3(alpha * dot3(to_eye, across), alpha * dot3(to_eye, along), max(dot3(to_eye, normal), LEAST_COSINE));
+// Returns the normal of a facet that the eye sees, for a point of the unit square (Dupuy and Benyoub, "Sampling Visible
+// GGX Normals with Spherical Caps", 2023). `across` and `along` are the directions of the two alphas.
+vec3 choose_facet(vec3 across, vec3 along, vec3 normal, vec2 alphas, vec3 to_eye, vec2 u) {
+  precise vec3 stretched = vec3(alphas.x * dot3(to_eye, across), alphas.y * dot3(to_eye, along),
+                                max(dot3(to_eye, normal), LEAST_COSINE));
   vec3 wide = normalize3(stretched);
   vec3 disc = point_on_disc(u);
   precise float z = (1.0 - disc.z) * (1.0 + wide.z) - wide.z;
   precise vec2 aside = disc.xy * sqrt(max((1.0 - z) * (1.0 + z), 0.0) / disc.z);
-  precise vec3 standard = vec3(alpha * (aside + wide.xy), max(z + wide.z, 0.0));
+  precise vec3 standard = vec3(alphas * (aside + wide.xy), max(z + wide.z, 0.0));
   vec3 local = normalize3(standard);
   precise vec3 h = local.x * across + (local.y * along + local.z * normal);
+  return h;
+}
+
+// Returns a direction in which a lobe reflects light to the eye, by visible normals.
+vec3 choose_from_lobe(vec3 normal, float alpha, vec3 to_eye, vec2 u) {
+  vec3 across;
+  vec3 along;
+  make_frame(normal, across, along);
+  vec3 h = choose_facet(across, along, normal, vec2(alpha), to_eye, u);
   precise vec3 direction = 2.0 * dot3(to_eye, h) * h - to_eye;
   return normalize3(direction);
 }

@@ -127,6 +127,12 @@ FAULTS = {
     "sky_lobes_left_out": {"shade/sky_light.glsl": [(r"density \+= shares\.material[^;]*;", ";")]},
     "sky_squares_swapped": {"shade/sky_light.glsl": [(r"\(is_right \? 1u : 0u\)", "(is_right ? 0u : 1u)")]},
     "sky_horizon_hard": {"shade/sky_light.glsl": [(r"SHARE_OF_WIDEST \* widest", "0.0"), (r"USUAL_SQUARE\)", "1e-9)")]},
+    # These are faults of scattered rays (tests/gpu/scattering_test.cpp).
+    "scattering_density_off": {"picture/scatter.glsl": [(r"= sum / width;", "= 1.02 * sum / width;")]},
+    "scattering_cosine_left_out": {"shade/sky_light.glsl": [(r"sqrt\(1\.0 - disc\.z\) \* normal", "(1.0 - disc.z) * normal")]},
+    "scattering_unshuffled": {"picture/scatter.glsl": [(r"FIRST_DIRECTION_PAIR \+ step", "FIRST_DIRECTION_PAIR")]},
+    "facets_unmasked": {"picture/scatter.glsl": [(r"l \* \(v \+ v_length\) / both", "1.0")]},
+    "roughness_unbounded": {"picture/scatter.glsl": [(r"is_diffused \? ROUGHNESS_AFTER_DIFFUSION : 0\.0", "0.0")]},
     "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},
     # These are faults of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},

@@ -11,6 +11,7 @@
 #include "device_scene/scrambled_points.h"
 #include "gpu/device_fixture.h"
 #include "gpu/faulty_shaders.h"
+#include "gpu/lit_scenes.h"
 #include "gpu/test_scenes.h"
 #include "gpu/ways_of_tracing.h"
 #include "oracle/compare_picture.h"
@@ -19,20 +20,6 @@
 
 namespace promin {
 namespace {
-
-Material make_clay(const vec3& color) {
-  Phong phong;
-  phong.ambient = phong.diffuse = color;
-  return {.name = "", .model = phong};
-}
-
-Material make_physical(const vec3& color, float metallic, float roughness) {
-  MetallicRoughness model;
-  model.base_color = color;
-  model.metallic = metallic;
-  model.roughness = roughness;
-  return {.name = "", .model = model};
-}
 
 /// A white panorama, a quarter of which is dark, with one bright texel.
 Panorama make_sunny_panorama(float sun) {
@@ -44,67 +31,6 @@ Panorama make_sunny_panorama(float sun) {
   }
   image->pixels[size_t{30} * 256 + 90] = vec3(sun);
   return {image};
-}
-
-/// A floor with balls of several materials: clay, a mirror, rough metal, and a coat. The floor is a rough dielectric.
-world::Scene make_lit_balls() {
-  world::Scene scene;
-  Material mirror = make_clay(vec3(0.1F));
-  std::get<Phong>(mirror.model).reflection = vec3(0.7F);
-  Material coated = make_physical(vec3(0.2F, 0.3F, 0.7F), 0.0F, 0.8F);
-  auto& coat = std::get<MetallicRoughness>(coated.model);
-  coat.clearcoat = 1.0F;
-  coat.clearcoat_roughness = 0.25F;
-  Material cloth = make_physical(vec3(0.4F, 0.1F, 0.1F), 0.0F, 0.9F);
-  auto& sheen = std::get<MetallicRoughness>(cloth.model);
-  sheen.sheen_color = vec3(0.6F, 0.5F, 0.9F);
-  sheen.sheen_roughness = 0.4F;
-  Material leaf = make_physical(vec3(0.3F, 0.6F, 0.2F), 0.0F, 0.6F);
-  auto& through = std::get<MetallicRoughness>(leaf.model);
-  through.diffuse_transmission = 0.5F;
-  through.diffuse_transmission_color = vec3(0.5F, 0.9F, 0.2F);
-  scene.materials = {make_physical(vec3(0.8F, 0.7F, 0.6F), 0.0F, 0.5F),
-                     make_clay(vec3(0.3F, 0.5F, 0.8F)),
-                     mirror,
-                     make_physical(vec3(0.9F, 0.7F, 0.4F), 1.0F, 0.3F),
-                     coated,
-                     cloth,
-                     leaf};
-  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
-  for (uint32_t i = 0; i < 6; ++i) {
-    const vec3 center(-1.4F + 1.4F * static_cast<float>(i % 3), 0.4F, i < 3 ? 0.3F : -0.9F);
-    scene.objects.push_back({"ball", world::Sphere{center, 0.4F + 0.03F * static_cast<float>(i)}, i + 1});
-  }
-  return scene;
-}
-
-View make_direct_view(uvec2 size = uvec2(32, 24)) {
-  View view;
-  view.size = size;
-  view.camera.eye = vec3(0.0F, 2.2F, 4.0F);
-  view.camera.look = glm::normalize(vec3(0.0F, -0.48F, -1.0F));
-  view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 1, 0)), view.camera.look));
-  view.max_depth = 2;
-  view.mode.integrator = Integrator::kDirect;
-  return view;
-}
-
-/// Returns a view that sees one point of the plane y = 0.
-View make_point_view(const vec3& point, float height = 0.2F) {
-  View view = make_direct_view(uvec2(8));
-  view.camera.eye = point + vec3(0.0F, height, 0.0F);
-  view.camera.look = vec3(0, -1, 0);
-  view.camera.up = vec3(0, 0, -1);
-  view.camera.yfov = 0.002F;
-  view.samples_per_pixel = 256;
-  return view;
-}
-
-world::Scene make_open_floor(const vec3& albedo = vec3(1.0F)) {
-  world::Scene scene;
-  scene.materials = {make_clay(albedo)};
-  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}};
-  return scene;
 }
 
 class SkyLightTest : public test::DeviceTest {
@@ -132,34 +58,34 @@ class SkyLightTest : public test::DeviceTest {
 };
 
 TEST_F(SkyLightTest, EachSampleOfAmbientLightIsTheOracles) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   scene.environment.ambient = vec3(0.9F, 0.7F, 0.5F);
-  expect_samples(scene, make_direct_view());
+  expect_samples(scene, test::make_direct_view());
 }
 
 TEST_F(SkyLightTest, EachSampleOfAGradientIsTheOracles) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   scene.environment.sky = GradientSky();
   scene.lights = {test::make_sun(vec3(-0.4F, -1.0F, -0.3F), 0.4F)};
   scene.lights[0].angle = 0.35F;
-  expect_samples(scene, make_direct_view());
+  expect_samples(scene, test::make_direct_view());
 }
 
 TEST_F(SkyLightTest, EachSampleOfAStudioIsTheOracles) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   scene.environment.sky = Studio{0.3F};
   scene.environment.rotation = 0.5F;
   scene.environment.intensity = 0.8F;
-  View view = make_direct_view();
+  View view = test::make_direct_view();
   view.camera.aperture_radius = 0.1F;
   view.camera.focus_distance = 4.0F;
   expect_samples(scene, view);
 }
 
 TEST_F(SkyLightTest, EachSampleOfASunnyPanoramaIsTheOracles) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   scene.environment.sky = make_sunny_panorama(300.0F);
-  expect_samples(scene, make_direct_view());
+  expect_samples(scene, test::make_direct_view());
 }
 
 // A density that is off by 2 % is seen, and so are other faults.
@@ -167,13 +93,13 @@ TEST_F(SkyLightTest, FaultsAreSeen) {
   for (const char* fault : test::cases_of<const char*>(
            {"sky_density_off", "dome_density_off", "sky_lobes_left_out", "sky_squares_swapped", "sky_horizon_hard"},
            1)) {
-    world::Scene scene = make_lit_balls();
+    world::Scene scene = test::make_lit_balls();
     if (std::string(fault).starts_with("dome")) {
       scene.environment.ambient = vec3(1.0F);
     } else {
       scene.environment.sky = Studio{};
     }
-    const View view = make_direct_view();
+    const View view = test::make_direct_view();
     const test::FaultyShaders faulty(fault);
     TunedRendererOptions options;
     options.shaders = faulty.shaders();
@@ -209,9 +135,9 @@ TEST_F(SkyLightTest, DensitiesIntegrateToOne) {
 
 // A floor under light of one colour from everywhere has its albedo times that colour, in each sample.
 TEST_F(SkyLightTest, ADomeOfOneColourHasNoNoise) {
-  world::Scene scene = make_open_floor(vec3(0.5F, 0.25F, 1.0F));
+  world::Scene scene = test::make_open_floor(vec3(0.5F, 0.25F, 1.0F));
   scene.environment.ambient = vec3(0.8F, 0.6F, 1.0F);
-  View view = make_point_view(vec3(0.0F));
+  View view = test::make_point_view(vec3(0.0F));
   view.samples_per_pixel = 1;
   for (const vec3& pixel : renderer_of(scene).render(view).image.pixels) {
     EXPECT_NEAR(pixel.x, 0.4F, 1e-6F);
@@ -226,7 +152,7 @@ TEST_F(SkyLightTest, UniformSkiesLightConvexBodiesAsWithoutShadows) {
   scene.objects = {{"ball", world::Sphere{vec3(0.0F), 1.0F}, 0}};
   GradientSky sky;
   sky.top = sky.horizon = sky.bottom = vec3(1.0F);
-  View view = make_direct_view(uvec2(16));
+  View view = test::make_direct_view(uvec2(16));
   view.camera.eye = vec3(0, 0, 4);
   view.camera.look = vec3(0, 0, -1);
   view.camera.up = vec3(0, 1, 0);
@@ -241,7 +167,7 @@ TEST_F(SkyLightTest, UniformSkiesLightConvexBodiesAsWithoutShadows) {
     }
     for (const float metallic : {0.0F, 1.0F}) {
       for (const float roughness : {0.0F, 0.25F, 0.5F, 1.0F}) {
-        scene.materials = {make_physical(vec3(1.0F), metallic, roughness)};
+        scene.materials = {test::make_physical(vec3(1.0F), metallic, roughness)};
         view.mode.integrator = Integrator::kDirect;
         const double soft = mean_of(scene, view).x;
         view.mode.integrator = Integrator::kWhitted;
@@ -254,12 +180,12 @@ TEST_F(SkyLightTest, UniformSkiesLightConvexBodiesAsWithoutShadows) {
 // The floor beside a long wall sees (1 + cos a) / 2 of a uniform sky, where a is the elevation of the wall's upper
 // edge. Below a disc it sees 1 - r^2 / (r^2 + h^2).
 TEST_F(SkyLightTest, OcclusionHasItsClosedForm) {
-  world::Scene scene = make_open_floor();
+  world::Scene scene = test::make_open_floor();
   scene.environment.ambient = vec3(1.0F);
   scene.objects.push_back({"wall", world::Box{vec3(-1.0F, 0.5F, 0.0F), vec3(1.0F, 0.5F, 400.0F)}, 0});
   for (const double distance : {0.1, 0.5, 2.0}) {
     const double elevation = std::atan2(1.0, distance);
-    const View view = make_point_view(vec3(static_cast<float>(distance), 0.0F, 0.0F));
+    const View view = test::make_point_view(vec3(static_cast<float>(distance), 0.0F, 0.0F));
     EXPECT_NEAR(mean_of(scene, view).x, 0.5 * (1.0 + std::cos(elevation)), 0.002) << distance;
   }
   world::Cylinder disc;
@@ -268,13 +194,13 @@ TEST_F(SkyLightTest, OcclusionHasItsClosedForm) {
   disc.half_height = 1e-3F;
   disc.radius = 0.8F;
   scene.objects[1] = {"disc", disc, 0};
-  EXPECT_NEAR(mean_of(scene, make_point_view(vec3(0.0F))).x, 1.0 - 0.64 / (0.64 + 0.999 * 0.999), 0.002);
+  EXPECT_NEAR(mean_of(scene, test::make_point_view(vec3(0.0F))).x, 1.0 - 0.64 / (0.64 + 0.999 * 0.999), 0.002);
 }
 
 // A floor under a sky has the integral of the radiance times the cosine.
 TEST_F(SkyLightTest, FloorsHaveTheSkysIrradiance) {
   for (const float sun : {0.0F, 300.0F, 60000.0F}) {
-    world::Scene scene = make_open_floor();
+    world::Scene scene = test::make_open_floor();
     scene.environment.sky = make_sunny_panorama(sun);
     const oracle::SkyLight sky(scene.environment);
     constexpr int kSide = 1024;
@@ -289,7 +215,7 @@ TEST_F(SkyLightTest, FloorsHaveTheSkysIrradiance) {
       }
     }
     const dvec3 expected = sum / (4.0 * kSide * kSide);
-    const dvec3 got = mean_of(scene, make_point_view(vec3(0.0F)));
+    const dvec3 got = mean_of(scene, test::make_point_view(vec3(0.0F)));
     // The interpolated radiance of a single texel varies within its square, which is noise.
     const double noise = sun > 1000.0F ? 0.01 : 0.004;
     EXPECT_NEAR(got.x / expected.x, 1.0, noise) << sun;
@@ -299,9 +225,9 @@ TEST_F(SkyLightTest, FloorsHaveTheSkysIrradiance) {
 
 // A sky without light, a dark one with a single texel of 10^5, and a very dark one give finite pictures.
 TEST_F(SkyLightTest, ExtremeSkiesGiveFinitePictures) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   Renderer renderer = renderer_of(scene);
-  View view = make_direct_view();
+  View view = test::make_direct_view();
   const auto image = std::make_shared<Image>();
   image->size = uvec2(64, 32);
   image->pixels.assign(size_t{64} * 32, vec3(0.0F));
@@ -321,9 +247,9 @@ TEST_F(SkyLightTest, ExtremeSkiesGiveFinitePictures) {
 }
 
 TEST_F(SkyLightTest, EveryWayOfTracingHasTheSameBits) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   scene.environment.sky = Studio{};
-  View view = make_direct_view();
+  View view = test::make_direct_view();
   view.samples_per_pixel = 3;
   const Image expected = renderer_of(scene).render(view).image;
   for (const TunedRendererOptions& way : test::ways_of_tracing()) {
@@ -341,9 +267,9 @@ TEST_F(SkyLightTest, EveryWayOfTracingHasTheSameBits) {
 
 // A renderer switches between both integrators, and lights and environments may change in between.
 TEST_F(SkyLightTest, IntegratorsAndEnvironmentsCanChange) {
-  world::Scene scene = make_lit_balls();
+  world::Scene scene = test::make_lit_balls();
   scene.environment.sky = Studio{};
-  View view = make_direct_view();
+  View view = test::make_direct_view();
   Renderer renderer = renderer_of(scene);
   const Image soft = renderer.render(view).image;
   view.mode.integrator = Integrator::kWhitted;

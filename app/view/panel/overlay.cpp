@@ -126,12 +126,13 @@ void choose_lights(const Scene& scene, std::vector<uint32_t>& lights_off) {
   }
 }
 
-void choose_debug_view(DebugView& view) {
-  const auto names = debug_view_names();
-  if (!ImGui::BeginCombo("shading", std::string(names[static_cast<size_t>(view)]).c_str())) return;
+/// Shows a list from which one of an enumeration's values is chosen.
+template <typename Kind>
+void choose_kind(const char* label, std::span<const std::string_view> names, Kind& kind) {
+  if (!ImGui::BeginCombo(label, std::string(names[static_cast<size_t>(kind)]).c_str())) return;
   for (size_t i = 0; i < names.size(); ++i) {
-    const auto candidate = static_cast<DebugView>(i);
-    if (ImGui::Selectable(std::string(names[i]).c_str(), candidate == view)) view = candidate;
+    const auto candidate = static_cast<Kind>(i);
+    if (ImGui::Selectable(std::string(names[i]).c_str(), candidate == kind)) kind = candidate;
   }
   ImGui::EndCombo();
 }
@@ -162,15 +163,12 @@ void show_switches(const OverlayContent& content, Switches& switches) {
   ImGui::Checkbox("mirrors", &switches.has_mirrors);
   ImGui::SameLine();
   ImGui::Checkbox("pause", &switches.is_paused);
-  bool is_direct = switches.integrator == Integrator::kDirect;
-  if (ImGui::Checkbox("shadows of the sky", &is_direct)) {
-    switches.integrator = is_direct ? Integrator::kDirect : Integrator::kWhitted;
-  }
+  choose_kind("integrator", integrator_names(), switches.integrator);
   auto depth = static_cast<int>(switches.max_depth);
   if (ImGui::SliderInt("mirrors in mirrors", &depth, 0, 20)) {
     switches.max_depth = static_cast<uint32_t>(std::max(0, depth));
   }
-  choose_debug_view(switches.debug_view);
+  choose_kind("shading", debug_view_names(), switches.debug_view);
   choose_exposure(content, switches.exposure_ev);
   choose_background(content, switches.surroundings.background);
   if (ImGui::TreeNode("lights")) {

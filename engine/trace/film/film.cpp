@@ -276,7 +276,7 @@ uint64_t Film::bytes_of_stream(uint32_t pixel_count) const {
 }
 
 bool Film::has_stream() const {
-  return features_.has_any(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING);
+  return features_.has_any(layout::FEATURE_MIRRORS | layout::FEATURE_BLENDING | layout::FEATURE_SCATTERING);
 }
 
 bool Film::fetches_film_texels() const {

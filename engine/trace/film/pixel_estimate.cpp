@@ -18,10 +18,6 @@ namespace {
 constexpr double kEdgeError = 0.62;
 /// Factor for a range of colours that only samples of a neighbouring pixel have seen.
 constexpr double kNeighborShare = 0.5;
-/// Factor for pixels with many edges. The union of the 8 batches is better than their mean by the fourth root of their
-/// number, 1.68. Student's factor for 7 degrees of freedom is 2.37. The quotient is 1.4. The factor is larger, because
-/// pixels stop when their claim happens to be small.
-constexpr double kBatchError = 1.6;
 
 /// Returns N^(-3/4) for a power of two N.
 double falloff(uint32_t count) {
@@ -90,19 +86,20 @@ vec3 PixelEstimate::variance() const {
   return {variance(0), variance(1), variance(2)};
 }
 
-vec3 PixelEstimate::claim(const ColorRange& around, const vec3& spread) const {
+vec3 PixelEstimate::claim(const ColorRange& around, const vec3& spread, double batch_error) const {
   ColorRange wider = range_;
   wider.extend(around);
   const double edge = kEdgeError * falloff(count_);
   vec3 claim;
   for (int channel = 0; channel < 3; ++channel) {
     // The variance of few batches may happen to be small, so that of the first samples around also counts.
-    const double deviation = std::sqrt(std::max(variance(channel), static_cast<double>(spread[channel])));
+    const double deviation = std::max(batch_error * std::sqrt(variance(channel)),
+                                      kBatchError * std::sqrt(static_cast<double>(spread[channel])));
     const auto width = [&](const ColorRange& range) {
       return static_cast<double>(range.hi[channel]) - static_cast<double>(range.lo[channel]);
     };
-    claim[channel] = static_cast<float>(
-        std::max({kBatchError * deviation, edge * width(range_), kNeighborShare * edge * width(wider)}));
+    claim[channel] =
+        static_cast<float>(std::max({deviation, edge * width(range_), kNeighborShare * edge * width(wider)}));
   }
   return claim;
 }

@@ -63,6 +63,8 @@ Refinement::Refinement(const View& view, const PixelWindow& window, bool has_unl
       apron_(with_neighbors(window, view.size)),
       filter_(view),
       seed_(view.seed),
+      batch_error_(view.mode.integrator == Integrator::kPath ? PixelEstimate::kBatchErrorOfPaths
+                                                             : PixelEstimate::kBatchError),
       estimates_(area_of(apron_)),
       unlit_sums_(has_unlit ? area_of(apron_) : 0),
       shown_(has_unlit && target_.display ? area_of(apron_) : 0),
@@ -167,7 +169,7 @@ void Refinement::judge_stage() {
         const float share = static_cast<float>(target_.min_samples) / static_cast<float>(estimate.count());
         spread = share * mean_around(first_variances_, size, pixels_[i]);
       }
-      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]), spread);
+      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]), spread, batch_error_);
       errors_[*pixel] = judge_error(pixels_[i], claims_[*pixel]);
     }
   });

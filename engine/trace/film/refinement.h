@@ -109,6 +109,7 @@ class Refinement {
   PixelWindow apron_;
   FilterPlaces filter_;
   uint32_t seed_;
+  double batch_error_;
   /// The estimates, one for each pixel of the apron. Pixels outside the window have only their first samples.
   std::vector<PixelEstimate> estimates_;
   /// Sums for pictures with unlit surfaces, indexed by the pixels of the apron: sums of the samples' unlit colours and,

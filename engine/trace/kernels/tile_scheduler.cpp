@@ -13,6 +13,7 @@
 namespace promin {
 
 uint32_t refracted_rays(FeatureMask features) {
+  if (features.has_any(layout::FEATURE_SCATTERING)) return 0;
   if (features.has_any(layout::FEATURE_DISPERSION)) return layout::COLORS;
   return features.has_any(layout::FEATURE_GLASS) ? 1 : 0;
 }

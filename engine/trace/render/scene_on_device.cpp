@@ -44,7 +44,8 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const {
   FeatureMask features =
       more_features_ | picture_features(geometry_features_, material_features_, lights, environment, primitive_count_);
-  if (mode.integrator == Integrator::kDirect && mode.debug_view == DebugView::kNone) {
+  if (mode.integrator != Integrator::kWhitted && mode.debug_view == DebugView::kNone) {
+    if (mode.integrator == Integrator::kPath) features |= layout::FEATURE_SCATTERING;
     features |= layout::FEATURE_SKY_LIGHT | layout::FEATURE_SAMPLED_LIGHT;
     if (casts_shadows(geometry_features_, primitive_count_)) features |= layout::FEATURE_SHADOWS;
   }

@@ -248,14 +248,10 @@ vec3 contribution_with_sheen(ShadingPoint point, vec3 h, vec3 to_eye, float cosi
   return all;
 }
 
-// Returns a source's contribution to the layers under the coat, or to the whole material if it has no coat.
-vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
-  precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
-  precise vec3 sum = to_eye + to_light;
-  float size = length3(sum);
-  if (size < LEAST_HALF_VECTOR) return contribution;
-  precise vec3 h = sum / size;
-  precise float p = 1.0 - min(0.5 * size, 1.0);
+// Returns the reflectance of facets whose normals have this cosine to the eye, with the light that is reflected more
+// than once.
+vec3 reflectance_of_facets(ShadingPoint point, float cosine) {
+  precise float p = 1.0 - cosine;
   precise float p2 = p * p;
   precise float p5 = p2 * p2 * p;
   Lobe dielectric = dielectric_lobe(point);
@@ -264,6 +260,17 @@ vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, flo
   precise vec3 reflected =
       (1.0 - metallic) * dielectric.k * (dielectric.f0 + (dielectric.f90 - dielectric.f0) * p5) +
       metallic * metal.k * (metal.f0 + (metal.f90 - metal.f0) * p5);
+  return reflected;
+}
+
+// Returns a source's contribution to the layers under the coat, or to the whole material if it has no coat.
+vec3 contribution_below_coat(ShadingPoint point, vec3 to_eye, vec3 to_light, float cosine, LightRecord light) {
+  precise vec3 contribution = albedo_of(point) * INVERSE_PI * light.diffuse.xyz * cosine;
+  precise vec3 sum = to_eye + to_light;
+  float size = length3(sum);
+  if (size < LEAST_HALF_VECTOR) return contribution;
+  precise vec3 h = sum / size;
+  vec3 reflected = reflectance_of_facets(point, min(0.5 * size, 1.0));
   float scale;
   if (has(FEATURE_ANISOTROPY) && point.anisotropy.alphas.x > 0.0) {
     scale = anisotropic_scale(point.normal, point.anisotropy, h, to_eye, to_light, cosine);
