@@ -201,6 +201,7 @@ def test_soft_light_has_soft_shadows_and_a_ground(box: promin.Scene) -> None:
     assert soft.materials[-1].catches_shadows and soft.lights[-1].angle > 0.17  # type: ignore[attr-defined]
     assert (soft.render().rgb == soft.render(integrator="direct").rgb).all()
     assert (soft.render().rgb != soft.render(integrator="whitted").rgb).any()
+    assert soft.render(integrator="path").rgb.mean() > soft.render().rgb.mean()
     bare = promin.Renderer(box, light="soft", ground=False, view=view, aovs=("ambient_occlusion",))
     assert len(bare.materials) == len(soft.materials) - 1
     occlusion = bare.render().aovs["ambient_occlusion"]

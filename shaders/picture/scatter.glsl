@@ -9,7 +9,7 @@ float environment_share = 1.0;  // fraction of the environment's light that the 
                                 // rest is the light of a source
 bool is_diffused = false;       // true after a diffuse surface
 
-// The first of the pairs of dimensions that choose directions. Those of sources have smaller numbers.
+// The first of the pairs of dimensions that choose directions. The pairs of sources have smaller numbers.
 const uint FIRST_DIRECTION_PAIR = 0x40000000u;
 // The roughness that surfaces have at least after a diffuse one.
 const float ROUGHNESS_AFTER_DIFFUSION = 0.55;

@@ -426,6 +426,19 @@ TEST(RefinementTest, WhatAllWillTakeIsForetold) {
   EXPECT_EQ(refinement.foretell_total(), total);
 }
 
+// The batches of scattered paths count more, so pictures of them take more samples.
+TEST(RefinementTest, ClaimsOfScatteredPathsAreLarger) {
+  PixelEstimate estimate;
+  for (int i = 0; i < 8; ++i) estimate.add(vec3((i / 2) % 2 == 0 ? 0.0F : 1.0F));
+  const vec3 claim = estimate.claim(estimate.range(), vec3(0.0F), PixelEstimate::kBatchErrorOfPaths);
+  EXPECT_NEAR(claim.x, 2.0 * std::sqrt(1.0 / 12.0), 1e-6);
+  View view = make_refined_view(1.0F / 32.0F);
+  const PixelWindow window{uvec2(0), view.size};
+  const uint64_t samples = refine(view, wires, window).samples;
+  view.mode.integrator = Integrator::kPath;
+  EXPECT_GT(refine(view, wires, window).samples, samples);
+}
+
 // Where samples choose points of lights, a pixel does not stop because its own few batches happen to agree.
 TEST(RefinementTest, NoiseAroundAPixelCountsIfSamplesChoosePoints) {
   PixelEstimate calm;
