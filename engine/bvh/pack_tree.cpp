@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bvh/read_node.h"
 #include "core/parallel.h"
 
 namespace promin {
@@ -261,6 +262,38 @@ PackedTree pack_tree(const Bvh& bvh) {
   tree.nodes.resize(starts.back());
   for_each_index(open.size(), 0, [&](size_t i) { place_subtree(subtrees[i], open[i].target, starts[i], tree); });
   return tree;
+}
+
+double refit_tree(std::span<Node> nodes, std::span<const uint32_t> references, std::span<const Bounds> boxes) {
+  UnsetVector<Bounds> of_nodes;
+  of_nodes.resize(nodes.size());
+  double cost = 0.0;
+  // Children come after their parents.
+  for (size_t i = nodes.size(); i-- > 0;) {
+    std::array<Bounds, layout::NODE_WIDTH> of_children;
+    const uint32_t count = child_count(nodes[i]);
+    Bounds all;
+    for (uint32_t k = 0; k < count; ++k) {
+      const NodeChild child = child_of(nodes[i], k);
+      if (child.kind == ChildKind::kNode) {
+        of_children[k] = of_nodes[child.first];
+      } else {
+        for (const uint32_t primitive : references.subspan(child.first, child.count)) {
+          of_children[k].extend(boxes[primitive]);
+        }
+        cost += kTestCost * child.count * of_children[k].half_area();
+      }
+      all.extend(of_children[k]);
+    }
+    of_nodes[i] = all;
+    if (count == 0) continue;
+    const uvec4 children = nodes[i].children;
+    nodes[i] = make_node(std::span(of_children).first(count));
+    nodes[i].children = children;
+    cost += kNodeCost * all.half_area();
+  }
+  const double area = nodes.empty() || of_nodes[0].is_empty() ? 0.0 : of_nodes[0].half_area();
+  return area > 0.0 ? cost / area : cost;
 }
 
 }  // namespace promin

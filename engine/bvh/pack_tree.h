@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "bvh/builder.h"
 #include "core/unset_vector.h"
@@ -17,5 +18,11 @@ struct PackedTree {
   uint32_t stack_size = 1;
 };
 PackedTree pack_tree(const Bvh& bvh);
+
+/// Fits the boxes of a packed tree to new boxes of its primitives, which are not empty. The children stay. Each box
+/// then contains the boxes of all primitives below it, as those of pack_tree() do. Returns the expected cost of a
+/// random ray by the surface area heuristic. Its units are those of BvhStats::sah_cost, for nodes of up to four
+/// children.
+double refit_tree(std::span<layout::Node> nodes, std::span<const uint32_t> references, std::span<const Bounds> boxes);
 
 }  // namespace promin

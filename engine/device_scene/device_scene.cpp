@@ -83,6 +83,11 @@ constexpr uint64_t align(uint64_t offset, uint64_t alignment) {
   return divide_up(offset, alignment) * alignment;
 }
 
+/// Rounds the size of the stack up, so that scenes of about the same depth share pipelines.
+uint32_t round_stack(uint32_t entries) {
+  return divide_up(entries, 8U) * 8U;
+}
+
 template <typename... Parts>
 uint64_t total_bytes(const Parts&... parts) {
   return (std::as_bytes(std::span(parts)).size() + ...);
@@ -102,6 +107,32 @@ struct DeviceScene::PlacedTail {
   uint64_t end() const { return lights.end(); }
 };
 
+struct DeviceScene::PlacedHead {
+  Placed surfaces;
+  Placed normals;
+  Placed colors;
+  Placed uvs;
+  Placed tangents;
+  uint64_t end() const { return tangents.end(); }
+  std::array<Placed, 5> parts() const { return {surfaces, normals, colors, uvs, tangents}; }
+  std::array<uint64_t, 5> sizes() const {
+    std::array<uint64_t, 5> sizes;
+    std::ranges::transform(parts(), sizes.begin(), [](const Placed& placed) { return placed.bytes.size(); });
+    return sizes;
+  }
+};
+
+DeviceScene::PlacedHead DeviceScene::place_head(const PackedSurfaces& surfaces) {
+  const VertexRecords& vertices = surfaces.vertices;
+  PlacedHead head;
+  head.surfaces = place(surfaces.surfaces, 0);
+  head.normals = place(vertices.normals, head.surfaces.end());
+  head.colors = place(vertices.colors, head.normals.end());
+  head.uvs = place(vertices.uvs, head.colors.end());
+  head.tangents = place(vertices.tangents, head.uvs.end());
+  return head;
+}
+
 DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   PlacedTail placed;
   placed.materials = place(tail.materials->records, head_bytes_);
@@ -120,27 +151,20 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)))),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
-      // The size is rounded up, so that scenes of about the same depth share pipelines.
-      stack_size_((packed.stack_size + 7) / 8 * 8),
+      stack_size_(round_stack(packed.stack_size)),
       is_mostly_solids_(packed.solid_count > packed.bounded_count / 2) {
-  const VertexRecords& vertices = packed.surfaces.vertices;
-  const Placed surfaces = place(packed.surfaces.surfaces, 0);
-  const Placed normals = place(vertices.normals, surfaces.end());
-  const Placed colors = place(vertices.colors, normals.end());
-  const Placed uvs = place(vertices.uvs, colors.end());
-  const Placed tangents = place(vertices.tangents, uvs.end());
-  const Placed image_words = place(packed.surfaces.images.words, align(tangents.end(), kTexelViewAlignment));
-  constants_.first_index.z = normals.first_index;
-  constants_.first_index.w = colors.first_index;
-  constants_.first_texture = uvec4(uvs.first_index, tangents.first_index, 0, image_words.first_index);
+  const PlacedHead head = place_head(packed.surfaces);
+  head_sizes_ = head.sizes();
+  const Placed image_words = place(packed.surfaces.images.words, align(head.end(), kTexelViewAlignment));
+  constants_.first_index.z = head.normals.first_index;
+  constants_.first_index.w = head.colors.first_index;
+  constants_.first_texture = uvec4(head.uvs.first_index, head.tangents.first_index, 0, image_words.first_index);
   image_words_offset_ = image_words.offset;
   image_words_bytes_ = image_words.bytes.size();
   textures_.assign(shading.textures.begin(), shading.textures.end());
   images_ = packed.surfaces.images.images;
   head_bytes_ = image_words.end();
-  constants_.tree_bounds = packed.tree_bounds;
-  constants_.first_unbounded = packed.first_unbounded();
-  constants_.unbounded_count = packed.unbounded_count;
+  take_tree(packed);
   constants_.glass_solids = shading.glass_solids;
   take_colors(shading.environment);
   Tail tail{std::make_shared<const PackedMaterials>(pack_materials(shading.materials)),
@@ -148,7 +172,8 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
             pack_lights(shading.lights)};
   put_sky_light(tail, shading.environment);
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
-  for (const Placed& placed : {surfaces, normals, colors, uvs, tangents, image_words}) write(*shading_, placed);
+  for (const Placed& placed : head.parts()) write(*shading_, placed);
+  write(*shading_, image_words);
   write_tail(std::move(tail));
   uploads_.geometry = nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_;
 }
@@ -176,6 +201,64 @@ void DeviceScene::set_environment(const Environment& environment) {
     write_tail(std::move(tail));
   }
   take_colors(environment);
+}
+
+bool DeviceScene::reserve_nodes(uint64_t count, uint64_t kept) {
+  const uint64_t bytes = count * sizeof(layout::Node);
+  if (bytes <= nodes_.size_bytes()) return false;
+  gpu::Buffer larger(*device_, bytes, kStorageOrTexels);
+  if (kept > 0) larger.copy_from(nodes_, kept * sizeof(layout::Node));
+  vk::raii::BufferView texels = larger.make_texel_view();
+  node_texels_ = std::move(texels);
+  nodes_ = std::move(larger);
+  choose_texels();
+  return true;
+}
+
+bool DeviceScene::reserve_stack(uint32_t entries) {
+  if (entries <= stack_size_) return false;
+  stack_size_ = round_stack(entries);
+  return true;
+}
+
+bool DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper,
+                                  std::shared_ptr<const GlassSolids> glass_solids) {
+  constexpr uint64_t kNodeBytes = sizeof(layout::Node);
+  bool must_bind = reserve_nodes(upper.first_record + upper.records.size(), level.first_node());
+  must_bind = reserve_stack(upper.stack_size) || must_bind;
+  nodes_.write(std::as_bytes(std::span(&upper.root, 1)));
+  if (!upper.nodes.empty()) nodes_.write(std::as_bytes(std::span(upper.nodes)), level.first_node() * kNodeBytes);
+  if (!upper.records.empty()) nodes_.write(std::as_bytes(std::span(upper.records)), upper.first_record * kNodeBytes);
+  uploads_.moves += (1 + upper.nodes.size() + upper.records.size()) * kNodeBytes;
+  constants_.tree_bounds = center_and_radius(upper.bounds);
+  constants_.glass_solids = std::move(glass_solids);
+  return must_bind;
+}
+
+bool DeviceScene::has_space_for(const PackedScene& packed) const {
+  return packed.upper == nullptr && std::as_bytes(std::span(packed.primitives)).size() == primitives_.size_bytes() &&
+         place_head(packed.surfaces).sizes() == head_sizes_ &&
+         (packed.solid_count > packed.bounded_count / 2) == is_mostly_solids_;
+}
+
+bool DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids) {
+  const TreeView tree = packed.tree();
+  bool must_bind = reserve_nodes(tree.nodes.size(), 0);
+  must_bind = reserve_stack(packed.stack_size) || must_bind;
+  const PlacedHead head = place_head(packed.surfaces);
+  nodes_.write(std::as_bytes(tree.nodes));
+  primitives_.write(std::as_bytes(std::span(packed.primitives)));
+  for (const Placed& placed : head.parts()) write(*shading_, placed);
+  uploads_.geometry += tree.nodes.size_bytes() + primitives_.size_bytes() + head.end();
+  take_tree(packed);
+  constants_.glass_solids = std::move(glass_solids);
+  return must_bind;
+}
+
+void DeviceScene::take_tree(const PackedScene& packed) {
+  constants_.tree_bounds = packed.tree_bounds;
+  constants_.first_unbounded = packed.first_unbounded();
+  constants_.unbounded_count = packed.unbounded_count;
 }
 
 std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_tables_for(std::span<const Material> materials) const {
@@ -257,6 +340,10 @@ void DeviceScene::take_shading_buffer(gpu::Buffer buffer) {
   shading_texels_ = std::move(texels);
   image_texels_ = std::move(image_texels);
   shading_.emplace(std::move(buffer));
+  choose_texels();
+}
+
+void DeviceScene::choose_texels() {
   const bool holds_images = image_words_bytes_ / sizeof(uint32_t) <= device_->limits().maxTexelBufferElements;
   fetches_texels_ = holds_images && std::max({nodes_.size_bytes(), primitives_.size_bytes(), shading_->size_bytes()}) <=
                                         device_->profile().most_texel_bytes;

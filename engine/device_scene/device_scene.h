@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "device/buffer.h"
 #include "device/pipeline.h"
+#include "device_scene/pack_instances.h"
 #include "device_scene/pack_scene.h"
 #include "device_scene/pack_shading.h"
 #include "device_scene/scene_constants.h"
@@ -27,8 +29,8 @@ struct ShadingParts {
   std::shared_ptr<const GlassSolids> glass_solids = nullptr;
 };
 
-/// A scene in device memory. Tree, primitives and surfaces are permanent; materials, lights and environment can be
-/// replaced. The object keeps no reference to the PackedScene.
+/// A scene in device memory. Tree, primitives and surfaces are permanent, except for the upper level of a tree with
+/// instances; it, materials, lights and environment can be replaced. The object keeps no reference to the PackedScene.
 class DeviceScene {
  public:
   /// Uploads the scene. Scenes for casts need no shading data. Throws vk::SystemError, and RunError if a device limit
@@ -40,6 +42,16 @@ class DeviceScene {
   void set_materials(std::span<const Material> materials);
   void set_lights(std::span<const Light> lights);
   void set_environment(const Environment& environment);
+  /// Returns whether set_geometry() can replace the geometry by that of another pose: there is space for as many
+  /// primitives and vertices, and no instances.
+  bool has_space_for(const PackedScene& packed) const;
+  /// Replaces the geometry, for which there is space. The images stay. Returns true if kernels must be bound again, as
+  /// set_upper_level() does.
+  bool set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids);
+  /// Replaces the upper level after instances have moved. Returns true if the buffer of nodes or the size of the stack
+  /// has changed, so that kernels must be bound again.
+  bool set_upper_level(const UpperLevel& level, const UpperNodes& upper,
+                       std::shared_ptr<const GlassSolids> glass_solids);
 
   /// Returns the constants of pictures and casts that depend on the scene.
   const SceneConstants& constants() const { return constants_; }
@@ -60,17 +72,34 @@ class DeviceScene {
   /// Returns the buffers that shading reads, each as a storage buffer and as texels.
   std::vector<gpu::BoundBuffer> shading() const;
 
-  /// The number of bytes copied to the device so far: for geometry and surfaces, and for everything else. Tests use it
-  /// to check the cost of a change.
+  /// The number of bytes copied to the device so far: for geometry and surfaces, for the upper level after moves, and
+  /// for everything else. Tests use it to check the cost of a change.
   struct Uploads {
     uint64_t geometry = 0;
+    uint64_t moves = 0;
     uint64_t shading = 0;
+
+    Uploads operator+(const Uploads& other) const {
+      return {geometry + other.geometry, moves + other.moves, shading + other.shading};
+    }
   };
   const Uploads& uploads() const { return uploads_; }
 
  private:
   /// Stores the environment's colours without its sky, and whether the sky is visible.
   void take_colors(const Environment& environment);
+  /// The records at the head of the buffer of shading data, which belong to the geometry.
+  struct PlacedHead;
+  static PlacedHead place_head(const PackedSurfaces& surfaces);
+  /// Takes the constants of a tree and of the primitives beside it.
+  void take_tree(const PackedScene& packed);
+  /// Sets whether shaders read the whole scene as texels.
+  void choose_texels();
+  /// Ensures that the buffer of nodes has this number of nodes, of which the first `kept` stay. Returns true if the
+  /// buffer is another one.
+  bool reserve_nodes(uint64_t count, uint64_t kept);
+  /// Ensures that kernels have a stack of this number of entries. Returns true if it becomes larger.
+  bool reserve_stack(uint32_t entries);
   gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
   /// The replaceable parts, which lie behind the surfaces.
@@ -100,6 +129,8 @@ class DeviceScene {
   vk::raii::BufferView primitive_texels_;
   /// Size in bytes of surfaces and vertices, which are at the head of the buffer of shading data.
   uint64_t head_bytes_ = 0;
+  /// The sizes in bytes of the records at the head.
+  std::array<uint64_t, 5> head_sizes_{};
   std::optional<gpu::Buffer> shading_;
   vk::raii::BufferView shading_texels_{nullptr};
   /// The offset of the images' words in the buffer, and a view of these words.

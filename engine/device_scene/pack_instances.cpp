@@ -25,8 +25,13 @@ constexpr size_t kTrianglesPerBox = 16;
 /// The most subtrees of the scene's own tree that are leaves of the upper level.
 constexpr size_t kMostOwnSubtrees = 256;
 constexpr size_t kInstanceChunk = 256;
-/// Marks references of the upper level to instances while it is built.
+/// Marks references of the upper level to instances and subtrees while it is built.
 constexpr uint32_t kInstanceBit = CHILD_IS_INSTANCE & ~CHILD_IS_LEAF;
+/// Marks references to subtrees of the scene's own primitives. No instance has so large an index, because its records
+/// would not fit into the indices of nodes.
+constexpr uint32_t kOwnBit = (CHILD_INSTANCE_INDEX + 1) >> 1;
+/// The space for further nodes of the upper level, as a share of those that it has.
+constexpr uint32_t kSpareShare = 8;
 
 uint32_t word_of(float value) {
   return std::bit_cast<uint32_t>(value);
@@ -58,134 +63,57 @@ std::vector<uint32_t> find_top(const Bvh& bvh, size_t most) {
   return top;
 }
 
-/// Makes the binary tree of the upper level: each leaf has a leaf of the scene's own tree, or one instance.
-class UpperLevel {
- public:
-  UpperLevel(const TwoLevels& input, std::span<const Bounds> boxes, const BuildOptions& options)
-      : own_(input.own), boxes_(boxes.begin(), boxes.end()), instance_count_(boxes.size()) {
-    own_subtrees_ = find_top(own_, kMostOwnSubtrees);
-    for (const uint32_t node : own_subtrees_) boxes_.push_back(own_.nodes[node].bounds);
-    top_ = build_bvh("sah", {boxes_}, options);
-    result_.references = own_.references;
-    if (top_.nodes.empty()) return;
-    result_.nodes.emplace_back();
-    open_.push_back({0, Source::kTop, 0, 0, 0});
-    while (!open_.empty()) {
-      const Open next = open_.back();
-      open_.pop_back();
-      make(next);
+/// Divides the leaves of a binary tree until each has one reference. References [first, first + count) become leaves
+/// that start at the words of these references.
+void divide_leaves(Bvh& bvh, std::span<const Bounds> boxes, std::span<const uint32_t> words) {
+  for (size_t i = 0; i < bvh.nodes.size(); ++i) {
+    const BvhNode node = bvh.nodes[i];
+    if (node.count == 0) continue;
+    if (node.count == 1) {
+      bvh.nodes[i].first = words[node.first];
+      continue;
     }
+    const uint32_t half = node.count / 2;
+    const auto make = [&](uint32_t first, uint32_t count) {
+      BvhNode child{{}, first, count};
+      for (uint32_t k = first; k < first + count; ++k) child.bounds.extend(boxes[bvh.references[k]]);
+      bvh.nodes.push_back(child);
+    };
+    bvh.nodes[i].first = static_cast<uint32_t>(bvh.nodes.size());
+    bvh.nodes[i].count = 0;
+    make(node.first, half);
+    make(node.first + half, node.count - half);
   }
+}
 
-  Bvh take() { return std::move(result_); }
-  /// The instances in the order of leaves.
-  const std::vector<uint32_t>& order() const { return order_; }
-
- private:
-  enum class Source { kTop, kPart, kOwn };
-  /// A node that must still be made from a node of a tree, or from a part of a leaf of the top.
-  struct Open {
-    uint32_t target;
-    Source source;
-    uint32_t node;
-    uint32_t first;
-    uint32_t count;
-  };
-
-  void make(const Open& open) {
-    switch (open.source) {
-      case Source::kTop: {
-        const BvhNode& node = top_.nodes[open.node];
-        if (node.count > 0) return make_part(open.target, node.first, node.count);
-        make_inner(open.target, node.bounds, {0, Source::kTop, node.first, 0, 0},
-                   {0, Source::kTop, node.first + 1, 0, 0});
-        return;
-      }
-      case Source::kPart:
-        return make_part(open.target, open.first, open.count);
-      case Source::kOwn: {
-        const BvhNode& node = own_.nodes[open.node];
-        if (node.count > 0) {
-          result_.nodes[open.target] = node;
-          return;
-        }
-        make_inner(open.target, node.bounds, {0, Source::kOwn, node.first, 0, 0},
-                   {0, Source::kOwn, node.first + 1, 0, 0});
-        return;
-      }
-    }
+/// Returns the tree below a node.
+Bvh copy_subtree(const Bvh& bvh, uint32_t root) {
+  Bvh copy;
+  copy.nodes.push_back(bvh.nodes[root]);
+  for (size_t i = 0; i < copy.nodes.size(); ++i) {
+    if (copy.nodes[i].count > 0) continue;
+    const uint32_t first = copy.nodes[i].first;
+    copy.nodes[i].first = static_cast<uint32_t>(copy.nodes.size());
+    copy.nodes.push_back(bvh.nodes[first]);
+    copy.nodes.push_back(bvh.nodes[first + 1]);
   }
+  return copy;
+}
 
-  /// Makes a node of references of the top.
-  void make_part(uint32_t target, uint32_t first, uint32_t count) {
-    if (count == 1) return make_single(target, top_.references[first]);
-    Bounds box;
-    for (uint32_t i = first; i < first + count; ++i) box.extend(boxes_[top_.references[i]]);
-    const uint32_t half = count / 2;
-    make_inner(target, box, {0, Source::kPart, 0, first, half}, {0, Source::kPart, 0, first + half, count - half});
+/// Adds offsets to the words of a node's children: to indices of nodes and to references of leaves.
+void shift_children(Node& node, uint32_t nodes, uint32_t references) {
+  for (int k = 0; k < static_cast<int>(child_count(node)); ++k) {
+    node.children[k] += (node.children[k] & CHILD_IS_LEAF) == 0 ? nodes : references;
   }
-
-  void make_single(uint32_t target, uint32_t reference) {
-    if (reference >= instance_count_)
-      return make({target, Source::kOwn, own_subtrees_[reference - instance_count_], 0, 0});
-    result_.nodes[target] = {boxes_[reference], kInstanceBit | static_cast<uint32_t>(order_.size()), 1};
-    order_.push_back(reference);
-  }
-
-  void make_inner(uint32_t target, const Bounds& box, Open a, Open b) {
-    const auto first = static_cast<uint32_t>(result_.nodes.size());
-    result_.nodes.emplace_back();
-    result_.nodes.emplace_back();
-    result_.nodes[target] = {box, first, 0};
-    a.target = first;
-    b.target = first + 1;
-    open_.push_back(b);
-    open_.push_back(a);
-  }
-
-  const Bvh& own_;
-  UnsetVector<Bounds> boxes_;
-  size_t instance_count_;
-  std::vector<uint32_t> own_subtrees_;
-  Bvh top_;
-  Bvh result_;
-  std::vector<Open> open_;
-  std::vector<uint32_t> order_;
-};
-
-/// Copies the nodes of a mesh behind all others. Returns the index of its root.
-uint32_t append_nodes(const PackedMesh& mesh, uint32_t first_reference, UnsetVector<Node>& nodes, size_t first) {
-  for (size_t i = 0; i < mesh.nodes.size(); ++i) {
-    Node node = mesh.nodes[i];
-    for (int k = 0; k < static_cast<int>(child_count(node)); ++k) {
-      node.children[k] += (node.children[k] & CHILD_IS_LEAF) == 0 ? static_cast<uint32_t>(first) : first_reference;
-    }
-    nodes[first + i] = node;
-  }
-  return static_cast<uint32_t>(first);
 }
 
 float largest_component(const dvec3& v) {
   return round_up(std::max({v.x, v.y, v.z}));
 }
 
-/// Writes the two records of an instance. Its radii do not depend on the tree, because the bits of t depend on them.
-void write_records(const world::InstanceMap& map, const PackedMesh& mesh, uint32_t root, uint32_t first_order,
-                   uint32_t material, uint32_t object, Node* records) {
-  const float radius = largest_component(glm::max(glm::abs(dvec3(mesh.box.lo)), glm::abs(dvec3(mesh.box.hi))));
-  const Bounds box = world::bounds_of(map, {&mesh.box, 1});
-  const dvec3 origin(map.origin);
-  const float world_radius = largest_component(glm::max(dvec3(box.hi) - origin, origin - dvec3(box.lo)));
-  const auto row = [](const glm::mat3& matrix, int i, uint32_t last) {
-    return uvec4(word_of(matrix[0][i]), word_of(matrix[1][i]), word_of(matrix[2][i]), last);
-  };
-  const glm::mat3& turn = map.object_from_world;
-  records[0] = {row(turn, 0, word_of(map.origin.x)), row(turn, 1, word_of(map.origin.y)),
-                row(turn, 2, word_of(map.origin.z)), uvec4(word_of(radius), root, first_order, word_of(world_radius))};
-  uint32_t bits = hashes_of(object, 0) & INSTANCE_HASH_MASK;
-  if (glm::determinant(dmat3(turn)) < 0.0) bits |= INSTANCE_IS_MIRRORED;
-  const glm::mat3& back = map.world_from_object;
-  records[1] = {row(back, 0, material), row(back, 1, bits), row(back, 2, 0), uvec4(0)};
+/// Returns a row of a matrix and another word.
+uvec4 row_of(const glm::mat3& matrix, int row, uint32_t last) {
+  return {word_of(matrix[0][row]), word_of(matrix[1][row]), word_of(matrix[2][row]), last};
 }
 
 }  // namespace
@@ -220,76 +148,166 @@ PackedMesh pack_mesh(const world::Scene& scene, std::string_view builder, const 
   return mesh;
 }
 
-TwoLevelTree build_two_levels(const TwoLevels& input, const BuildOptions& options) {
+UpperLevel::UpperLevel(const TwoLevels& input, const BuildOptions& options) : own_bounds_(input.own_bounds) {
+  collect_own(input);
+  auto next = static_cast<uint32_t>(1 + own_nodes_.size());
+  for (const PackedMesh& mesh : input.meshes) {
+    meshes_.push_back({mesh.box, mesh.top_boxes, next});
+    next += static_cast<uint32_t>(mesh.nodes.size());
+    lower_stack_ = std::max(lower_stack_, mesh.stack_size);
+  }
+  first_node_ = next;
   std::vector<uint32_t> shown;
   for (uint32_t i = 0; i < input.scene.instances.size(); ++i) {
-    if (!input.meshes[input.scene.instances[i].mesh].top_boxes.empty()) shown.push_back(i);
+    if (!meshes_[input.scene.instances[i].mesh].top_boxes.empty()) shown.push_back(i);
   }
-  UnsetVector<Bounds> boxes;
-  boxes.resize(shown.size());
+  instances_.resize(shown.size());
   for_each_chunk(shown.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const world::Instance& instance = input.scene.instances[shown[i]];
-      boxes[i] = world::bounds_of(world::map_of(instance), input.meshes[instance.mesh].top_boxes);
+      const world::Instance& source = input.scene.instances[shown[i]];
+      PlacedInstance& instance = instances_[i];
+      instance.object = source.object;
+      instance.mesh = source.mesh;
+      const bool has_own = !input.scene.meshes[source.mesh].triangle_materials.empty();
+      instance.records[0].children.y = meshes_[source.mesh].root;
+      instance.records[0].children.z = input.first_order[source.object];
+      instance.records[1] = {};
+      instance.records[1].frame.w = has_own ? NO_INSTANCE_MATERIAL : input.scene.objects[source.object].material;
+      instance.records[1].lo.w = hashes_of(source.object, 0) & INSTANCE_HASH_MASK;
+      place(instance, source.world_from_object);
     }
   });
-  TwoLevelTree tree;
-  // Like the radii, these bounds do not depend on the trees of the meshes.
-  for (const Bounds& part : make_parts(shown.size(), kInstanceChunk, options.thread_count, Bounds(),
-                                       [&](size_t begin, size_t end, Bounds&some) {
-                                         for (size_t i = begin; i < end; ++i) {
-                                           const world::Instance& instance = input.scene.instances[shown[i]];
-                                           const Bounds& box = input.meshes[instance.mesh].box;
-                                           some.extend(world::bounds_of(world::map_of(instance), {&box, 1}));
-                                         }
-                                       })) {
-    tree.bounds.extend(part);
-  }
-  UpperLevel upper(input, boxes, options);
-  const Bvh bvh = upper.take();
-  tree.upper = measure_bvh("sah", bvh);
-  PackedTree packed = pack_tree(bvh);
+}
 
-  size_t node_count = packed.nodes.size();
-  uint32_t deepest = 0;
-  for (const PackedMesh& mesh : input.meshes) {
-    node_count += mesh.nodes.size();
-    deepest = std::max(deepest, mesh.stack_size);
+/// Sets everything that depends on the transform. The radii do not depend on the tree of the mesh, because the bits of
+/// t depend on them.
+void UpperLevel::place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const {
+  const SharedMesh& mesh = meshes_[instance.mesh];
+  const world::InstanceMap map = world::map_of({instance.object, instance.mesh, world_from_object});
+  instance.box = world::bounds_of(map, mesh.top_boxes);
+  instance.outer = world::bounds_of(map, {&mesh.box, 1});
+  const float radius = largest_component(glm::max(glm::abs(dvec3(mesh.box.lo)), glm::abs(dvec3(mesh.box.hi))));
+  const dvec3 origin(map.origin);
+  const float world_radius =
+      largest_component(glm::max(dvec3(instance.outer.hi) - origin, origin - dvec3(instance.outer.lo)));
+  const glm::mat3& turn = map.object_from_world;
+  Node& to_object = instance.records[0];
+  to_object.frame = row_of(turn, 0, word_of(map.origin.x));
+  to_object.lo = row_of(turn, 1, word_of(map.origin.y));
+  to_object.hi = row_of(turn, 2, word_of(map.origin.z));
+  to_object.children.x = word_of(radius);
+  to_object.children.w = word_of(world_radius);
+  const glm::mat3& back = map.world_from_object;
+  Node& to_world = instance.records[1];
+  to_world.frame = row_of(back, 0, to_world.frame.w);
+  const bool is_mirrored = glm::determinant(dmat3(turn)) < 0.0;
+  to_world.lo = row_of(back, 1, (to_world.lo.w & INSTANCE_HASH_MASK) | (is_mirrored ? INSTANCE_IS_MIRRORED : 0U));
+  to_world.hi = row_of(back, 2, 0);
+}
+
+/// Packs the subtrees of the scene's own primitives, each by itself, so that they stay when instances move.
+void UpperLevel::collect_own(const TwoLevels& input) {
+  for (const uint32_t node : find_top(input.own, kMostOwnSubtrees)) {
+    own_boxes_.push_back(input.own.nodes[node].bounds);
+    PackedTree subtree = pack_tree(copy_subtree(input.own, node));
+    if (input.own.nodes[node].count > 0) {
+      own_words_.push_back(subtree.nodes.front().children.x);
+      continue;
+    }
+    const auto first = static_cast<uint32_t>(1 + own_nodes_.size());
+    own_words_.push_back(first);
+    lower_stack_ = std::max(lower_stack_, subtree.stack_size);
+    for (Node& each : subtree.nodes) {
+      shift_children(each, first, 0);
+      own_nodes_.push_back(each);
+    }
   }
-  const auto first_record = static_cast<uint32_t>(node_count);
-  tree.stack_size = packed.stack_size + deepest + 1;
-  tree.node_count = first_record;
-  tree.instance_count = shown.size();
-  tree.nodes.resize(node_count + INSTANCE_RECORDS * shown.size());
-  for (size_t i = 0; i < packed.nodes.size(); ++i) {
-    Node node = packed.nodes[i];
+}
+
+UpperNodes UpperLevel::build(const BuildOptions& options) {
+  const size_t count = instances_.size();
+  UnsetVector<Bounds> boxes;
+  boxes.resize(count + own_boxes_.size());
+  UpperNodes upper;
+  upper.bounds = own_bounds_;
+  for (size_t i = 0; i < count; ++i) {
+    boxes[i] = instances_[i].box;
+    upper.bounds.extend(instances_[i].outer);
+  }
+  std::ranges::copy(own_boxes_, boxes.begin() + static_cast<std::ptrdiff_t>(count));
+  Bvh bvh = build_bvh("sah", {boxes}, options);
+  // The records are in the order of the leaves, because neighbours are read together.
+  std::vector<uint32_t> words;
+  words.reserve(bvh.references.size());
+  upper.records.reserve(INSTANCE_RECORDS * count);
+  for (const uint32_t reference : bvh.references) {
+    if (reference >= count) {
+      words.push_back(kInstanceBit | kOwnBit | (reference - static_cast<uint32_t>(count)));
+      continue;
+    }
+    words.push_back(kInstanceBit | static_cast<uint32_t>(upper.records.size() / INSTANCE_RECORDS));
+    for (const Node& record : instances_[reference].records) upper.records.push_back(record);
+  }
+  divide_leaves(bvh, boxes, words);
+  upper.stats = measure_bvh("sah", bvh);
+  PackedTree packed = pack_tree(bvh);
+  upper.stack_size = packed.stack_size + lower_stack_ + 1;
+  const auto needed = static_cast<uint32_t>(packed.nodes.size() - 1);
+  if (needed > capacity_) capacity_ = needed + needed / kSpareShare;
+  upper.first_record = first_node_ + capacity_;
+  for (Node& node : packed.nodes) {
     for (int k = 0; k < static_cast<int>(child_count(node)); ++k) {
       uint32_t& child = node.children[k];
-      if ((child & CHILD_INSTANCE_MASK) != CHILD_IS_INSTANCE) continue;
-      child = CHILD_IS_INSTANCE | (first_record + INSTANCE_RECORDS * (child & CHILD_INSTANCE_INDEX));
+      if ((child & CHILD_INSTANCE_MASK) != CHILD_IS_INSTANCE) {
+        child += first_node_ - 1;
+      } else if ((child & kOwnBit) != 0) {
+        child = own_words_[child & (kOwnBit - 1)];
+      } else {
+        child = CHILD_IS_INSTANCE | (upper.first_record + INSTANCE_RECORDS * (child & CHILD_INSTANCE_INDEX));
+      }
     }
-    tree.nodes[i] = node;
   }
-  size_t next = packed.nodes.size();
+  upper.root = packed.nodes.front();
+  upper.nodes.assign(packed.nodes.begin() + 1, packed.nodes.end());
+  return upper;
+}
+
+UnsetVector<Node> UpperLevel::join(const TwoLevels& input, const UpperNodes& upper) {
+  UnsetVector<Node> nodes;
+  nodes.resize(upper.first_record + upper.records.size());
+  nodes[0] = upper.root;
+  std::ranges::copy(own_nodes_, nodes.begin() + 1);
+  own_nodes_ = {};
   uint32_t reference = input.own_reference_count;
-  std::vector<uint32_t> roots;
-  for (const PackedMesh& mesh : input.meshes) {
-    roots.push_back(append_nodes(mesh, reference, tree.nodes, next));
-    next += mesh.nodes.size();
-    reference += static_cast<uint32_t>(mesh.primitives.size());
+  for (size_t i = 0; i < meshes_.size(); ++i) {
+    const UnsetVector<Node>& below = input.meshes[i].nodes;
+    for (size_t k = 0; k < below.size(); ++k) {
+      Node& node = nodes[meshes_[i].root + k];
+      node = below[k];
+      shift_children(node, meshes_[i].root, reference);
+    }
+    reference += static_cast<uint32_t>(input.meshes[i].primitives.size());
   }
-  const std::vector<uint32_t>& order = upper.order();
-  for_each_chunk(order.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const world::Instance& instance = input.scene.instances[shown[order[i]]];
-      const bool has_own = !input.scene.meshes[instance.mesh].triangle_materials.empty();
-      const uint32_t material = has_own ? NO_INSTANCE_MATERIAL : input.scene.objects[instance.object].material;
-      write_records(world::map_of(instance), input.meshes[instance.mesh], roots[instance.mesh],
-                    input.first_order[instance.object], material, instance.object,
-                    &tree.nodes[first_record + INSTANCE_RECORDS * i]);
+  std::ranges::copy(upper.nodes, nodes.begin() + first_node_);
+  std::fill(nodes.begin() + first_node_ + static_cast<std::ptrdiff_t>(upper.nodes.size()),
+            nodes.begin() + upper.first_record, Node{});
+  std::ranges::copy(upper.records, nodes.begin() + upper.first_record);
+  return nodes;
+}
+
+void UpperLevel::move(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const BuildOptions& options) {
+  for_each_chunk(world_from_object.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
+    for (const auto& [object, transform] : world_from_object.subspan(begin, end - begin)) {
+      const size_t i = find(object);
+      if (i < instances_.size()) place(instances_[i], glm::dmat4x3(transform));
     }
   });
-  return tree;
+}
+
+size_t UpperLevel::find(uint32_t object) const {
+  const auto found = std::ranges::lower_bound(instances_, object, {}, &PlacedInstance::object);
+  return found == instances_.end() || found->object != object ? instances_.size()
+                                                              : static_cast<size_t>(found - instances_.begin());
 }
 
 }  // namespace promin

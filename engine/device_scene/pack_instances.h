@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bvh/builder.h"
@@ -14,9 +15,11 @@
 #include "scene/world_scene.h"
 #include "shared/layout.h"
 
-// A tree of two levels. The nodes of the upper level come first. Their leaves are leaves of the scene's own primitives,
-// and instances. Then follow the nodes of each mesh that instances share, and the records of the instances (layout.h).
-// The references of the scene's own primitives come before those of the meshes.
+// A tree of two levels. Node 0 is the root of the upper level. Then follow the nodes of the scene's own primitives, the
+// nodes of each mesh that instances share, the other nodes of the upper level with some space, and the records of the
+// instances (layout.h). The leaves of the upper level are the subtrees of the scene's own primitives, and instances.
+// The references of the scene's own primitives come before those of the meshes. If instances move, only the root and
+// everything from the other nodes of the upper level on changes.
 namespace promin {
 
 /// A mesh that instances share, with its tree.
@@ -43,11 +46,13 @@ struct PackedMesh {
 /// Packs a mesh. `scene` has only this mesh, as its only object.
 PackedMesh pack_mesh(const world::Scene& scene, std::string_view builder, const BuildOptions& options);
 
-/// The input of build_two_levels.
+/// The input of an UpperLevel.
 struct TwoLevels {
   const world::Scene& scene;
   /// The tree of the scene's own primitives, which may be empty.
   const Bvh& own;
+  /// The bounds of the scene's own primitives.
+  Bounds own_bounds;
   /// The number of references of `own`.
   uint32_t own_reference_count = 0;
   /// The meshes of the scene, in order.
@@ -56,18 +61,83 @@ struct TwoLevels {
   std::span<const uint32_t> first_order;
 };
 
-/// The nodes of both levels with the records of instances.
-struct TwoLevelTree {
+/// The nodes that change if instances move.
+struct UpperNodes {
+  layout::Node root = {};
+  /// The other nodes of the upper level. The first has the index UpperLevel::first_node().
   UnsetVector<layout::Node> nodes;
+  /// The records of the instances. The first has the index `first_record`.
+  UnsetVector<layout::Node> records;
+  uint32_t first_record = 0;
+  /// The number of entries that the traversal stack needs for both levels.
   uint32_t stack_size = 1;
-  /// The number of nodes without the records.
-  uint32_t node_count = 0;
-  uint64_t instance_count = 0;
-  /// Bounds of all instances, not the smallest ones.
+  /// The bounds of the whole tree, not the smallest ones.
   Bounds bounds;
-  /// The depth and the cost of the upper level.
-  BvhStats upper;
+  /// The depth and the cost of the upper level. The scene's own primitives count as one leaf for each subtree.
+  BvhStats stats;
 };
-TwoLevelTree build_two_levels(const TwoLevels& input, const BuildOptions& options);
+
+/// The upper level of a tree with instances, and the data from which it is built again after instances have moved. It
+/// depends only on the transforms, and not on earlier ones.
+class UpperLevel {
+ public:
+  explicit UpperLevel(const TwoLevels& input, const BuildOptions& options = {});
+
+  /// Builds the nodes for the current transforms.
+  UpperNodes build(const BuildOptions& options = {});
+  /// Returns all nodes of both levels. Call it once, with the input of the constructor.
+  UnsetVector<layout::Node> join(const TwoLevels& input, const UpperNodes& upper);
+
+  /// Replaces the transforms of different objects. Objects that are not instances, or whose mesh no ray can hit, are
+  /// ignored.
+  void move(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const BuildOptions& options = {});
+
+  uint32_t first_node() const { return first_node_; }
+  /// Returns the number of instances that a ray can hit.
+  size_t instance_count() const { return instances_.size(); }
+  /// Returns the bounds of the mesh of an object; empty if it is not an instance or if no ray can hit its mesh.
+  Bounds mesh_box(uint32_t object) const {
+    const size_t i = find(object);
+    return i < instances_.size() ? meshes_[instances_[i].mesh].box : Bounds();
+  }
+
+ private:
+  /// The parts of a mesh on which the boxes and the records of its instances depend.
+  struct SharedMesh {
+    Bounds box;
+    std::vector<Bounds> top_boxes;
+    uint32_t root = 0;
+  };
+  struct PlacedInstance {
+    uint32_t object;
+    uint32_t mesh;
+    /// A box that contains the instance.
+    Bounds box;
+    /// A box that does not depend on the tree of the mesh, because the bits of t depend on it.
+    Bounds outer;
+    layout::Node records[layout::INSTANCE_RECORDS];
+  };
+  static_assert(layout::INSTANCE_RECORDS == 2);
+
+  void place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const;
+  void collect_own(const TwoLevels& input);
+  /// Returns the index of an object's instance; instance_count() if it has none.
+  size_t find(uint32_t object) const;
+
+  std::vector<SharedMesh> meshes_;
+  /// The instances that a ray can hit, in the order of their objects.
+  UnsetVector<PlacedInstance> instances_;
+  Bounds own_bounds_;
+  /// The subtrees of the scene's own primitives: their boxes, and the words of the nodes that contain them.
+  std::vector<Bounds> own_boxes_;
+  std::vector<uint32_t> own_words_;
+  /// Their nodes, until join().
+  UnsetVector<layout::Node> own_nodes_;
+  /// The largest stack of a subtree or of a mesh.
+  uint32_t lower_stack_ = 1;
+  uint32_t first_node_ = 1;
+  /// The number of nodes of the upper level for which there is space, without the root.
+  uint32_t capacity_ = 0;
+};
 
 }  // namespace promin

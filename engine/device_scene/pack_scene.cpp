@@ -28,30 +28,14 @@
 namespace promin {
 namespace {
 
-/// Returns the alpha cutoff for each image (pack_images). If several masks use an image, the first one counts.
-std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
-  std::vector<float> cutoffs(scene.images.size(), 0.0F);
-  for (const Material& material : scene.materials) {
-    const TextureSlot& slot = base_slot(material);
-    // A scene for casts has no textures.
-    if (material.alpha_mode != AlphaMode::kMask || is_absent(material) || slot.texture >= scene.textures.size())
-      continue;
-    float& cutoff = cutoffs[scene.textures[slot.texture].image];
-    if (cutoff == 0.0F) cutoff = material.alpha_cutoff / material.alpha;
-  }
-  // Materials that blend somewhere are not changed.
-  for (const Material& material : scene.materials) {
-    const TextureSlot& slot = base_slot(material);
-    const bool blends_texels = material.alpha_mode == AlphaMode::kBlend && slot.texture < scene.textures.size();
-    if (blends_texels) cutoffs[scene.textures[slot.texture].image] = 0.0F;
-  }
-  return cutoffs;
-}
-
 using namespace layout;
 
 /// The number of triangles or references that a thread processes at a time.
 constexpr size_t kPackChunkSize = 16384;
+
+/// The number of entries by which the stack of a tree with instances may grow when they move, before kernels must be
+/// compiled again. They are compiled for multiples of 8 entries.
+constexpr uint32_t kSpareStack = 4;
 
 /// Time that a process waits for a shared tree that another process is building and that may hang.
 constexpr std::chrono::minutes kMostWait{10};
@@ -77,15 +61,6 @@ UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primit
   return references;
 }
 
-/// Returns the center and the max-norm radius of a box: on each axis, no corner is farther from the center than the
-/// radius.
-vec4 center_and_radius(const Bounds& box) {
-  if (box.is_empty()) return vec4(0.0F);
-  const vec3 center = box.center();
-  const dvec3 reach = glm::max(dvec3(box.hi) - dvec3(center), dvec3(center) - dvec3(box.lo));
-  return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
-}
-
 /// Returns a hash of the geometry. It does not depend on the assignment of primitives to objects.
 uint64_t hash_geometry(std::span<const Primitive> bounded) {
   Hash64 hash;
@@ -106,11 +81,12 @@ void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
   packed.solid_count = static_cast<uint32_t>(bounded.size()) - counts[KIND_TRIANGLE];
 }
 
-/// Packs all parts of a scene except its tree. The tree's references must exist.
-void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected, uint64_t texture_bytes) {
+/// Packs all parts of a scene except its tree and its images. The tree's references must exist.
+void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected) {
   packed.numbers = std::move(collected.numbers);
   packed.features = geometry_features(scene);
   packed.shown_materials = find_shown_materials(scene);
+  packed.mask_cutoffs = find_mask_cutoffs(scene);
   packed.degenerate_count = collected.degenerate_count;
   const std::span<const uint32_t> references = packed.references;
   UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
@@ -127,8 +103,6 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   surfaces.insert(surfaces.end(), collected.unbounded_surfaces.begin(), collected.unbounded_surfaces.end());
   if (packed.primitives.empty()) packed.primitives.push_back({});
   packed.surfaces.vertices = std::move(collected.vertices);
-  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes, find_mask_cutoffs(scene));
-
   Bounds tree_bounds;
   for (const Bounds& box : collected.boxes) tree_bounds.extend(box);
   packed.tree_bounds = center_and_radius(tree_bounds);
@@ -286,10 +260,15 @@ void insert_meshes(PackedScene& packed, std::vector<PackedMesh>& meshes, size_t 
 }
 
 /// Returns the statistics of a tree of two levels.
-BvhStats stats_of(std::string_view builder, const TwoLevelTree& tree, const std::vector<PackedMesh>& meshes) {
-  BvhStats stats = tree.upper;
+BvhStats stats_of(std::string_view builder, const BvhStats& upper, const Bvh& own,
+                  const std::vector<PackedMesh>& meshes) {
+  BvhStats stats = upper;
   stats.builder = builder;
-  uint32_t depth = 0;
+  const BvhStats below = measure_bvh(builder, own);
+  stats.nodes += below.nodes;
+  stats.leaves += below.leaves;
+  stats.max_leaf_size = std::max(stats.max_leaf_size, below.max_leaf_size);
+  uint32_t depth = below.depth;
   for (const PackedMesh& mesh : meshes) {
     stats.nodes += mesh.bvh.nodes;
     stats.leaves += mesh.bvh.leaves;
@@ -297,7 +276,6 @@ BvhStats stats_of(std::string_view builder, const TwoLevelTree& tree, const std:
     depth = std::max(depth, mesh.bvh.depth);
   }
   stats.depth += depth;
-  stats.bytes = tree.nodes.size() * sizeof(Node);
   return stats;
 }
 
@@ -323,19 +301,24 @@ PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, s
   }
   check_at_most(CHILD_INSTANCE_INDEX, reference_count, scene, "the tree refers to", "parts of primitives",
                 ", or use the builder sah", Setting::kBuilder);
-  TwoLevelTree tree =
-      build_two_levels({scene, own, static_cast<uint32_t>(own_count), meshes, collected.numbers.first_order}, options);
-  check_at_most(MAX_NODES, tree.node_count, scene, "the scene's tree has", "nodes");
-  check_at_most(CHILD_INSTANCE_INDEX, tree.nodes.size(), scene, "the scene's tree has", "nodes and instances");
+  Bounds own_bounds;
+  for (const Bounds& box : collected.boxes) own_bounds.extend(box);
+  const TwoLevels levels{
+      scene, own, own_bounds, static_cast<uint32_t>(own_count), meshes, collected.numbers.first_order};
+  packed.upper = std::make_shared<UpperLevel>(levels, options);
+  const UpperNodes upper = packed.upper->build(options);
+  check_at_most(MAX_NODES, upper.first_record, scene, "the scene's tree has", "nodes");
+  check_at_most(CHILD_INSTANCE_INDEX, upper.first_record + upper.records.size(), scene, "the scene's tree has",
+                "nodes and instances");
+  packed.nodes = packed.upper->join(levels, upper);
   packed.bvh_ms = building.ms();
-  packed.bvh = stats_of(builder, tree, meshes);
-  packed.nodes = std::move(tree.nodes);
-  packed.stack_size = tree.stack_size;
-  packed.instance_count = tree.instance_count;
-  Bounds bounds = tree.bounds;
-  for (const Bounds& box : collected.boxes) bounds.extend(box);
-  pack_contents(packed, scene, collected, texture_bytes);
-  packed.tree_bounds = center_and_radius(bounds);
+  packed.bvh = stats_of(builder, upper.stats, own, meshes);
+  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
+  packed.stack_size = upper.stack_size + kSpareStack;
+  packed.instance_count = packed.upper->instance_count();
+  pack_contents(packed, scene, collected);
+  add_images(packed, scene, texture_bytes);
+  packed.tree_bounds = center_and_radius(upper.bounds);
   packed.numbers.are_instances_whole = are_whole;
   packed.numbers.mesh_of_object.assign(scene.objects.size(), PrimitiveNumbers::kNoMesh);
   for (const world::Instance& instance : scene.instances) {
@@ -349,21 +332,79 @@ PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, s
   return packed;
 }
 
-/// Packs a scene with the tree that `make_tree` makes.
+/// Packs a scene without its images, with the tree that `make_tree` makes.
 template <typename MakeTree>
-PackedScene pack_world(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
+PackedScene pack_world(const world::Scene& scene, const MakeTree& make_tree) {
   Collected collected = collect_primitives(scene);
   PackedScene packed;
   packed.copies = drop_copies(scene, collected);
   packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
   count_kinds(packed, collected.bounded);
-  packed.geometry_hash = hash_geometry(collected.bounded);
   make_tree(packed, collected);
-  pack_contents(packed, scene, collected, texture_bytes);
+  pack_contents(packed, scene, collected);
   return packed;
 }
 
+/// Packs a scene with the tree that `make_tree` makes, which may read the hash of the geometry.
+template <typename MakeTree>
+PackedScene pack_world(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
+  PackedScene packed = pack_world(scene, [&](PackedScene& next, const Collected& collected) {
+    next.geometry_hash = hash_geometry(collected.bounded);
+    make_tree(next, collected);
+  });
+  add_images(packed, scene, texture_bytes);
+  return packed;
+}
+
+/// Returns whether a tree over the primitives is a tree over others with these kinds.
+bool has_kinds(const KeptTree& kept, std::span<const Primitive> bounded) {
+  return !kept.nodes.empty() &&
+         std::ranges::equal(kept.kinds, bounded, {}, {}, [](const Primitive& p) { return p.c.z; });
+}
+
+/// Keeps the tree of a packed scene, unless some of its boxes contain only parts of primitives.
+void keep_tree(const PackedScene& packed, const Collected& collected, KeptTree& kept) {
+  kept = {};
+  if (packed.references.size() != packed.bounded_count) return;
+  kept.nodes = packed.nodes;
+  kept.references = packed.references;
+  kept.stack_size = packed.stack_size;
+  kept.bvh = packed.bvh;
+  for (const Primitive& p : collected.bounded) kept.kinds.push_back(static_cast<uint8_t>(p.c.z));
+  kept.cost = refit_tree(kept.nodes, kept.references, collected.boxes);
+}
+
 }  // namespace
+
+vec4 center_and_radius(const Bounds& box) {
+  if (box.is_empty()) return vec4(0.0F);
+  const vec3 center = box.center();
+  const dvec3 reach = glm::max(dvec3(box.hi) - dvec3(center), dvec3(center) - dvec3(box.lo));
+  return {center, round_up(std::max({reach.x, reach.y, reach.z}))};
+}
+
+std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
+  std::vector<float> cutoffs(scene.images.size(), 0.0F);
+  for (const Material& material : scene.materials) {
+    const TextureSlot& slot = base_slot(material);
+    // A scene for casts has no textures.
+    if (material.alpha_mode != AlphaMode::kMask || is_absent(material) || slot.texture >= scene.textures.size())
+      continue;
+    float& cutoff = cutoffs[scene.textures[slot.texture].image];
+    if (cutoff == 0.0F) cutoff = material.alpha_cutoff / material.alpha;
+  }
+  // Materials that blend somewhere are not changed.
+  for (const Material& material : scene.materials) {
+    const TextureSlot& slot = base_slot(material);
+    const bool blends_texels = material.alpha_mode == AlphaMode::kBlend && slot.texture < scene.textures.size();
+    if (blends_texels) cutoffs[scene.textures[slot.texture].image] = 0.0F;
+  }
+  return cutoffs;
+}
+
+void add_images(PackedScene& packed, const world::Scene& scene, uint64_t texture_bytes) {
+  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes, packed.mask_cutoffs);
+}
 
 TreeView PackedScene::tree() const {
   if (file) return file->tree();
@@ -392,6 +433,59 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
   return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
     build_tree(packed, scene, collected, builder, options);
   });
+}
+
+PackedScene pack_pose(const world::Scene& scene, std::string_view builder, TreeOfPose choice, KeptTree& kept,
+                      const BuildOptions& options) {
+  return pack_world(scene, [&](PackedScene& packed, const Collected& collected) {
+    const Stopwatch fitting;
+    if (choice == TreeOfPose::kRefitted && has_kinds(kept, collected.bounded)) {
+      const double cost = refit_tree(kept.nodes, kept.references, collected.boxes);
+      if (cost <= kMostGrowth * kept.cost) {
+        packed.nodes = kept.nodes;
+        packed.references = kept.references;
+        packed.stack_size = kept.stack_size;
+        packed.bvh = kept.bvh;
+        packed.bvh_ms = fitting.ms();
+        packed.is_tree_fitted = true;
+        return;
+      }
+    }
+    build_tree(packed, scene, collected, builder, options);
+    if (choice == TreeOfPose::kRefitted) keep_tree(packed, collected, kept);
+  });
+}
+
+uint64_t hash_instanced(const world::Scene& scene) {
+  Hash64 hash;
+  const auto add = [&](const auto& records) {
+    hash.add(records.size());
+    hash.add(std::as_bytes(std::span(records)));
+  };
+  for (const Mesh& mesh : scene.meshes) {
+    add(mesh.positions);
+    add(mesh.triangles);
+    add(mesh.normals);
+    add(mesh.colors);
+    add(mesh.uvs);
+    add(mesh.tangents);
+    add(mesh.triangle_materials);
+  }
+  for (const world::Instance& instance : scene.instances) {
+    hash.add(instance.object | uint64_t{instance.mesh} << 32);
+    hash.add(scene.objects[instance.object].material);
+  }
+  const Collected own = collect_primitives(scene);
+  add(own.bounded);
+  add(own.bounded_surfaces);
+  add(own.unbounded);
+  add(own.unbounded_surfaces);
+  add(own.vertices.normals);
+  add(own.vertices.colors);
+  add(own.vertices.uvs);
+  add(own.vertices.tangents);
+  add(own.numbers.first_order);
+  return hash.value();
 }
 
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {

@@ -26,6 +26,8 @@
 // of the tree's leaves. This code does not use Vulkan.
 namespace promin {
 
+class UpperLevel;
+
 /// Data of primitives that shading needs, in leaf order: material numbers and vertices.
 struct PackedSurfaces {
   UnsetVector<layout::SurfaceRecord> surfaces;
@@ -54,6 +56,12 @@ struct PackedScene {
   /// The number of instances in the tree, and the number of triangles of the meshes that they share.
   uint64_t instance_count = 0;
   uint64_t shared_triangle_count = 0;
+  /// The upper level of the tree, which is built again if instances move; null without instances.
+  std::shared_ptr<UpperLevel> upper;
+  /// True if the tree is that of an earlier pose, fitted to this one (pack_pose).
+  bool is_tree_fitted = false;
+  /// The result of find_mask_cutoffs().
+  std::vector<float> mask_cutoffs;
   /// The features that the geometry uses.
   FeatureMask features;
   /// For each of Scene::materials, whether a visible primitive uses it.
@@ -87,6 +95,10 @@ struct PackedScene {
   uint64_t size_bytes() const;
 };
 
+/// Returns the center and the max-norm radius of a box: on each axis, no corner is farther from the center than the
+/// radius. An empty box has the radius 0.
+vec4 center_and_radius(const Bounds& box);
+
 /// Packs a checked scene's objects. Throws UsageError for an unknown builder, and RunError if counts exceed the layout
 /// (2^27 primitives, 2^24 - 1 nodes). Throws the same errors as pack_images() for images in `texture_bytes`.
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options = {},
@@ -96,6 +108,45 @@ PackedScene pack_scene(const world::Scene& scene, std::string_view builder, cons
 /// another scene, and RunError like pack_scene().
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene,
                             uint64_t texture_bytes = kDefaultTextureBytes);
+
+/// The tree of a scene, which is kept for other poses of the scene.
+struct KeptTree {
+  UnsetVector<layout::Node> nodes;
+  UnsetVector<uint32_t> references;
+  uint32_t stack_size = 1;
+  BvhStats bvh;
+  /// The cost that refit_tree() returned when the tree was built.
+  double cost = 0.0;
+  /// The kinds of the primitives, which determine the order within leaves.
+  std::vector<uint8_t> kinds;
+};
+
+/// A tree whose cost has grown by more than this factor since it was built is built again (docs/performance_log.md).
+inline constexpr double kMostGrowth = 1.2;
+
+/// The choice of a tree for another pose.
+enum class TreeOfPose {
+  /// The kept tree is fitted to the pose if it has the same primitives and does not become much worse. The choice
+  /// depends on the poses alone.
+  kRefitted,
+  /// The tree is built again.
+  kBuilt,
+};
+
+/// Packs a checked scene without instances in another pose, without its images. `kept` is the tree of an earlier pose,
+/// which may be empty; it becomes the tree of this pose. Throws the same errors as pack_scene().
+PackedScene pack_pose(const world::Scene& scene, std::string_view builder, TreeOfPose choice, KeptTree& kept,
+                      const BuildOptions& options = {});
+
+/// Returns the alpha cutoff for each image (pack_images). If several masks use an image, the first one counts.
+std::vector<float> find_mask_cutoffs(const world::Scene& scene);
+
+/// Adds the images of the scene to a packed scene without images.
+void add_images(PackedScene& packed, const world::Scene& scene, uint64_t texture_bytes);
+
+/// Returns a hash of everything in a packed scene with instances that does not depend on their transforms, except its
+/// images. Scenes with the same hash differ only in transforms.
+uint64_t hash_instanced(const world::Scene& scene);
 
 /// The smallest number of primitives for which a shared tree is kept in a file. The default builder builds smaller
 /// trees in a few milliseconds (docs/jobs.md has figures), and access to a file in a shared folder may take as long.

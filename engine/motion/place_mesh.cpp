@@ -33,16 +33,10 @@ struct KeepsForm {
 }  // namespace
 
 bool is_mesh_in_range(const Mesh& mesh, const Bounds& box, const dmat4& world_from_object) {
-  const auto is_placed_in_range = [&](const dvec3& p) { return is_in_range(dvec3(world_from_object * dvec4(p, 1.0))); };
   // Usually the corners of the mesh's box decide; otherwise each vertex is tested.
-  bool are_corners_in_range = true;
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
-                  (corner & 4) != 0 ? box.hi.z : box.lo.z);
-    are_corners_in_range = are_corners_in_range && is_placed_in_range(p);
-  }
-  return are_corners_in_range ||
-         std::ranges::all_of(mesh.positions, [&](const vec3& p) { return is_placed_in_range(dvec3(p)); });
+  return is_in_range(box, world_from_object) || std::ranges::all_of(mesh.positions, [&](const vec3& p) {
+           return is_in_range(dvec3(world_from_object * dvec4(dvec3(p), 1.0)));
+         });
 }
 
 Bounds bounds_of_positions(const Mesh& mesh) {

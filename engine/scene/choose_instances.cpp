@@ -31,12 +31,6 @@ double frobenius_norm(const dmat3& m) {
   return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
-bool is_fit_for_instance(const dmat4& world_from_object) {
-  const dmat3 turn(world_from_object);
-  if (!(frobenius_norm(turn) <= kMostScale && frobenius_norm(glm::inverse(turn)) <= kMostScale)) return false;
-  return skeel_condition(world_from_object) <= kMostInstanceCondition;
-}
-
 /// Returns whether a mesh has triangles and lies near its own origin.
 bool lies_near_its_origin(const Mesh& mesh) {
   Bounds bounds;
@@ -68,6 +62,12 @@ double skeel_condition(const dmat4& world_from_object) {
   const dmat3 product = absolute(turn) * absolute(glm::inverse(turn));
   const dvec3 sums = product[0] + product[1] + product[2];
   return std::max({sums.x, sums.y, sums.z});
+}
+
+bool is_fit_for_instance(const dmat4& world_from_object) {
+  const dmat3 turn(world_from_object);
+  if (!(frobenius_norm(turn) <= kMostScale && frobenius_norm(glm::inverse(turn)) <= kMostScale)) return false;
+  return skeel_condition(world_from_object) <= kMostInstanceCondition;
 }
 
 std::vector<bool> choose_instances(const Scene& scene, Instancing instancing) {

@@ -16,6 +16,9 @@ inline constexpr double kMostInstanceCondition = 6.0;
 /// Returns the condition of a transform's linear part.
 double skeel_condition(const dmat4& world_from_object);
 
+/// Returns whether an instance may have a transform: the limits of its condition and of its scales.
+bool is_fit_for_instance(const dmat4& world_from_object);
+
 /// Returns for each object of a valid scene whether it becomes an instance. The result depends on the scene alone. With
 /// Instancing::kAuto, an object whose mesh other objects share becomes an instance if the mesh has at least 64
 /// triangles, and if all instances of the mesh together save at least 16384. In a scene with motion this counts hidden

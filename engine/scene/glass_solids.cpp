@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "scene/glass.h"
 #include "shapes/shapes.h"
@@ -159,23 +160,53 @@ void GlassSolids::add_instances(const world::Scene& scene) {
       boxes[instance.mesh] = BoundsOf()(mesh);
     }
     const world::InstanceMap map = world::map_of(instance);
-    solids_.push_back({world::NotDrawn{}, material, world::bounds_of(map, {&boxes[instance.mesh], 1}), shared, map});
+    const Bounds& box = boxes[instance.mesh];
+    solids_.push_back(
+        {world::NotDrawn{}, instance.object, material, world::bounds_of(map, {&box, 1}), shared, box, map});
   }
 }
 
+/// Sorts the solids by descending volume. Among equal ones instances come last, then the order is that of objects.
+void GlassSolids::sort() {
+  std::ranges::sort(solids_, {}, [](const Solid& solid) {
+    return std::tuple(-volume_of(solid.bounds), solid.mesh != nullptr, solid.object);
+  });
+}
+
+std::shared_ptr<const GlassSolids> GlassSolids::moved(const std::shared_ptr<const GlassSolids>& solids,
+                                                      std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+  const auto find = [&](const Solid& solid) -> const dmat4* {
+    if (solid.mesh == nullptr) return nullptr;
+    const auto found =
+        std::ranges::lower_bound(world_from_object, solid.object, {}, &std::pair<uint32_t, dmat4>::first);
+    return found == world_from_object.end() || found->first != solid.object ? nullptr : &found->second;
+  };
+  if (solids == nullptr || std::ranges::none_of(solids->solids_, find)) return solids;
+  GlassSolids result = *solids;
+  for (Solid& solid : result.solids_) {
+    const dmat4* transform = find(solid);
+    if (transform == nullptr) continue;
+    solid.map = world::map_of({solid.object, 0, glm::dmat4x3(*transform)});
+    solid.bounds = world::bounds_of(solid.map, {&solid.mesh_bounds, 1});
+  }
+  result.sort();
+  return std::make_shared<const GlassSolids>(std::move(result));
+}
+
 GlassSolids::GlassSolids(const world::Scene& scene) {
-  for (const world::Object& object : scene.objects) {
+  for (uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const world::Object& object = scene.objects[i];
     if (world::primitive_count(object.shape) == 0 || std::visit(IsOpen(), object.shape)) continue;
     const uint32_t material = material_of(object);
     if (!bounds_volume(scene.materials[material])) continue;
-    solids_.push_back({object.shape, material, std::visit(BoundsOf(), object.shape), nullptr, {}});
+    solids_.push_back({object.shape, i, material, std::visit(BoundsOf(), object.shape)});
     // Only the positions and triangles are needed.
     if (auto* mesh = std::get_if<Mesh>(&solids_.back().shape)) {
       *mesh = make_corners(std::move(mesh->positions), std::move(mesh->triangles));
     }
   }
   add_instances(scene);
-  std::ranges::stable_sort(solids_, std::greater(), [](const Solid& solid) { return volume_of(solid.bounds); });
+  sort();
 }
 
 std::vector<uint32_t> GlassSolids::materials_around(const vec3& point) const {

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "scene/world_scene.h"
@@ -22,18 +24,26 @@ class GlassSolids {
   /// it. A mesh, closed or not, contains the points with a winding number above 1/2.
   std::vector<uint32_t> materials_around(const vec3& point) const;
 
+  /// Returns the solids after instances have moved; the same ones if no solid has moved. The pairs are objects, in
+  /// ascending order, and their transforms.
+  static std::shared_ptr<const GlassSolids> moved(const std::shared_ptr<const GlassSolids>& solids,
+                                                  std::span<const std::pair<uint32_t, dmat4>> world_from_object);
+
  private:
   struct Solid {
     /// NotDrawn for an instance.
     world::Shape shape;
+    uint32_t object = 0;
     uint32_t material = 0;
     Bounds bounds;
     /// The positions and triangles of an instance's mesh, and its map.
     std::shared_ptr<const Mesh> mesh = nullptr;
+    Bounds mesh_bounds = {};
     world::InstanceMap map = {};
   };
   static bool contains(const Solid& solid, const vec3& point);
   void add_instances(const world::Scene& scene);
+  void sort();
   /// The solids, sorted by descending volume.
   std::vector<Solid> solids_;
 };

@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "core/rounding.h"
+#include "scene/light_kinds.h"
 #include "scene/limits.h"
 #include "scene/texture_slots.h"
 #include "shapes/shapes.h"
@@ -463,19 +464,10 @@ class Validation {
   }
 
   void check_transform(const Object& object, const Place& place) {
-    const dmat4& m = object.world_from_object;
-    bool is_finite = true;
-    for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 4; ++row) is_finite = is_finite && std::isfinite(m[column][row]);
-    }
-    if (!check("scene.transform.range", is_finite, "the transform is not finite", place, "use finite numbers")) return;
-    const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
-    check("scene.transform.affine", is_affine, "the transform is not affine", place, "make its last row 0 0 0 1");
-    const dmat3 linear(m);
-    const double volume = std::abs(glm::determinant(linear));
-    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-    check("scene.transform.singular", volume > kLeastVolume * lengths && std::isfinite(lengths),
-          "the transform is singular", place, "use non-zero scales and axes that differ");
+    std::optional<Problem> problem = find_transform_problem(object.world_from_object);
+    if (!problem) return;
+    problem->where = place.text();
+    problems_.push_back(std::move(*problem));
   }
 
   /// Checks an object whose references all exist.
@@ -495,14 +487,8 @@ class Validation {
     const auto [known, is_new] = boxes_.try_emplace(&mesh);
     Bounds& box = known->second;
     for (size_t i = 0; is_new && i < mesh.positions.size(); ++i) box.extend(mesh.positions[i]);
-    for (int corner = 0; corner < 8 && !mesh.positions.empty(); ++corner) {
-      const dvec3 p((corner & 1) != 0 ? box.hi.x : box.lo.x, (corner & 2) != 0 ? box.hi.y : box.lo.y,
-                    (corner & 4) != 0 ? box.hi.z : box.lo.z);
-      if (!check("scene.position.far", is_in_range(dvec3(object.world_from_object * dvec4(p, 1.0))),
-                 "the mesh extends beyond 1e15 in the world", place, "use a smaller translation or scale")) {
-        return;
-      }
-    }
+    check("scene.position.far", mesh.positions.empty() || is_in_range(box, object.world_from_object),
+          "the mesh extends beyond 1e15 in the world", place, "use a smaller translation or scale");
   }
 
   template <class Shape>
@@ -579,6 +565,20 @@ class Validation {
 };
 
 }  // namespace
+
+std::optional<Problem> find_transform_problem(const dmat4& world_from_object) {
+  const dmat4& m = world_from_object;
+  if (!is_finite(m)) return Problem{"scene.transform.range", "the transform is not finite", "", "use finite numbers"};
+  if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0) {
+    return Problem{"scene.transform.affine", "the transform is not affine", "", "make its last row 0 0 0 1"};
+  }
+  const dmat3 linear(m);
+  const double volume = std::abs(glm::determinant(linear));
+  const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  if (volume > kLeastVolume * lengths && std::isfinite(lengths)) return std::nullopt;
+  return Problem{"scene.transform.singular", "the transform is singular", "",
+                 "use non-zero scales and axes that differ"};
+}
 
 std::vector<Problem> validate(const Scene& scene) {
   std::vector<Problem> problems;

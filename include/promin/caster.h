@@ -9,9 +9,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "promin/export.h"
 #include "promin/instances.h"
+#include "promin/math.h"
 #include "promin/progress.h"
 #include "promin/ray.h"
 #include "promin/scene.h"
@@ -116,6 +118,12 @@ class PROMIN_EXPORT Caster {
   /// device.
   double list(std::span<const Ray> rays, const HitListSink& sink, uint64_t budget_bytes = kListBytes,
               const ProgressCallback& progress = {});
+
+  /// Casts later rays at the scene in another pose, like Renderer::set_pose. Throws the same errors.
+  void set_pose(const Scene& posed);
+  /// Gives objects other transforms, like Renderer::set_transforms. Later hits have the same bits as those of a new
+  /// Caster of the moved scene. Throws the same errors.
+  void set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object);
 
   /// Returns the cost of construction and of compilation so far. The reference is valid as long as the Caster exists.
   const SetupStats& setup_stats() const;

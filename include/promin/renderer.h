@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "promin/aovs.h"
 #include "promin/explain.h"
@@ -167,6 +168,24 @@ class PROMIN_EXPORT Renderer {
   void set_materials(std::span<const Material> materials);
   /// Replaces the environment. Throws InputError if validate() finds problems.
   void set_environment(const Environment& environment);
+  /// Shows the scene in another pose: replaces its geometry, transforms, materials, lights and environment by those of
+  /// `posed`, which scene_at() (promin/motion.h) returns for the scene of the constructor. Later pictures have the same
+  /// bits as those of a new Renderer of `posed`. Nothing is compiled, and images are not uploaded again, unless the
+  /// pose shows a feature or an image for the first time. If only instances have moved, only the upper level of the
+  /// tree is built again. Otherwise the boxes of the tree are fitted to the new triangles; the tree is built again if
+  /// the pose has other primitives, or if the fitted tree would be more than a fifth worse. This choice depends on the
+  /// poses alone. Framing belongs to the View, so a pose does not change it. Throws InputError if validate() finds
+  /// problems or if the number of objects or of materials differs; then nothing changes. Throws RunError if memory runs
+  /// out; then the pose is undefined until the next call.
+  void set_pose(const Scene& posed);
+  /// Gives objects other transforms. Each pair has an object's index and its transform to the world; if an object
+  /// occurs several times, the last pair counts. All other objects stay. Later pictures have the same bits as those of
+  /// a new Renderer of the moved scene. The objects must be instances (RendererOptions::instances). Only the upper
+  /// level of the tree is built again, so 1,000 instances take a few milliseconds. A pipeline is compiled only if the
+  /// upper level becomes much deeper. Throws InputError if an object does not exist or is not an instance, if a
+  /// transform is not finite, not affine or singular, if it shears an instance too strongly (docs/instances.md) or
+  /// moves it beyond 1e15. Throws RunError if memory runs out. In these cases nothing changes.
+  void set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object);
 
   /// Returns the cost of construction. The reference is valid as long as the Renderer exists.
   const SetupStats& setup_stats() const;

@@ -62,6 +62,8 @@ struct WorkDone {
   uint64_t trees_built = 0;
   /// Number of bytes of nodes, primitives and surfaces that were uploaded.
   uint64_t geometry_bytes_uploaded = 0;
+  /// Number of bytes of the tree's upper level and of instances that were uploaded because instances have moved.
+  uint64_t move_bytes_uploaded = 0;
   /// Number of bytes of materials and lights that were uploaded.
   uint64_t shading_bytes_uploaded = 0;
   /// Number of pipelines that the device compiled, including pipelines for other users of the device.

@@ -59,6 +59,9 @@ struct Texture {
   bool has_levels = true;
   /// True if promin interpolates between two mip levels.
   bool are_levels_linear = true;
+
+  /// Returns whether both textures show an image in the same way.
+  bool operator==(const Texture&) const = default;
 };
 
 /// A reference from a material to a texture.

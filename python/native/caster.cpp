@@ -7,6 +7,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <memory>
 #include <span>
@@ -15,6 +16,7 @@
 #include "bind.h"
 #include "device.h"
 #include "in_process.h"
+#include "matrices.h"
 #include "records.h"
 #include "scene.h"
 #include "setup_stats.h"
@@ -108,6 +110,21 @@ class SharedCaster {
     return nb::make_tuple(give<int64_t>(std::move(splits), 1), give<uint8_t>(std::move(hits), sizeof(Hit)));
   }
 
+  void set_pose(const Scene& posed) {
+    run(nb::none(), [&](Caster& caster, const ProgressCallback&) {
+      caster.set_pose(posed);
+      return 0.0;
+    });
+  }
+
+  void set_transforms(const std::vector<uint32_t>& objects, const Matrices& matrices) {
+    const auto transforms = read_transforms(objects, matrices);
+    run(nb::none(), [&](Caster& caster, const ProgressCallback&) {
+      caster.set_transforms(transforms);
+      return 0.0;
+    });
+  }
+
   nb::dict setup() const { return describe(caster_->get().setup_stats()); }
 
  private:
@@ -145,6 +162,8 @@ void bind_caster(nb::module_& module) {
            nb::arg("progress").none())
       .def("list", &SharedCaster::list, nb::arg("rays").noconvert(), nb::arg("budget_bytes").none(),
            nb::arg("progress").none())
+      .def("set_pose", &SharedCaster::set_pose, nb::arg("scene"))
+      .def("set_transforms", &SharedCaster::set_transforms, nb::arg("objects"), nb::arg("matrices").noconvert())
       .def("setup", &SharedCaster::setup);
 }
 

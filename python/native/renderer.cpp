@@ -15,6 +15,7 @@
 #include "device.h"
 #include "errors.h"
 #include "in_process.h"
+#include "matrices.h"
 #include "picture_arrays.h"
 #include "promin/cryptomatte.h"
 #include "promin/error.h"
@@ -189,6 +190,18 @@ class SharedRenderer {
     change([&](Renderer& renderer) { renderer.set_environment(environment); });
   }
 
+  void set_pose(const Scene& posed) {
+    change([&](Renderer& renderer) {
+      renderer.set_pose(posed);
+      named_.materials = posed.materials;
+    });
+  }
+
+  void set_transforms(const std::vector<uint32_t>& objects, const Matrices& matrices) {
+    const auto transforms = read_transforms(objects, matrices);
+    change([&](Renderer& renderer) { renderer.set_transforms(transforms); });
+  }
+
   nb::dict setup() const { return describe(renderer_->get().setup_stats()); }
 
  private:
@@ -234,6 +247,8 @@ void bind_renderer(nb::module_& module) {
       .def("set_lights", &SharedRenderer::set_lights)
       .def("set_materials", &SharedRenderer::set_materials)
       .def("set_environment", &SharedRenderer::set_environment)
+      .def("set_pose", &SharedRenderer::set_pose, nb::arg("scene"))
+      .def("set_transforms", &SharedRenderer::set_transforms, nb::arg("objects"), nb::arg("matrices").noconvert())
       .def("setup", &SharedRenderer::setup);
   module.def("list_aovs", &list_aovs);
   module.def("default_width", [](const std::string& filter) {

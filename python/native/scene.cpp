@@ -15,6 +15,7 @@
 
 #include "bind.h"
 #include "command_line.h"
+#include "matrices.h"
 #include "promin/error.h"
 #include "promin/framing.h"
 #include "promin/instances.h"
@@ -26,6 +27,7 @@
 #include "watched.h"
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/load_posed.h"
+#include "work/pictures/moving_scene.h"
 #include "work/pictures/view_setup.h"
 #include "work/spec/check_spec.h"
 #include "work/spec/environment_choice.h"
@@ -37,8 +39,6 @@ namespace {
 
 template <typename T, int Columns>
 using Rows = nb::ndarray<const T, nb::shape<-1, Columns>, nb::c_contig, nb::device::cpu>;
-using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
-using Matrices = nb::ndarray<const double, nb::shape<-1, 4, 4>, nb::c_contig, nb::device::cpu>;
 
 /// Returns the rows of an array; empty if there is no array. The array's shape ensures that its rows have the type Row.
 template <typename Row, typename Array>
@@ -47,15 +47,6 @@ std::vector<Row> copy_rows(const std::optional<Array>& rows) {
   if (!rows || rows->shape(0) == 0) return result;
   result.resize(rows->shape(0));
   std::memcpy(result.data(), rows->data(), result.size() * sizeof(Row));
-  return result;
-}
-
-/// Python stores matrices by rows, GLM by columns.
-dmat4 read_matrix(const double* numbers) {
-  dmat4 result;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) result[column][row] = numbers[4 * row + column];
-  }
   return result;
 }
 
@@ -116,6 +107,20 @@ void add_all_instances(Scene& scene, uint32_t object, const Matrices& matrices) 
   transforms.reserve(matrices.shape(0));
   for (size_t i = 0; i < matrices.shape(0); ++i) transforms.push_back(read_matrix(matrices.data() + 16 * i));
   add_instances(scene, object, transforms);
+}
+
+/// Returns the scene with other transforms of some objects. The objects exist.
+Scene move(const Scene& scene, const std::vector<uint32_t>& objects, const Matrices& matrices) {
+  Scene moved = scene;
+  for (const auto& [object, transform] : read_transforms(objects, matrices)) {
+    moved.objects.at(object).world_from_object = transform;
+  }
+  return moved;
+}
+
+/// Returns the scene with what light() has added to the same scene in another pose.
+Scene light_like(const Scene& posed, const Scene& lit) {
+  return work::with_light_of(posed, lit, work::find_ground(lit, posed.objects.size()));
 }
 
 template <typename T>
@@ -232,6 +237,8 @@ void bind_scene(nb::module_& module) {
       .def("bounds", &bounds)
       .def("animations", &describe_animations)
       .def("at", &pose, nb::arg("time"), nb::arg("animations"), nb::arg("loops"))
+      .def("moved", &move, nb::arg("objects"), nb::arg("matrices").noconvert())
+      .def("lit_like", &light_like, nb::arg("lit"))
       .def("validate", &check)
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("set_center", [](Scene& s, double x, double y, double z) { s.center = dvec3(x, y, z); })

@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Union
 
 import numpy as np
@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from promin import _promin
 from promin._arrays import HIT_DTYPE, Hits, RaysLike, join_rays, pack_rays, to_vectors
 from promin._device import Device, DeviceLike, find_device
-from promin._errors import UsageError
-from promin._scene import Scene, SceneLike, to_scene
+from promin._errors import InputError, UsageError
+from promin._scene import REMAKES, Scene, SceneLike, split_transforms, to_scene
 
 PROBE = np.array((0.4375, 0.625, 0.65625), np.float32)
 """The direction of rays that test whether points are inside. No component is small or a simple ratio of another one."""
@@ -58,6 +58,9 @@ class Caster:
         self._scene = to_scene(scene).snapshot()
         self._options = (str(builder), None if bvh is None else os.fsdecode(bvh), str(instances))
         self._chosen = device
+        # The scene in its current pose, and the transforms of the objects that have moved.
+        self._posed = self._scene
+        self._transforms: dict[int, NDArray[np.float64]] = {}
         self._make_private()
         self._open(progress)
 
@@ -208,17 +211,58 @@ class Caster:
         packed, _ = pack_rays(join_rays(rays, directions, tmin, tmax), center)
         return _list_parts(native, packed, int(budget), progress)
 
+    def update(
+        self,
+        *,
+        time: float | None = None,
+        animation: str | int | Sequence[str | int] | None = 0,
+        loop: bool = False,
+        transforms: Mapping[int, ArrayLike] | None = None,
+    ) -> None:
+        """Shows another pose to all later rays, or moves objects.
+
+        time, animation, loop: the pose, like the arguments of Scene.at; None leaves the pose as it is. transforms: new
+        transforms (4, 4) by the objects' numbers, like those of Scene.add_instances. All other objects stay, and moved
+        objects do not move with poses. Instances (docs/instances.md) move in milliseconds; to move other objects, the
+        tree is built again. Hits have the same bits as those of a new Caster of the moved scene. `scene` stays the scene
+        of the constructor. Raises UsageError and InputError for invalid arguments, and then changes nothing."""
+        moved = {} if transforms is None else self._scene.native_transforms(transforms)
+        posed = None if time is None else self._scene.at(time, animation, loop=loop)
+        with self._lock:
+            _, native, _ = self._open()
+            shown = self._posed if posed is None else posed
+            new = {**self._transforms, **moved}
+            try:
+                if posed is not None:
+                    native.set_pose(posed.native())
+                native.set_transforms(*split_transforms(new if posed is not None else moved))
+            except InputError as error:
+                if any(problem.code not in REMAKES for problem in error.problems):
+                    if posed is not None:
+                        # The next use makes the caster again.
+                        self._opened = None
+                    raise
+                self._opened = self._make(shown, new, None)
+            self._posed, self._transforms = shown, new
+
     def _open(self, progress: Progress = None) -> tuple[Device, _promin.Caster, NDArray[np.float64]]:
         opened = self._opened
         if opened is not None:
             return opened
         with self._lock:
             if self._opened is None:
-                device = find_device(self._chosen)
-                scene = self._scene.native()
-                native = _promin.Caster(device._native, scene, *self._options, progress)
-                self._opened = device, native, self._scene.native_center
+                self._opened = self._make(self._posed, self._transforms, progress)
             return self._opened
+
+    def _make(
+        self, posed: Scene, transforms: dict[int, NDArray[np.float64]], progress: Progress
+    ) -> tuple[Device, _promin.Caster, NDArray[np.float64]]:
+        device = find_device(self._chosen)
+        scene = posed.native()
+        if transforms:
+            scene = scene.moved(*split_transforms(transforms))
+        native = _promin.Caster(device._native, scene, *self._options, progress)
+        return device, native, self._scene.native_center
 
     def _make_private(self) -> None:
         """Creates the members that are not pickled: the native objects, and the lock that protects them."""

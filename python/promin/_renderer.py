@@ -9,7 +9,7 @@ import inspect
 import os
 import threading
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from operator import index
@@ -17,15 +17,25 @@ from pathlib import Path
 from typing import Any, TypeVar, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from promin import _promin
 from promin._caster import Progress
 from promin._device import Device, DeviceLike, find_device
-from promin._errors import UsageError
+from promin._errors import InputError, UsageError
 from promin._frame import Frame, to_mattes
 from promin._records import Camera, Display, Environment, Light, Material, from_dict, suggest, to_dict
-from promin._scene import Scene, SceneLike, move_camera, move_light, replace_one, to_scene, to_world
+from promin._scene import (
+    REMAKES,
+    Scene,
+    SceneLike,
+    move_camera,
+    move_light,
+    replace_one,
+    split_transforms,
+    to_scene,
+    to_world,
+)
 from promin._view import (
     FIELDS,
     CameraLike,
@@ -305,7 +315,9 @@ class Renderer:
         self._check_background(names)
         opened = self._open(names, whole, progress)
         record, shown = self._describe_view(whole)
-        nothing = self._scene.native().describe_empty_picture(record["camera"], *record["size"])
+        nothing = ""
+        if not self._changes.keys() & {"pose", "transforms"}:
+            nothing = self._scene.native().describe_empty_picture(record["camera"], *record["size"])
         if nothing:
             warnings.warn(nothing, stacklevel=3)
         path = self._scene.path
@@ -334,10 +346,25 @@ class Renderer:
         lights: Iterable[Light] | None = None,
         materials: Iterable[Material] | None = None,
         environment: Environment | None = None,
+        time: float | None = None,
+        animation: str | int | Sequence[str | int] | None = 0,
+        loop: bool = False,
+        transforms: Mapping[int, ArrayLike] | None = None,
     ) -> None:
-        """Replaces all lights, all materials or the environment, without building a tree. The number of materials must
-        stay the same. Raises InputError for invalid arguments, and then changes nothing."""
+        """Changes the scene for all later pictures: replaces all lights, all materials or the environment, shows another
+        pose, or moves objects. The number of materials must stay the same.
+
+        time, animation, loop: the pose, like the arguments of Scene.at; None leaves the pose as it is. Lights, materials
+        and objects that `update` has replaced or moved do not move with poses. transforms: new transforms (4, 4) by the
+        objects' numbers, like those of Scene.add_instances. All other objects stay. Instances (docs/instances.md) move
+        in milliseconds; to move other objects, the tree is built again. Framing, exposure, and the light and the ground
+        that the Renderer added do not change, because they belong to the scene of the constructor.
+
+        Raises UsageError and InputError for invalid arguments, and then changes nothing."""
         new: dict[str, Any] = {}
+        moved = {} if transforms is None else self._scene.native_transforms(transforms)
+        if time is not None:
+            new["pose"] = self._scene.at(time, animation, loop=loop)
         if lights is not None:
             new["lights"] = _all_of(lights, Light)
         if materials is not None:
@@ -345,16 +372,58 @@ class Renderer:
         if environment is not None:
             new["environment"] = _all_of([environment], Environment)[0]
         with self._lock:
+            if "pose" in new:
+                self._pose({**self._changes, **new, "transforms": self._moved(moved)})
+                return
             native = self._open().native
             applied: list[str] = []
             try:
                 for name, value in new.items():
                     applied.append(name)
                     self._apply(native, name, value)
+                if moved:
+                    new["transforms"] = self._moved(moved)
+                    if not self._move(native, moved):
+                        self._remake({**self._changes, **new})
             except BaseException:
                 self._take_back(native, applied)
                 raise
             self._changes.update(new)
+
+    def _pose(self, changes: dict[str, Any]) -> None:
+        """Shows the pose of `changes`, and then makes all other changes."""
+        opened = self._open()
+        try:
+            opened.native.set_pose(changes["pose"].native().lit_like(opened.lit))
+            for name, value in changes.items():
+                if name not in ("pose", "transforms"):
+                    self._apply(opened.native, name, value)
+            if not self._move(opened.native, changes["transforms"]):
+                self._remake(changes)
+        except BaseException:
+            # The next use makes the renderer again.
+            self._opened = None
+            raise
+        self._changes = changes
+
+    def _moved(self, transforms: dict[int, NDArray[np.float64]]) -> dict[int, NDArray[np.float64]]:
+        """Returns the transforms of all objects that have moved so far."""
+        return {**self._changes.get("transforms", {}), **transforms}
+
+    def _move(self, native: _promin.Renderer, transforms: dict[int, NDArray[np.float64]]) -> bool:
+        """Moves objects of the native renderer. Returns False if that needs a new tree."""
+        try:
+            native.set_transforms(*split_transforms(transforms))
+        except InputError as error:
+            if any(problem.code not in REMAKES for problem in error.problems):
+                raise
+            return False
+        return True
+
+    def _remake(self, changes: dict[str, Any]) -> None:
+        """Replaces the native renderer by one with these changes."""
+        opened = self._open()
+        self._opened = self._make(opened.aovs, settle_quality(self._view), None, changes)
 
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
         """Changes a material in all later pictures, without building a tree. The arguments are those of
@@ -407,15 +476,23 @@ class Renderer:
         # traced, and the progress callback of this picture may read the lights.
         return opened
 
-    def _make(self, aovs: tuple[str, ...], view: View, progress: Progress) -> _Opened:
+    def _make(
+        self, aovs: tuple[str, ...], view: View, progress: Progress, changes: dict[str, Any] | None = None
+    ) -> _Opened:
         device = find_device(self._chosen)
         lit = self._scene.native().lit(self._light, self._surroundings, self._panorama)
+        changes = dict(self._changes if changes is None else changes)
+        transforms = changes.pop("transforms", {})
+        posed = changes.pop("pose", None)
+        shown = lit if posed is None else posed.native().lit_like(lit)
+        if transforms:
+            shown = shown.moved(*split_transforms(transforms))
         unasked = {"object"} if self._moves(aovs) else set()
         if lit.mixes_unlit():
             unasked.add("unlit")
         native = _promin.Renderer(
             device._native,
-            lit,
+            shown,
             sorted({*aovs, *unasked}),
             self._builder,
             self._bvh,
@@ -426,7 +503,7 @@ class Renderer:
             self._texture_memory,
             progress,
         )
-        for name, value in self._changes.items():
+        for name, value in changes.items():
             self._apply(native, name, value)
         return _Opened(device, native, lit, aovs)
 

@@ -8,7 +8,7 @@ import dataclasses
 import hashlib
 import os
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, Union
@@ -548,7 +548,23 @@ class Scene:
         self.native()
         return self._native_center
 
+    def native_transforms(self, transforms: Mapping[int, ArrayLike]) -> dict[int, NDArray[np.float64]]:
+        """Returns transforms for `native`: from an object's vertices as it stores them to its coordinates. transforms:
+        (4, 4) by the number of the object, from the object's own space to the world. Raises UsageError."""
+        count = self.native().object_count()
+        found: dict[int, NDArray[np.float64]] = {}
+        for number, transform in transforms.items():
+            if isinstance(number, bool) or not isinstance(number, (int, np.integer)) or not 0 <= number < count:
+                raise UsageError(f"transforms has the object {number!r:.80}; give numbers below {count}")
+            matrix = _to_matrix(transform)
+            if self._native_center.any() or int(number) in self._native_moves:
+                moved = self._native_moves.get(int(number), np.zeros(3))
+                matrix = _translation(-self._native_center) @ matrix @ _translation(moved)
+            found[int(number)] = matrix
+        return found
+
     def _make_native(self, center: NDArray[np.float64]) -> _promin.Scene:
+        self._native_moves = {}
         if self._file is not None and not self._has_additions():
             return self._load_base()
         scene = _promin.Scene() if self._file is None else self._load_base().copy()
@@ -560,7 +576,7 @@ class Scene:
                 scene.add_material(to_dict(material))
         elif self._parts and self._material_count() == 0:
             scene.add_material(to_dict(Phong()))
-        moves: dict[int, NDArray[np.float64]] = {}
+        moves = self._native_moves = {}
         number = self._base_count()
         for part in self._parts:
             if isinstance(part, _Instances):
@@ -640,12 +656,14 @@ class Scene:
         self._base = None
         self._native = None
         self._native_center = np.zeros(3)
+        # The translation from the stored vertices of an object to the caller's, if it is not 0.
+        self._native_moves: dict[int, NDArray[np.float64]] = {}
 
     def _forget_native(self) -> None:
         self._native = None
 
     def __getstate__(self) -> dict[str, Any]:
-        private = ("_base", "_lock", "_native", "_native_center")
+        private = ("_base", "_lock", "_native", "_native_center", "_native_moves")
         return {key: value for key, value in self.__dict__.items() if key not in private}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -667,6 +685,16 @@ def to_scene(scene: SceneLike) -> Scene:
     if isinstance(scene, (str, os.PathLike)):
         return Scene.load(scene)
     raise UsageError(f"{scene!r:.80} is not a promin.Scene; load or make one first")
+
+
+REMAKES = ("scene.move.copied", "scene.move.sheared")
+"""The codes of moves that need a new tree."""
+
+
+def split_transforms(transforms: Mapping[int, NDArray[np.float64]]) -> tuple[list[int], NDArray[np.float64]]:
+    """Returns the numbers and the matrices (n, 4, 4) of Scene.native_transforms for the native module."""
+    matrices = np.array(list(transforms.values()), np.float64).reshape(-1, 4, 4)
+    return list(transforms), matrices
 
 
 def replace_one(

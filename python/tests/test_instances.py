@@ -80,3 +80,76 @@ def test_wrong_instances_are_refused(wrong: Any) -> None:
         scene.add_instances(*wrong)
     with pytest.raises(promin.UsageError):
         promin.Caster(scene, instances="some")
+
+
+def make_scene(transforms: NDArray[np.float64], center: float) -> promin.Scene:
+    """Returns a scene with tetrahedra at these transforms, of which the last is not an instance, and a ball."""
+    scene = promin.Scene(center=(center, 0, 0))
+    first = scene.add_triangles(VERTICES, FACES, transform=transforms[0])
+    scene.add_instances(first, transforms[1:-1])
+    scene.add_triangles(VERTICES, FACES, transform=transforms[-1])
+    scene.add_sphere((center, 0, -5), 0.5)
+    return scene
+
+
+@pytest.mark.parametrize("instances", ["none", "all"])
+@pytest.mark.parametrize("center", [0.0, 1e7])
+def test_moved_objects_have_the_hits_of_a_new_caster(instances: str, center: float) -> None:
+    transforms = make_transforms(6, center)
+    caster = promin.Caster(make_scene(transforms, center), instances=instances)
+    for moved in ({2: 4.0}, {0: -2.0, 4: 1.0, 5: 3.0}):
+        for number, y in moved.items():
+            transforms[number, 1, 3] = y
+        caster.update(transforms={number: transforms[number] for number in moved})
+        rays = rays_at(transforms)
+        hits = caster.cast(rays)
+        assert hits["object"].tolist() == list(range(6))
+        assert (hits == promin.Caster(make_scene(transforms, center), instances=instances).cast(rays)).all()
+    again = pickle.loads(pickle.dumps(caster))
+    assert (again.cast(rays) == hits).all()
+
+
+def test_moved_objects_in_pictures() -> None:
+    transforms = make_transforms(6)
+    view = promin.View(size=(48, 16), camera=promin.Camera(eye=(7, 0, 30)))
+    renderer = promin.Renderer(make_scene(transforms, 0.0), instances="all", light="headlight", aovs=("object",))
+    lamp = promin.Light(position=(0, 9, 9), diffuse=(1, 0, 0))
+    renderer.update(lights=[lamp])
+    before = renderer.render(view)
+    transforms[[1, 5], 1, 3] = 2.0
+    # The sphere is not an instance, so the tree is built again.
+    for moved in ({1: transforms[1], 5: transforms[5]}, {6: np.eye(4)}):
+        renderer.update(transforms=moved)
+    frame = renderer.render(view)
+    fresh = promin.Renderer(make_scene(transforms, 0.0), instances="all", light="headlight", aovs=("object",))
+    fresh.update(lights=[lamp])
+    assert (frame.rgb == fresh.render(view).rgb).all() and (frame.rgb != before.rgb).any()
+    assert (pickle.loads(pickle.dumps(renderer)).render(view).rgb == frame.rgb).all()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error"),
+    [
+        ({7: np.eye(4)}, promin.UsageError),
+        ({-1: np.eye(4)}, promin.UsageError),
+        ({"ball": np.eye(4)}, promin.UsageError),
+        ({1: np.eye(3)}, promin.UsageError),
+        ({1: np.zeros((4, 4))}, promin.InputError),
+        ({1: np.full((4, 4), np.nan)}, promin.InputError),
+        # A sphere is not an instance, and this transform distorts it.
+        ({6: np.diag([1.0, 2.0, 3.0, 1.0])}, promin.InputError),
+    ],
+)
+def test_wrong_transforms_change_nothing(wrong: Any, error: type[promin.Error]) -> None:
+    transforms = make_transforms(6)
+    scene = make_scene(transforms, 0.0)
+    caster = promin.Caster(scene, instances="all")
+    renderer = promin.Renderer(scene, instances="all")
+    view = promin.View(size=(16, 16))
+    before = renderer.render(view)
+    with pytest.raises(error):
+        caster.update(transforms={2: transforms[3], **wrong})
+    with pytest.raises(error):
+        renderer.update(transforms={2: transforms[3], **wrong}, lights=[promin.Light()])
+    assert caster.cast(rays_at(transforms))["object"].tolist() == list(range(6))
+    assert (renderer.render(view).rgb == before.rgb).all()

@@ -96,3 +96,36 @@ def test_what_does_not_exist_is_refused(moving_file: Path) -> None:
         scene.at(float("nan"))
     with pytest.raises(promin.UsageError, match="no file"):
         promin.Scene().at(1.0)
+
+
+def test_updates_show_poses(moving_file: Path) -> None:
+    scene = promin.Scene.load(moving_file)
+    scene.add_sphere((0, 0, -3), 1)
+    view = promin.View(size=(24, 24), camera=promin.Camera(eye=(1, 0, 9)))
+    rays = np.zeros((50, 8))
+    rays[:, 0], rays[:, 1], rays[:, 2] = np.linspace(-1, 6, 50), 0.2, 5
+    rays[:, 6], rays[:, 7] = -1, np.inf
+    caster = promin.Caster(scene)
+    renderer = promin.Renderer(scene, light="headlight")
+    choices: list[tuple[float, str | int]] = [(1.0, 0), (1.5, "walk"), (2.0, "grow")]
+    for time, animation in choices:
+        caster.update(time=time, animation=animation)
+        renderer.update(time=time, animation=animation)
+        posed = scene.at(time, animation)
+        assert (caster.cast(rays) == promin.Caster(posed).cast(rays)).all()
+        fresh = promin.Renderer(posed, light="headlight").render(view)
+        assert (renderer.render(view).rgb == fresh.rgb).all()
+    # A moved object and replaced lights do not move with poses.
+    lamp = promin.Light(position=(0, 9, 9), diffuse=(1, 0, 0))
+    transform = np.eye(4)
+    transform[1, 3] = 0.1
+    renderer.update(transforms={0: transform}, lights=[lamp])
+    rested = renderer.render(view)
+    renderer.update(time=0.5)
+    assert (renderer.render(view).rgb == rested.rgb).all()
+    assert (pickle.loads(pickle.dumps(renderer)).render(view).rgb == rested.rgb).all()
+    with pytest.raises(promin.UsageError):
+        renderer.update(time=0.5, animation="fly")
+    with pytest.raises(promin.UsageError):
+        promin.Caster(promin.Scene()).update(time=1.0)
+    assert (renderer.render(view).rgb == rested.rgb).all()

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <random>
@@ -150,6 +151,40 @@ TEST(PackTree, NoPrimitivesAreANodeWithoutChildren) {
   const PackedTree tree = pack_tree(Bvh());
   ASSERT_EQ(tree.nodes.size(), 1U);
   EXPECT_EQ(child_count(tree.nodes[0]), 0U);
+}
+
+TEST(RefitTreeTest, BoxesContainMovedPrimitives) {
+  std::vector<Bounds> boxes = random_boxes(3000, 10.0, 0.2, 5);
+  Bvh bvh = build_bvh("sah", {boxes});
+  PackedTree tree = pack_tree(bvh);
+  const UnsetVector<Node> before = tree.nodes;
+  const double cost = refit_tree(tree.nodes, bvh.references, boxes);
+  EXPECT_EQ(std::memcmp(tree.nodes.data(), before.data(), before.size() * sizeof(Node)), 0)
+      << "unmoved primitives keep all boxes";
+
+  std::mt19937 generator(6);
+  for (Bounds& box : boxes) {
+    const vec3 step(0.01F * static_cast<float>(generator() % 100), 0.0F, -5.0F);
+    box = {box.lo + step, box.hi + step};
+  }
+  EXPECT_GT(refit_tree(tree.nodes, bvh.references, boxes), cost) << "the primitives have moved apart";
+  for (BvhNode& node : bvh.nodes) {
+    if (node.count == 0) continue;
+    node.bounds = {};
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) node.bounds.extend(boxes[bvh.references[i]]);
+  }
+  Walk(tree, bvh, boxes.size()).expect_whole();
+}
+
+TEST(RefitTreeTest, TreesWithoutInnerNodes) {
+  for (const size_t count : {0, 1, 2}) {
+    const std::vector<Bounds> boxes = random_boxes(count, 1.0, 0.5, 2);
+    const Bvh bvh = build_bvh("sah", {boxes});
+    PackedTree tree = pack_tree(bvh);
+    const UnsetVector<Node> before = tree.nodes;
+    refit_tree(tree.nodes, bvh.references, boxes);
+    EXPECT_EQ(std::memcmp(tree.nodes.data(), before.data(), before.size() * sizeof(Node)), 0);
+  }
 }
 
 }  // namespace

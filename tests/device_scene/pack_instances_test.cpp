@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 
@@ -101,6 +102,31 @@ TEST(PackInstancesTest, BoxesContainTheInstances) {
     }
   }
   EXPECT_EQ(found, 40U);
+}
+
+/// Moved instances have the records, the nodes and the bounds of a new tree.
+TEST(PackInstancesTest, MovedInstancesHaveANewUpperLevel) {
+  Scene scene = make_instanced(make_wavy_mesh(500), 300);
+  for (int i = 0; i < 400; ++i) scene.add("", Sphere{.radius = 0.1F}, 0, glm::translate(dmat4(1.0), dvec3(i, 3, 0)));
+  const PackedScene packed = pack_instanced(scene);
+  std::vector<std::pair<uint32_t, dmat4>> moved;
+  for (const uint32_t object : {7U, 0U, 250U}) {
+    scene.objects[object].world_from_object[3] += dvec4(0.0, 500.0, 0.0, 0.0);
+    moved.emplace_back(object, scene.objects[object].world_from_object);
+  }
+  packed.upper->move(moved);
+  const UpperNodes upper = packed.upper->build();
+  const PackedScene fresh = pack_instanced(scene);
+  const UpperNodes same = fresh.upper->build();
+  const auto are_equal = [](std::span<const Node> a, std::span<const Node> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+  };
+  EXPECT_TRUE(are_equal(upper.records, same.records));
+  EXPECT_EQ(upper.nodes.size(), same.nodes.size());
+  EXPECT_EQ(center_and_radius(upper.bounds), fresh.tree_bounds);
+  EXPECT_NE(fresh.tree_bounds, packed.tree_bounds);
+  EXPECT_EQ(upper.stats.sah_cost, same.stats.sah_cost);
+  EXPECT_EQ(packed.upper->instance_count(), 300U);
 }
 
 /// Numbers of parts count within the mesh of an instance.

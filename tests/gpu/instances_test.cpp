@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // These tests compare pictures and hits of instances with those of copied meshes.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include "gpu/device_fixture.h"
 #include "gpu/gallery.h"
@@ -13,6 +18,7 @@
 #include "measure/random.h"
 #include "measure/ray_sets.h"
 #include "promin/caster.h"
+#include "support/problems.h"
 #include "trace/render/caster_access.h"
 #include "trace/render/renderer_impl.h"
 
@@ -143,6 +149,156 @@ TEST_F(InstancesTest, CrossingsAndAnyHits) {
   size_t counted = 0;
   for (const int32_t count : counts[1]) counted += static_cast<size_t>(count);
   EXPECT_EQ(listed, counted);
+}
+
+/// Balls that share a mesh, among other objects. Half of them are mirrored.
+class MovedInstancesTest : public DeviceTest {
+ protected:
+  static constexpr uint32_t kBalls = 40;
+
+  MovedInstancesTest() : scene_(make_scene_of_everything(50)), random_(9) {
+    first_ = static_cast<uint32_t>(scene_.objects.size());
+    scene_.meshes.push_back(std::get<Mesh>(measure::make_wavy_sphere(300).objects[0].shape));
+    for (uint32_t i = 0; i < kBalls; ++i) {
+      scene_.instances.push_back({first_ + i, 0, glm::dmat4x3(1.0)});
+      scene_.objects.push_back({"ball " + std::to_string(i % 3), world::NotDrawn{}, i % 2});
+    }
+    for (uint32_t i = 0; i < kBalls; ++i) move(i, 3.0);
+  }
+
+  /// Gives a ball another transform, at most this far from the origin.
+  std::pair<uint32_t, dmat4> move(uint32_t ball, double distance) {
+    dmat4 map = glm::mat4_cast(glm::angleAxis(random_.uniform(-3.0, 3.0), random_.direction()));
+    for (int axis = 0; axis < 3; ++axis) map[axis] *= random_.uniform(0.1, 0.4);
+    if (random_.uniform(0.0, 1.0) < 0.5) map[1] *= -1.0;
+    map[3] = dvec4(random_.uniform(0.0, distance) * random_.direction(), 1.0);
+    scene_.instances[ball].world_from_object = glm::dmat4x3(map);
+    return {first_ + ball, map};
+  }
+
+  std::vector<std::pair<uint32_t, dmat4>> move_all(double distance) {
+    std::vector<std::pair<uint32_t, dmat4>> moved;
+    for (uint32_t i = 0; i < kBalls; ++i) moved.push_back(move(i, distance));
+    return moved;
+  }
+
+  world::Scene scene_;
+  uint32_t first_ = 0;
+  Random random_;
+};
+
+TEST_F(MovedInstancesTest, PicturesAreThoseOfANewRenderer) {
+  TunedRendererOptions options;
+  options.with_aovs = options.aovs.cryptomatte = true;
+  View view = make_view({48, 32});
+  view.samples_per_pixel = 2;
+  Renderer renderer = make_renderer(device(), scene_, options);
+  const Image first = renderer.render(view).image;
+  const WorkDone before = renderer.work_done();
+  // One moves, then all. The last move changes the bounds of the scene, so rays begin elsewhere.
+  const std::vector<std::vector<std::pair<uint32_t, dmat4>>> moves = {{move(3, 2.0)}, move_all(3.0), {move(5, 1e5)}};
+  for (const auto& moved : moves) renderer.set_transforms(moved);
+  const RenderResult picture = renderer.render(view);
+  const WorkDone after = renderer.work_done();
+  EXPECT_EQ(after.trees_built, before.trees_built);
+  EXPECT_EQ(after.geometry_bytes_uploaded, before.geometry_bytes_uploaded);
+  EXPECT_EQ(after.pipelines_compiled, before.pipelines_compiled);
+  EXPECT_GT(after.move_bytes_uploaded, 3 * kBalls * layout::INSTANCE_RECORDS * sizeof(layout::Node));
+  EXPECT_LT(after.move_bytes_uploaded, 3 * kBalls * 200U);
+
+  const RenderResult fresh = make_renderer(device(), scene_, options).render(view);
+  EXPECT_TRUE(has_same_bits(picture.image, fresh.image));
+  EXPECT_FALSE(has_same_bits(picture.image, first));
+  EXPECT_GT(std::ranges::count_if(fresh.aovs.object, [&](uint32_t id) { return id >= first_ && id != Aovs::kNoId; }),
+            20);
+  EXPECT_EQ(picture.aovs.depth, fresh.aovs.depth);
+  EXPECT_EQ(picture.aovs.object, fresh.aovs.object);
+  EXPECT_EQ(picture.aovs.primitive, fresh.aovs.primitive);
+  EXPECT_EQ(picture.aovs.normal, fresh.aovs.normal);
+  EXPECT_EQ(picture.aovs.position, fresh.aovs.position);
+  EXPECT_EQ(picture.rays.shadow, fresh.rays.shadow);
+  EXPECT_EQ(picture.aovs.object_coverage, fresh.aovs.object_coverage);
+  EXPECT_EQ(picture.aovs.material_coverage, fresh.aovs.material_coverage);
+}
+
+/// After the first pose, poses in which only instances move upload nothing else.
+TEST_F(MovedInstancesTest, PosesMoveInstances) {
+  TunedRendererOptions options;
+  options.with_aovs = options.aovs.cryptomatte = true;
+  const View view = make_view({48, 32});
+  Renderer renderer = make_renderer(device(), scene_, options);
+  RendererAccess::set_pose(renderer, scene_, TreeOfPose::kRefitted);
+  const WorkDone before = renderer.work_done();
+  move_all(2.0);
+  RendererAccess::set_pose(renderer, scene_, TreeOfPose::kRefitted);
+  const WorkDone after = renderer.work_done();
+  EXPECT_EQ(after.geometry_bytes_uploaded, before.geometry_bytes_uploaded);
+  EXPECT_EQ(after.trees_built, before.trees_built);
+  const RenderResult fresh = make_renderer(device(), scene_, options).render(view);
+  EXPECT_TRUE(has_same_bits(renderer.render(view).image, fresh.image));
+  // A sphere beside the instances moves.
+  for (world::Object& object : scene_.objects) {
+    if (auto* sphere = std::get_if<world::Sphere>(&object.shape)) sphere->center.y += 0.5F;
+  }
+  RendererAccess::set_pose(renderer, scene_, TreeOfPose::kRefitted);
+  EXPECT_GT(renderer.work_done().geometry_bytes_uploaded, after.geometry_bytes_uploaded);
+  EXPECT_TRUE(has_same_bits(renderer.render(view).image, make_renderer(device(), scene_, options).render(view).image));
+}
+
+TEST_F(MovedInstancesTest, HitsAreThoseOfANewCaster) {
+  Caster caster = make_caster(device(), scene_);
+  const std::vector<Ray> rays = make_rays(20000);
+  const auto list_all = [&](Caster& of) {
+    std::vector<Hit> hits;
+    of.list(rays, [&](const HitList& list) { hits.insert(hits.end(), list.hits.begin(), list.hits.end()); });
+    return hits;
+  };
+  list_all(caster);
+  // First all balls have one centre, later they do not, so the upper level needs more or less space.
+  for (const double distance : {0.0, 3.0, 1e4}) {
+    caster.set_transforms(move_all(distance));
+    Caster fresh = make_caster(device(), scene_);
+    std::vector<Hit> hits(rays.size());
+    std::vector<Hit> fresh_hits(rays.size());
+    for (const HitQuery query : {HitQuery::kNearest, HitQuery::kAny}) {
+      caster.cast(rays, hits, query);
+      fresh.cast(rays, fresh_hits, query);
+      EXPECT_EQ(std::memcmp(hits.data(), fresh_hits.data(), hits.size() * sizeof(Hit)), 0);
+    }
+    const std::vector<Hit> listed = list_all(caster);
+    const std::vector<Hit> fresh_listed = list_all(fresh);
+    ASSERT_EQ(listed.size(), fresh_listed.size());
+    EXPECT_EQ(std::memcmp(listed.data(), fresh_listed.data(), listed.size() * sizeof(Hit)), 0);
+  }
+}
+
+TEST_F(MovedInstancesTest, WrongTransformsChangeNothing) {
+  Caster caster = make_caster(device(), scene_);
+  const std::vector<Ray> rays = make_rays(1000);
+  std::vector<Hit> before(rays.size());
+  caster.cast(rays, before);
+  dmat4 sheared(1.0);
+  sheared[1].x = 50.0;
+  dmat4 far(1.0);
+  far[3].x = 1e16;
+  dmat4 projective(1.0);
+  projective[0].w = 1.0;
+  const auto refuse = [&](uint32_t object, const dmat4& transform, const char* code) {
+    const std::vector<std::pair<uint32_t, dmat4>> moved = {{first_ + 1, dmat4(1.0)}, {object, transform}};
+    EXPECT_THAT([&] { caster.set_transforms(moved); }, FailsWith(code));
+  };
+  refuse(9999, dmat4(1.0), "scene.reference.range");
+  refuse(0, dmat4(1.0), "scene.move.copied");
+  refuse(first_, dmat4(std::numeric_limits<double>::quiet_NaN()), "scene.transform.range");
+  refuse(first_, dmat4(0.0), "scene.transform.affine");
+  refuse(first_, projective, "scene.transform.affine");
+  refuse(first_, dmat4(dmat3(0.0)), "scene.transform.singular");
+  refuse(first_, sheared, "scene.move.sheared");
+  refuse(first_, far, "scene.position.far");
+  std::vector<Hit> after(rays.size());
+  caster.cast(rays, after);
+  EXPECT_EQ(std::memcmp(before.data(), after.data(), before.size() * sizeof(Hit)), 0);
+  caster.set_transforms({});
 }
 
 /// Kernels that can trace instances give the same bits for a scene without instances.

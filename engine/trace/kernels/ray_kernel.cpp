@@ -55,9 +55,8 @@ struct RayKernel::Impl {
         options(the_options),
         pacer(options.target_dispatch_ms.value_or(device.profile().target_dispatch_ms), kFirstRays) {
     const Stopwatch compiling;
-    const layout::ViewConstants values = make_cast_constants(scene->constants());
-    view_constants.emplace(device, sizeof values, vk::BufferUsageFlagBits::eUniformBuffer);
-    view_constants->write(std::as_bytes(std::span(&values, 1)));
+    view_constants.emplace(device, sizeof(layout::ViewConstants), vk::BufferUsageFlagBits::eUniformBuffer);
+    take_constants();
     make_buffers(1, 1);
     std::vector<gpu::SpecializationConstant> constants =
         traversal_constants(options.traversal.value_or(traversal_form(device.profile(), *scene, options.packet_size)),
@@ -75,6 +74,11 @@ struct RayKernel::Impl {
     const layout::Dispatch no_rays = make_cast_dispatch(scene->constants(), 0, 0);
     kernel->run(no_rays, *hits, uvec2(1));
     pipeline_ms = compiling.ms();
+  }
+
+  void take_constants() {
+    const layout::ViewConstants values = make_cast_constants(scene->constants());
+    view_constants->write(std::as_bytes(std::span(&values, 1)));
   }
 
   std::array<gpu::BoundBuffer, 3> ray_buffers() const {
@@ -235,6 +239,10 @@ uint64_t RayKernel::most_listed(size_t ray_count) const {
   const uint64_t most_records = (bytes - sizeof(layout::Dispatch)) / sizeof(layout::HitRecord);
   // Places are 32-bit numbers.
   return std::min<uint64_t>(most_records, UINT32_MAX) - std::min<uint64_t>(ray_count, most_records);
+}
+
+void RayKernel::take_constants() {
+  impl_->take_constants();
 }
 
 double RayKernel::pipeline_ms() const {

@@ -84,6 +84,9 @@ class RayKernel {
   /// Returns the largest number of crossings of this number of rays that a buffer of the device can hold.
   uint64_t most_listed(size_t ray_count) const;
 
+  /// Uses the constants of the scene again after they have changed. The kernel's buffers must still be the scene's.
+  void take_constants();
+
   /// Returns the time of compilation in milliseconds.
   double pipeline_ms() const;
 

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <ranges>
 #include <tuple>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "trace/kernels/ray_kernel.h"
 #include "trace/render/caster_access.h"
 #include "trace/render/copied_hits.h"
+#include "trace/render/move_instances.h"
 
 namespace promin {
 namespace {
@@ -155,24 +157,79 @@ size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
 // This struct is hidden, although the class around it is not (promin/export.h).
 struct __attribute__((visibility("hidden"))) Caster::Impl {
   Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedCasterOptions& options)
-      : device(the_device), spirv(options.spirv.begin(), options.spirv.end()) {
+      : device(the_device),
+        spirv(options.spirv.begin(), options.spirv.end()),
+        builder(options.builder),
+        instancing(options.instances),
+        material_count(the_scene.materials.size()) {
     PackedScene packed = pack_scene_by(options, the_scene);
     stats.warnings = packed.warnings;
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
     stats.upload_ms = uploading.ms();
+    take(packed, the_scene);
+  }
+
+  /// Takes the host's data of a packed scene that has been uploaded.
+  void take(PackedScene& packed, const world::Scene& the_scene) {
+    if (packed.numbers.are_instances_whole) throw_too_many(the_scene);
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = scene->size_bytes();
     stats.degenerate_triangles = packed.degenerate_count;
-    features = packed.features.common_with(primitive_features());
+    features |= packed.features.common_with(primitive_features());
     stats.features = feature_names(features);
     numbers = std::move(packed.numbers);
-    if (numbers.are_instances_whole) throw_too_many(the_scene);
+    upper = std::move(packed.upper);
     copies = CopiedHits(packed.copies, numbers);
-    cube = {vec3(packed.tree_bounds), packed.tree_bounds.w};
+    cube = cube_of(packed.tree_bounds);
     // The tree refers to each primitive at least once.
     repeats_primitives = packed.references.size() > packed.bounded_count;
+  }
+
+  void set_pose(const world::Scene& posed) {
+    if (!posed.instances.empty()) {
+      if (const std::optional<bool> must_bind = move_to_pose(posed, copies.empty(), instanced_hash, upper, *scene)) {
+        cube = cube_of(scene->constants().tree_bounds);
+        return update_kernels(*must_bind);
+      }
+    }
+    const FeatureMask features_before = features;
+    PackedScene packed = posed.instances.empty() ? pack_pose(posed, builder, TreeOfPose::kRefitted, kept_tree)
+                                                 : pack_scene(posed, builder);
+    if (packed.numbers.are_instances_whole) throw_too_many(posed);
+    packed.stack_size = std::max(packed.stack_size, scene->stack_size());
+    const Stopwatch uploading;
+    bool must_bind = true;
+    if (scene->has_space_for(packed)) {
+      must_bind = scene->set_geometry(packed, nullptr);
+    } else {
+      scene = upload_scene(device, packed);
+    }
+    stats.upload_ms = uploading.ms();
+    take(packed, posed);
+    update_kernels(must_bind || features != features_before);
+  }
+
+  static SceneCube cube_of(const vec4& tree_bounds) { return {vec3(tree_bounds), tree_bounds.w}; }
+
+  void set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+    const bool must_bind = move_instances(world_from_object, numbers, upper, *scene);
+    cube = cube_of(scene->constants().tree_bounds);
+    update_kernels(must_bind);
+  }
+
+  /// Updates the kernels after the scene has changed.
+  void update_kernels(bool must_bind) {
+    for (std::optional<RayKernel>& kernel : kernels | std::views::join) {
+      if (!kernel) continue;
+      if (must_bind) {
+        // It is made again when it is needed.
+        kernel.reset();
+      } else {
+        kernel->take_constants();
+      }
+    }
   }
 
   enum class Order { kAsGiven, kInPackets, kSorted };
@@ -320,8 +377,16 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   const gpu::Device& device;
   /// A copy of the SPIR-V, because kernels are compiled when they are needed.
   std::vector<uint32_t> spirv;
-  std::shared_ptr<const DeviceScene> scene;
+  std::shared_ptr<DeviceScene> scene;
   PrimitiveNumbers numbers;
+  std::shared_ptr<const UpperLevel> upper;
+  std::string builder;
+  Instancing instancing;
+  size_t material_count;
+  /// The hash of a scene with instances (hash_instanced), if it is known.
+  std::optional<uint64_t> instanced_hash;
+  /// The tree for other poses.
+  KeptTree kept_tree;
   CopiedHits copies;
   FeatureMask features;
   SetupStats stats;
@@ -454,6 +519,17 @@ double Caster::list(std::span<const Ray> rays, const HitListSink& sink, uint64_t
     }
   }
   return time_ms;
+}
+
+void Caster::set_pose(const Scene& posed) {
+  throw_if_invalid(posed);
+  check_same_scene(posed, impl_->numbers.first_order.size() - 1, impl_->material_count);
+  gpu::translate_vulkan_errors(
+      [&] { impl_->set_pose(world::flatten(posed, world::Purpose::kHits, impl_->instancing)); });
+}
+
+void Caster::set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+  gpu::translate_vulkan_errors([&] { impl_->set_transforms(world_from_object); });
 }
 
 Caster CasterAccess::make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options) {

@@ -49,6 +49,8 @@ struct RendererAccess {
   static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
   static SceneOnDevice& scene_of(Renderer& renderer);
   static const SceneOnDevice& scene_of(const Renderer& renderer);
+  /// PictureTracer::set_pose() for a valid scene.
+  static void set_pose(Renderer& renderer, const world::Scene& posed, TreeOfPose tree);
   /// PictureTracer::render_sample() for a valid view.
   static RenderResult render_sample(Renderer& renderer, const View& view, uint32_t sample,
                                     const ProgressCallback& progress);

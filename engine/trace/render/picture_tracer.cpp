@@ -127,6 +127,19 @@ void PictureTracer::take_change() {
   }
 }
 
+void PictureTracer::set_pose(const world::Scene& posed, TreeOfPose tree) {
+  // Steps show the tree, so it must be that of a new renderer.
+  const bool shows_tree = wanted_.steps || options_.mode.debug_view == DebugView::kSteps;
+  switch (scene_.set_pose(device_, posed, options_, shows_tree ? TreeOfPose::kBuilt : tree, stats_)) {
+    case SceneOnDevice::PoseChange::kOfScene:
+      return take_change();
+    case SceneOnDevice::PoseChange::kToOtherScene:
+      film_.reset();
+      middle_film_.reset();
+      occlusion_film_.reset();
+  }
+}
+
 void PictureTracer::trace_window(Film& onto, const PixelWindow& window, const View& view, const SampleRange& samples,
                                  RenderResult& result, const ProgressCallback& on_progress) {
   TileOptions cut = onto.piece_options(view.max_depth);
@@ -370,9 +383,10 @@ void PictureTracer::render_progressively(const View& view, double budget_ms,
 }
 
 WorkDone PictureTracer::work_done() const {
-  const DeviceScene::Uploads& uploads = scene_.device_scene()->uploads();
-  return {.trees_built = scene_.is_tree_built() ? 1U : 0U,
+  const DeviceScene::Uploads uploads = scene_.uploads();
+  return {.trees_built = scene_.trees_built(),
           .geometry_bytes_uploaded = uploads.geometry,
+          .move_bytes_uploaded = uploads.moves,
           .shading_bytes_uploaded = uploads.shading,
           .pipelines_compiled = device_.compiled_pipelines().size() - pipelines_before_};
 }

@@ -48,6 +48,11 @@ class PictureTracer {
   /// created again when it is needed.
   void take_change();
 
+  /// Shows the scene in another pose. It has the objects, materials and cameras of the constructor's scene.
+  void set_pose(const world::Scene& posed, TreeOfPose tree);
+
+  const TunedRendererOptions& options() const { return options_; }
+
   // The following functions are like those of Renderer, for valid views.
   RenderResult render(const View& view, const ProgressCallback& progress);
   /// Renders one sample of each pixel of a view that has a fixed number of samples. The mean of the results of all

@@ -117,6 +117,24 @@ void Renderer::set_environment(const Environment& environment) {
   });
 }
 
+void Renderer::set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+  gpu::translate_vulkan_errors([&] {
+    if (impl_->tracer.scene().set_transforms(world_from_object)) impl_->tracer.take_change();
+  });
+}
+
+void RendererAccess::set_pose(Renderer& renderer, const world::Scene& posed, TreeOfPose tree) {
+  gpu::translate_vulkan_errors([&] { renderer.impl_->tracer.set_pose(posed, tree); });
+}
+
+void Renderer::set_pose(const Scene& posed) {
+  throw_if_invalid(posed);
+  const SceneOnDevice& scene = impl_->tracer.scene();
+  check_same_scene(posed, scene.object_materials().size(), scene.material_count());
+  RendererAccess::set_pose(*this, world::flatten(posed, world::Purpose::kPictures, impl_->tracer.options().instances),
+                           TreeOfPose::kRefitted);
+}
+
 Explanation Renderer::explain(const View& view, const uvec2& pixel) {
   check_view(view);
   check("view.pixel.outside", pixel.x < view.size.x && pixel.y < view.size.y,

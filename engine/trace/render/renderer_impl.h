@@ -11,6 +11,7 @@
 #include "scene/features.h"
 #include "trace/film/film.h"
 #include "trace/render/make_renderer.h"
+#include "trace/render/move_instances.h"
 
 // Access to the implementation of Renderer. The window needs it, because it records its own frames; tests and
 // measurements need it too.
@@ -23,9 +24,11 @@ class SceneOnDevice {
                 SetupStats& stats);
 
   const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
+  /// Returns the bytes copied to the device so far, also to earlier scenes.
+  DeviceScene::Uploads uploads() const { return earlier_uploads_ + device_scene_->uploads(); }
   const PrimitiveNumbers& numbers() const { return numbers_; }
-  /// Returns whether the tree was built in this process and not read from a file.
-  bool is_tree_built() const { return is_tree_built_; }
+  /// Returns the number of trees that were built in this process and not read from a file.
+  uint64_t trees_built() const { return trees_built_; }
   size_t material_count() const { return shown_materials_.size(); }
   /// Returns the materials of copies that are not in the tree (device_scene/drop_copies.h).
   const std::set<uint32_t>& copied_materials() const { return copied_materials_; }
@@ -41,10 +44,36 @@ class SceneOnDevice {
   void set_lights(std::span<const Light> lights);
   void set_materials(std::span<const Material> materials);
   void set_environment(const Environment& environment);
+  /// The state of films after a change of the pose.
+  enum class PoseChange {
+    /// The scene must be bound to films again.
+    kOfScene,
+    /// The device has another scene, so films must be created again.
+    kToOtherScene,
+  };
+  /// Replaces everything but images and textures by that of the scene in another pose, for pictures of a renderer with
+  /// these options. The number of objects and of materials stays the same.
+  PoseChange set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
+                      TreeOfPose tree, SetupStats& stats);
+  /// Calls move_instances() for this scene.
+  bool set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+    return move_instances(world_from_object, numbers_, upper_, *device_scene_);
+  }
 
  private:
+  /// Uploads a packed scene. The tree of the scene may have been read from a file.
+  void upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed, SetupStats& stats);
+  /// Takes the host's data of a packed scene, and the cost of its tree.
+  void take(const world::Scene& scene, PackedScene& packed, SetupStats& stats);
+  /// Sets the pose if only instances have moved. Returns false if anything else differs.
+  bool move_only(const world::Scene& posed);
+  /// Returns whether images have the same levels.
+  bool has_images_of(const world::Scene& posed, const PackedScene& packed) const;
+
   FeatureMask more_features_;
-  bool is_tree_built_ = true;
+  uint64_t trees_built_ = 0;
+  /// The bytes copied to scenes that this one has replaced.
+  DeviceScene::Uploads earlier_uploads_;
   FeatureMask geometry_features_;
   FeatureMask material_features_;
   FeatureMask light_features_;
@@ -54,6 +83,14 @@ class SceneOnDevice {
   std::set<uint32_t> copied_materials_;
   std::vector<uint32_t> object_materials_;
   PrimitiveNumbers numbers_;
+  std::shared_ptr<const UpperLevel> upper_;
+  /// The hash of everything but the transforms of a scene with instances (hash_instanced), if it is known.
+  std::optional<uint64_t> instanced_hash_;
+  /// The tree for other poses.
+  KeptTree kept_tree_;
+  std::vector<std::shared_ptr<const TextureImage>> images_;
+  std::vector<Texture> textures_;
+  std::vector<float> mask_cutoffs_;
   std::shared_ptr<DeviceScene> device_scene_;
 };
 

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
 #include "core/stopwatch.h"
 #include "device/device.h"
 #include "trace/render/renderer_impl.h"
@@ -16,29 +19,84 @@ PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options)
 
 SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
                              SetupStats& stats)
-    : more_features_(options.more_features) {
-  for (const world::Object& object : scene.objects) object_materials_.push_back(object.material);
+    : more_features_(options.more_features), images_(scene.images), textures_(scene.textures) {
   PackedScene packed = pack(scene, options);
-  is_tree_built_ = packed.file == nullptr;
-  stats.bvh = packed.bvh;
-  stats.bvh_ms = packed.bvh_ms;
-  stats.degenerate_triangles = packed.degenerate_count;
-  stats.warnings = packed.warnings;
-  if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
-  geometry_features_ = packed.features;
-  shown_materials_ = packed.shown_materials;
-  primitive_count_ = packed.primitive_count();
+  upload(device, scene, packed, stats);
+  take(scene, packed, stats);
   material_features_ = promin::material_features(scene.materials, shown_materials_);
   light_features_ = promin::light_features(scene.lights);
   environment_features_ = promin::environment_features(scene.environment);
+}
+
+void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed,
+                           SetupStats& stats) {
   const Stopwatch uploading;
   device_scene_ = upload_scene(
       device, packed,
       {scene.materials, scene.textures, scene.lights, scene.environment, std::make_shared<const GlassSolids>(scene)});
   stats.upload_ms = uploading.ms();
+  stats.warnings = packed.warnings;
+  if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
+  mask_cutoffs_ = packed.mask_cutoffs;
+}
+
+void SceneOnDevice::take(const world::Scene& scene, PackedScene& packed, SetupStats& stats) {
+  if (packed.file == nullptr && !packed.is_tree_fitted) ++trees_built_;
+  stats.bvh = packed.bvh;
+  stats.bvh_ms = packed.bvh_ms;
+  stats.degenerate_triangles = packed.degenerate_count;
   stats.device_bytes = device_scene_->size_bytes();
+  object_materials_.clear();
+  for (const world::Object& object : scene.objects) object_materials_.push_back(object.material);
+  // Features stay when a pose hides an object, because other kernels would have to be compiled.
+  geometry_features_ |= packed.features;
+  shown_materials_.resize(packed.shown_materials.size(), false);
+  for (size_t i = 0; i < shown_materials_.size(); ++i) {
+    shown_materials_[i] = shown_materials_[i] || packed.shown_materials[i];
+  }
+  primitive_count_ = std::max(primitive_count_, packed.primitive_count());
   numbers_ = std::move(packed.numbers);
+  upper_ = std::move(packed.upper);
   copied_materials_ = std::move(packed.copies.materials);
+}
+
+bool SceneOnDevice::has_images_of(const world::Scene& posed, const PackedScene& packed) const {
+  return posed.images == images_ && posed.textures == textures_ && packed.mask_cutoffs == mask_cutoffs_;
+}
+
+bool SceneOnDevice::move_only(const world::Scene& posed) {
+  const bool may_move = copied_materials_.empty() && posed.images == images_ && posed.textures == textures_ &&
+                        find_mask_cutoffs(posed) == mask_cutoffs_;
+  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_).has_value();
+}
+
+SceneOnDevice::PoseChange SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& posed,
+                                                  const TunedRendererOptions& options, TreeOfPose tree,
+                                                  SetupStats& stats) {
+  auto change = PoseChange::kOfScene;
+  if (posed.instances.empty() || !move_only(posed)) {
+    PackedScene packed = posed.instances.empty() ? pack_pose(posed, options.builder, tree, kept_tree_)
+                                                 : pack_scene(posed, options.builder, {}, options.texture_bytes);
+    if (options.repack) packed = options.repack(std::move(packed));
+    packed.stack_size = std::max(packed.stack_size, device_scene_->stack_size());
+    const Stopwatch uploading;
+    if (has_images_of(posed, packed) && device_scene_->has_space_for(packed)) {
+      device_scene_->set_geometry(packed, std::make_shared<const GlassSolids>(posed));
+      stats.upload_ms = uploading.ms();
+    } else {
+      if (posed.instances.empty()) add_images(packed, posed, options.texture_bytes);
+      earlier_uploads_ = uploads();
+      upload(device, posed, packed, stats);
+      images_ = posed.images;
+      textures_ = posed.textures;
+      change = PoseChange::kToOtherScene;
+    }
+    take(posed, packed, stats);
+  }
+  set_materials(posed.materials);
+  set_lights(posed.lights);
+  set_environment(posed.environment);
+  return change;
 }
 
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const {

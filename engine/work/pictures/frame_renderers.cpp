@@ -30,7 +30,6 @@ FrameRenderers::FrameRenderers(const gpu::Device& device, const PictureRun& run,
 
 Renderer& FrameRenderers::at(const PlannedFrame& frame) {
   if (renderer_ && time_s_ == frame.time_s) return *renderer_;
-  renderer_.reset();
   if (run_.moving == nullptr) {
     renderer_.emplace(make_renderer(device_, run_.scene, options_));
   } else {
@@ -40,10 +39,26 @@ Renderer& FrameRenderers::at(const PlannedFrame& frame) {
     if (!frame.camera && find_file_camera(scene, view) != nullptr) {
       camera_ = make_view(scene, view, Messages()).camera;
     }
-    renderer_.emplace(make_renderer(device_, scene, options_));
+    if (renderer_) {
+      change_pose(scene);
+    } else {
+      renderer_.emplace(make_renderer(device_, scene, options_));
+    }
   }
   time_s_ = frame.time_s;
   return *renderer_;
+}
+
+void FrameRenderers::change_pose(const Scene& scene) {
+  // Tracing a frame takes longer than building a tree, so a better tree pays. The samples of an open shutter are traced
+  // in little time.
+  const TreeOfPose tree = run_.options.shutter ? TreeOfPose::kRefitted : TreeOfPose::kBuilt;
+  try {
+    RendererAccess::set_pose(*renderer_, world::flatten(scene, world::Purpose::kPictures, options_.instances), tree);
+  } catch (...) {
+    renderer_.reset();
+    throw;
+  }
 }
 
 void FrameRenderers::describe(const PlannedFrame& frame, View& view, RunStats& stats) const {

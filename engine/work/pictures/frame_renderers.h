@@ -11,8 +11,8 @@
 
 namespace promin::work {
 
-/// The renderers of a run's frames: one for all frames if the scene rests, otherwise one for each time. A later
-/// renderer compiles no kernel, unless its tree needs a far larger stack than that of the first.
+/// The renderer of a run's frames, which shows the scene in the pose of each frame. A later frame compiles no kernel,
+/// unless its tree needs a far larger stack than that of the first.
 class FrameRenderers {
  public:
   /// The arguments must outlive this object.
@@ -21,13 +21,15 @@ class FrameRenderers {
   FrameRenderers(const FrameRenderers&) = delete;
   FrameRenderers& operator=(const FrameRenderers&) = delete;
 
-  /// Returns the renderer of a frame. References to earlier renderers become invalid. Throws InputError if the pose of
-  /// the frame is refused, and the errors of Renderer's constructor.
+  /// Returns the renderer, which shows the pose of a frame. References to earlier renderers become invalid. Throws
+  /// InputError if the pose of the frame is refused, and the errors of Renderer's constructor.
   Renderer& at(const PlannedFrame& frame);
   /// Sets the members of a view and of statistics that depend on the frame: the camera and the time. Call at() first.
   void describe(const PlannedFrame& frame, View& view, RunStats& stats) const;
 
  private:
+  void change_pose(const Scene& scene);
+
   const gpu::Device& device_;
   const PictureRun& run_;
   TunedRendererOptions options_;

@@ -48,10 +48,7 @@ MovingScene::MovingScene(Scene scene, PoseChoice clip)
 
 void MovingScene::take_light(const Scene& lit_envelope, const std::vector<uint32_t>& lights_off) {
   lit_ = lit_envelope;
-  // The last object may be a ground (ground.h), which no pose moves.
-  if (lit_.objects.size() > envelope_.objects.size()) {
-    ground_ = std::get<Plane>(lit_.geometries[lit_.objects.back().geometry]);
-  }
+  ground_ = find_ground(lit_, envelope_.objects.size());
   // Only its lights, materials and environment are used.
   lit_.geometries.clear();
   lit_.objects.clear();
@@ -62,18 +59,28 @@ void MovingScene::take_light(const Scene& lit_envelope, const std::vector<uint32
 Scene MovingScene::at(double time_s) const {
   PoseChoice choice = clip_;
   choice.time_s = time_s;
-  Scene posed = scene_at(scene_, choice);
-  for (size_t i = posed.lights.size(); i < lit_.lights.size(); ++i) posed.lights.push_back(lit_.lights[i]);
+  Scene posed = with_light_of(scene_at(scene_, choice), lit_, ground_);
   switch_lights(posed.lights, lights_off_);
-  posed.environment = lit_.environment;
+  return posed;
+}
+
+std::optional<Plane> find_ground(const Scene& lit, size_t own_objects) {
+  if (lit.objects.size() <= own_objects) return std::nullopt;
+  // No pose moves it.
+  return std::get<Plane>(lit.geometries[lit.objects.back().geometry]);
+}
+
+Scene with_light_of(Scene posed, const Scene& lit, const std::optional<Plane>& ground) {
+  for (size_t i = posed.lights.size(); i < lit.lights.size(); ++i) posed.lights.push_back(lit.lights[i]);
+  posed.environment = lit.environment;
   for (size_t i = 0; i < posed.materials.size(); ++i) {
     auto* phong = std::get_if<Phong>(&posed.materials[i].model);
-    const auto* lit = std::get_if<Phong>(&lit_.materials[i].model);
-    if (phong != nullptr && lit != nullptr) phong->ambient = lit->ambient;
+    const auto* phong_lit = std::get_if<Phong>(&lit.materials[i].model);
+    if (phong != nullptr && phong_lit != nullptr) phong->ambient = phong_lit->ambient;
   }
-  if (ground_) {
-    posed.materials.push_back(lit_.materials.back());
-    posed.add(lit_.materials.back().name, *ground_, static_cast<uint32_t>(posed.materials.size() - 1));
+  if (ground) {
+    posed.materials.push_back(lit.materials.back());
+    posed.add(lit.materials.back().name, *ground, static_cast<uint32_t>(posed.materials.size() - 1));
   }
   return posed;
 }

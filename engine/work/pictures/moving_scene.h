@@ -16,6 +16,13 @@ inline constexpr double kDefaultFps = 24.0;
 /// The largest number of poses from which properties of a whole film are computed.
 inline constexpr size_t kMostSampledPoses = 64;
 
+/// Returns the plane under a scene that light_up() has added after its own objects (ground.h).
+std::optional<Plane> find_ground(const Scene& lit, size_t own_objects);
+
+/// Returns a scene with what light_up() has added to the same scene in another pose: lights, the environment, ambient
+/// light and the ground.
+Scene with_light_of(Scene posed, const Scene& lit, const std::optional<Plane>& ground);
+
 /// A scene whose frames have different poses. Framing, light and features belong to the animations and not to a frame,
 /// so that a frame has the same pixels alone and in any sequence.
 class MovingScene {
