@@ -135,12 +135,13 @@ void render_frames(const PictureRun& run, const Stopwatch& total, const gpu::Dev
     for (const std::filesystem::path& file : files) films.push_back(std::make_unique<FilmFile>(file, header));
   }
   Progress progress(console.is_quiet());
+  FrameMotion motion(run);
   const View asked = *stats.view;
   const std::optional<double> limit_s = options.error.time_limit_s;
   for (size_t i = 0; i < frames.size(); ++i) {
     const PlannedFrame& frame = frames[i];
     const std::string name = frame.number ? fmt::format("frame {}", *frame.number) : "";
-    Renderer& renderer = renderers.at(frame);
+    renderers.at(frame);
     stats.view = asked;
     renderers.describe(frame, *stats.view, stats);
     // The first frame's time includes loading and compiling; each frame's time includes writing its pictures.
@@ -154,8 +155,7 @@ void render_frames(const PictureRun& run, const Stopwatch& total, const gpu::Dev
         return !while_filming || !while_filming->is_pending();
       };
       const auto tracer = [&](const View& view, const std::optional<double>& left, const ProgressCallback& tell) {
-        return options.shutter ? trace_open_shutter(renderers, run, frame, view, tell)
-                               : trace(renderer, view, options, left, tell);
+        return trace_frame(renderers, motion, run, frame, view, left, tell);
       };
       render_frame(frame, options, left_s, device, scene, tracer, stats, films, on_progress);
       if (limit_s) {

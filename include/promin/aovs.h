@@ -38,8 +38,8 @@ using CoverageRanks = std::array<Coverage, kCoverageRanks>;
 /// kParts sums one component of the light (e.g. direct light) over all samples. kSteps needs a pass of its own.
 /// kSampling describes the sampling and costs nothing. kUnlit sums the share of unlit surfaces over all samples and
 /// costs less than kParts. kOcclusion needs a pass of its own with the samples of the picture, or with 64 samples if
-/// the picture has an error target.
-enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling, kUnlit, kOcclusion };
+/// the picture has an error target. kMotion is computed from AOVs of kSurface and the scene of the next frame.
+enum class AovSource : uint32_t { kSurface, kParts, kSteps, kSampling, kUnlit, kOcclusion, kMotion };
 
 /// A selection of AOVs. Each member has the name of the member of Aovs that it selects.
 struct AovSet {
@@ -73,6 +73,9 @@ struct AovSet {
 ///   - object, primitive: the same as Hit::object and Hit::primitive; kNoId on a miss
 ///   - material: index into Scene::materials; kNoId on a miss
 ///   - steps: number of node steps and primitive tests of the ray
+///   - motion: the movement of the surface until the next frame in pixels, to the right and upwards. add_motion()
+///     (promin/motion_vectors.h) computes it after a Renderer, which returns (0, 0) here. If it is selected, the
+///     Renderer also returns position, object and primitive, from which it is computed
 /// The following AOVs are averages over all samples in linear light. Their sum is the image's pixel up to rounding.
 /// Debug views have none of these AOVs:
 ///   - emission: light that the visible surface emits, or the colour of an unlit surface
@@ -95,7 +98,7 @@ struct Aovs {
   static constexpr uint32_t kNoId = Coverage::kNoId;
 
   /// @cond
-  /// ne member for each row of the table.
+  /// One member for each row of the table.
 #define PROMIN_AOV(FIELD, TYPE, MISS, CHANNEL, COMPONENTS, SOURCE) std::vector<TYPE> FIELD;
 #include "promin/kinds/aovs.def"
   /// @endcond

@@ -19,6 +19,7 @@
 #include "picture_arrays.h"
 #include "promin/cryptomatte.h"
 #include "promin/error.h"
+#include "promin/motion_vectors.h"
 #include "records.h"
 #include "scene.h"
 #include "setup_stats.h"
@@ -137,10 +138,13 @@ class SharedRenderer {
     renderer_.emplace(std::move(renderer));
   }
 
-  /// Renders a picture. Only the metadata depend on `display` and the name of the scene's file.
+  /// Renders a picture. Only the metadata depend on `display` and the name of the scene's file. With Aovs::motion,
+  /// `scene` is the scene of the picture, and `next_scene` and `next_camera` belong to the next frame.
   nb::dict render(const nb::dict& record, const std::optional<double>& limit_s, const nb::dict& display,
-                  const std::filesystem::path& scene_file, const nb::object& progress) {
+                  const std::filesystem::path& scene_file, const Scene& scene, const Scene& next_scene,
+                  const nb::dict& next_camera, const nb::object& progress) {
     const View view = read_view(record);
+    const Camera next = read_camera(next_camera);
     const DisplayTransform shown = read_display(display);
     const gpu::DeviceInfo info = gpu::info_of(device_->get());
     Renderer& renderer = renderer_->get();
@@ -151,6 +155,7 @@ class SharedRenderer {
     run_watched(progress, [&](const ProgressCallback& tell) {
       const auto lock = lock_watched(mutex_, tell);
       result = limit_s ? renderer.render_within(view, *limit_s, tell) : renderer.render(view, tell);
+      if (aovs_.motion) add_motion(scene, view, next_scene, next, result.aovs);
       if (aovs_.cryptomatte) cryptomatte = make_cryptomatte(named_, result.aovs);
       if (!result.error) {
         reached.error_target.reset();
@@ -243,7 +248,8 @@ void bind_renderer(nb::module_& module) {
            nb::arg("instances"), nb::arg("has_error_target"), nb::arg("mode"), nb::arg("expected_samples").none(),
            nb::arg("texture_bytes"), nb::arg("progress").none())
       .def("render", &SharedRenderer::render, nb::arg("view"), nb::arg("limit_s").none(), nb::arg("display"),
-           nb::arg("scene_file"), nb::arg("progress").none())
+           nb::arg("scene_file"), nb::arg("scene"), nb::arg("next_scene"), nb::arg("next_camera"),
+           nb::arg("progress").none())
       .def("set_lights", &SharedRenderer::set_lights)
       .def("set_materials", &SharedRenderer::set_materials)
       .def("set_environment", &SharedRenderer::set_environment)

@@ -97,7 +97,15 @@ class Renderer:
         progress: _Progress,
     ) -> None: ...
     def render(
-        self, view: _Record, limit_s: float | None, display: _Record, scene_file: str, progress: _Progress
+        self,
+        view: _Record,
+        limit_s: float | None,
+        display: _Record,
+        scene_file: str,
+        scene: Scene,
+        next_scene: Scene,
+        next_camera: _Record,
+        progress: _Progress,
     ) -> _Record: ...
     def set_lights(self, records: list[_Record], /) -> None: ...
     def set_materials(self, records: list[_Record], /) -> None: ...

@@ -271,6 +271,8 @@ class Renderer:
         view: View | None = None,
         *,
         aovs: Iterable[str] | None = None,
+        next_scene: Scene | None = None,
+        next_camera: CameraLike = None,
         progress: Progress = None,
         camera: CameraLike = None,
         size: Size = None,
@@ -306,13 +308,21 @@ class Renderer:
     ) -> Frame:
         """Renders one picture. view: None is the Renderer's own view; further keywords replace its fields. aovs: None
         selects the Renderer's own AOVs. `promin render` with the same scene file and options writes a picture with the
-        same bits. Raises UsageError for arguments that break the rules of include/promin/view.h or contradict each
-        other, RunError, Cancelled."""
+        same bits.
+
+        The AOV "motion" is the movement until the next frame. next_scene: the scene of that frame, which has the same
+        objects in another pose (Scene.at). next_camera: its camera, or the name or number of a camera of next_scene.
+        None: the scene or the camera does not change.
+
+        Raises UsageError for arguments that break the rules of include/promin/view.h or contradict each other,
+        InputError if next_scene has other objects, RunError, Cancelled."""
         given = locals()  # each field of a view is a keyword of its name
         whole = settle_quality(change_view(self._view if view is None else of_view(view), given))
         names = self._aovs if aovs is None else _names(aovs)
         check_shading(whole, names)
         self._check_background(names)
+        if ("motion" in names) != (next_scene is not None or next_camera is not None):
+            raise UsageError('the AOV "motion" and next_scene or next_camera need each other; give both or neither')
         opened = self._open(names, whole, progress)
         record, shown = self._describe_view(whole)
         nothing = ""
@@ -322,7 +332,14 @@ class Renderer:
             warnings.warn(nothing, stacklevel=3)
         path = self._scene.path
         result = opened.native.render(
-            record, limit_of(whole), to_dict(shown), "" if path is None else Path(path).name, progress
+            record,
+            limit_of(whole),
+            to_dict(shown),
+            "" if path is None else Path(path).name,
+            opened.lit,
+            opened.lit if next_scene is None else to_scene(next_scene).native(),
+            self._choose_next_camera(next_scene, next_camera, record),
+            progress,
         )
         unlit = result["aovs"].get("unlit")
         placement = None
@@ -445,6 +462,19 @@ class Renderer:
         camera = self._choose_camera(view, size_of(view), _ASPECT_RATIO)
         shown = self.display if shows_light(view) else Display()
         return to_record(self._with_integrator(view), camera, shown, self._lit().default_max_depth()), shown
+
+    def _choose_next_camera(
+        self, next_scene: Scene | None, next_camera: CameraLike, record: dict[str, Any]
+    ) -> dict[str, Any]:
+        """Returns the camera of the frame after the picture of this view, for the native module."""
+        if next_camera is None:
+            camera: dict[str, Any] = record["camera"]
+            return camera
+        scene = self._scene if next_scene is None else to_scene(next_scene)
+        given = None
+        if isinstance(next_camera, Camera):
+            given = move_camera(next_camera, scene.native_center)
+        return scene.native().choose_camera(camera_spec(View(camera=next_camera)), given, record["size"], _ASPECT_RATIO)
 
     def _with_integrator(self, view: View) -> View:
         """Returns the view with an integrator: its own, or the one that suits the light."""

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import json
 import pickle
 from pathlib import Path
@@ -129,3 +130,29 @@ def test_updates_show_poses(moving_file: Path) -> None:
     with pytest.raises(promin.UsageError):
         promin.Caster(promin.Scene()).update(time=1.0)
     assert (renderer.render(view).rgb == rested.rgb).all()
+
+
+def test_the_movement_until_the_next_frame_is_an_aov(moving_file: Path) -> None:
+    scene = promin.Scene.load(moving_file)
+    # The picture has 16 pixels, which are 4 units of length. In half a second, the triangle moves along +X by 1 unit.
+    camera = promin.Camera(eye=(2, 0.5, 5), projection="orthographic", ymag=2.0)
+    view = promin.View(camera=camera, size=(16, 16), spp=1)
+    renderer = promin.Renderer(scene.at(1.0), aovs=("motion", "object"), view=view, light="none")
+    frame = renderer.render(next_scene=scene.at(1.5))
+    is_hit = frame.aovs["object"] == 0
+    assert is_hit.any() and not is_hit.all()
+    assert set(frame.aovs) == {"motion", "object"}
+    assert frame.aovs["motion"].shape == (16, 16, 2)
+    assert np.allclose(frame.aovs["motion"][is_hit], (4, 0), atol=1e-5)
+    assert (frame.aovs["motion"][~is_hit] == 0).all()
+    higher = dataclasses.replace(camera, eye=(2, 1, 5))
+    frame = renderer.render(next_camera=higher)
+    assert np.allclose(frame.aovs["motion"][is_hit], (0, -2), atol=1e-5)
+    with pytest.raises(promin.UsageError, match="need each other"):
+        renderer.render()
+    with pytest.raises(promin.UsageError, match="need each other"):
+        renderer.render(aovs=("depth",), next_camera=higher)
+    other = promin.Scene()
+    other.add_triangles(np.eye(3), [[0, 1, 2], [2, 1, 0]])
+    with pytest.raises(promin.InputError, match="another scene"):
+        renderer.render(next_scene=other)

@@ -8,39 +8,12 @@
 
 #include <cmath>
 
-#include "cli_fixture.h"
-#include "support/moving_gltf.h"
+#include "bar_film.h"
 
 namespace promin {
 namespace {
 
-/// A film of a bar. In a second, the bar moves from x = 0 to x = 8 in front of an orthographic camera of 16 x 1 units.
-class ShutterCliTest : public CliTest {
- protected:
-  void SetUp() override {
-    CliTest::SetUp();
-    GltfBuilder gltf;
-    const size_t positions = gltf.add<float>({-1, -2, 0, 1, -2, 0, 1, 2, 0, -1, 2, 0}, "VEC3");
-    const size_t triangles = gltf.add<uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR");
-    gltf.json["materials"] = {
-        {{"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}, {"doubleSided", true}}};
-    gltf.json["extensionsUsed"] = {"KHR_materials_unlit", "KHR_animation_pointer"};
-    gltf.json["meshes"] = {
-        {{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", triangles}, {"material", 0}}}}}};
-    gltf.add_node({{"mesh", 0}});
-    gltf.json["cameras"] = {
-        {{"type", "orthographic"}, {"orthographic", {{"xmag", 8}, {"ymag", 0.5}, {"znear", 0.1}, {"zfar", 9}}}}};
-    gltf.add_node({{"camera", 0}, {"translation", {4, 0, 4}}});
-    test::animate(gltf, 0, "/nodes/0/translation", {0, 1}, {0, 0, 0, 8, 0, 0}, "VEC3");
-    write("bar.gltf", gltf.text());
-  }
-
-  Image film(OptionValues more, const std::string& output) const {
-    more.insert(more.begin(), {"bar.gltf", "--frames", "0", "--fps", "1", "--size", "64x4", "--background", "black",
-                               "--exposure", "0", "--tone-mapping", "none"});
-    return render(more, output);
-  }
-};
+class ShutterCliTest : public BarFilmTest {};
 
 TEST_F(ShutterCliTest, AMovingBarLeavesItsStreak) {
   constexpr uint32_t kSamples = 16;

@@ -185,6 +185,7 @@ const WrongUsage kWrongUsages[] = {
     {"usage.option.value", {"render", "walk.gltf", "--turntable", "1"}},
     {"usage.options.contradict", {"render", "walk.gltf", "--turntable", "4", "--path", "path.json"}},
     {"usage.option.needs", {"render", "walk.gltf", "--shutter", "0.5"}},
+    {"usage.option.needs", {"render", "walk.gltf", "--aov", "motion"}},
     {"usage.options.contradict", {"render", "walk.gltf", "--fps", "9", "--shutter", "0.5", "--target-error", "0.1"}},
     {"film.frames.many", {"render", "long.gltf", "--fps", "1000"}},
     {"film.fps.many", {"render", "walk.gltf", "--fps", "60", "-o", "a.gif"}},

@@ -16,6 +16,7 @@
 #include "promin/framing.h"
 #include "promin/image.h"
 #include "promin/motion.h"
+#include "promin/motion_vectors.h"
 #include "promin/validate.h"
 #include "rays/npy.h"
 #include "scene/world_scene.h"
@@ -62,6 +63,22 @@ MessageCase spoil_motion(std::string_view code, const std::function<void(Motion&
 std::vector<MessageCase> cases_of_motion() {
   return {
       {"motion.scene.none", [] { static_cast<void>(pose_of(Scene{})); }},
+      {"motion.aovs",
+       [] {
+         Aovs aovs;
+         add_motion(Scene{}, View{}, Scene{}, Camera{}, aovs);
+       }},
+      {"motion.next.other",
+       [] {
+         AovSet set;
+         set.position = set.object = set.primitive = true;
+         View view;
+         view.size = uvec2(1);
+         Aovs aovs;
+         aovs.resize(1, set);
+         aovs.object[0] = 0;
+         add_motion(Scene{}, view, Scene{}, Camera{}, aovs);
+       }},
       spoil_motion("motion.reference.range", [](auto& motion, auto&) { motion.objects[0].node = 7; }),
       spoil_motion("motion.reference.range", [](auto& motion, auto&) { motion.nodes[0].same_as = 0; }),
       spoil_motion("motion.reference.range", [](auto& motion, auto&) { motion.meshes.resize(1); }),

@@ -86,6 +86,7 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
 #define PROMIN_READ_kSampling(FIELD)
 #define PROMIN_READ_kUnlit(FIELD)
 #define PROMIN_READ_kOcclusion(FIELD)
+#define PROMIN_READ_kMotion(FIELD)
 #include "promin/kinds/aovs.def"
 #undef PROMIN_READ_kSurface
 #undef PROMIN_READ_kParts
@@ -93,6 +94,7 @@ void read_surfaces(const ReadFilm& film, const PrimitiveNumbers& numbers, DepthK
 #undef PROMIN_READ_kSampling
 #undef PROMIN_READ_kUnlit
 #undef PROMIN_READ_kOcclusion
+#undef PROMIN_READ_kMotion
   });
 }
 

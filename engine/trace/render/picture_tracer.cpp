@@ -57,6 +57,8 @@ PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scen
       scene_(device_, scene, options_, stats_) {
   // The callback belongs to the caller of the constructor and must not be called later.
   options_.progress = {};
+  // add_motion() reads these AOVs.
+  if (wanted_.motion) wanted_.position = wanted_.object = wanted_.primitive = true;
   const Stopwatch compiling;
   if (options_.has_error_target) {
     prepare_refining_film(options_.mode, options_.has_lens);

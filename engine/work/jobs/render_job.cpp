@@ -64,7 +64,7 @@ class PictureJob : public PlannedJob {
 class PicturePieces : public PieceMaker {
  public:
   PicturePieces(PictureJob& job, const gpu::Device& device, size_t pieces, const ProgressCallback& progress)
-      : job_(job), device_(device), stats_(job.run_.stats) {
+      : job_(job), device_(device), stats_(job.run_.stats), motion_(job.run_) {
     stats_.device = gpu::info_of(device);
     const size_t all = job.manifest().pieces.size();
     const uint64_t samples = count_samples(*stats_.view, job.run_.frames.size(), job.run_.options);
@@ -80,12 +80,11 @@ class PicturePieces : public PieceMaker {
   jobs::Content make(size_t piece, const ProgressCallback& progress) override {
     const RenderSpec& options = job_.run_.options;
     const PlannedFrame& frame = job_.run_.frames[piece / job_.parts_.size()];
-    Renderer& renderer = prepare(frame);
+    prepare(frame);
     View view = *job_.run_.stats.view;
     renderers_->describe(frame, view, stats_);
     view.crop = job_.parts_[piece % job_.parts_.size()];
-    TracedFrame traced = options.shutter ? trace_open_shutter(*renderers_, job_.run_, frame, view, progress)
-                                         : trace(renderer, view, options, std::nullopt, progress);
+    TracedFrame traced = trace_frame(*renderers_, motion_, job_.run_, frame, view, std::nullopt, progress);
     check_validation(device_, stats_);
     stats_.errors.clear();
     if (traced.result.error) stats_.errors.push_back(*traced.result.error);
@@ -104,16 +103,16 @@ class PicturePieces : public PieceMaker {
   }
 
  private:
-  /// Returns the renderer of a frame. The first one reports its setup.
-  Renderer& prepare(const PlannedFrame& frame) {
-    Renderer& renderer = renderers_->at(frame);
+  /// Makes the renderer of a frame. The first one reports its setup.
+  void prepare(const PlannedFrame& frame) {
+    const Renderer& renderer = renderers_->at(frame);
     if (!std::exchange(is_set_up_, true)) take_setup(renderer.setup_stats(), device_, stats_, job_.console_);
-    return renderer;
   }
 
   const PictureJob& job_;
   const gpu::Device& device_;
   RunStats stats_;
+  FrameMotion motion_;
   std::optional<FrameRenderers> renderers_;
   bool is_set_up_ = false;
 };

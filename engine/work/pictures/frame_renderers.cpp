@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "work/pictures/camera_choice.h"
-#include "work/pictures/view_setup.h"
+#include "work/pictures/frame_motion.h"
 
 namespace promin::work {
 namespace {
@@ -34,11 +33,7 @@ Renderer& FrameRenderers::at(const PlannedFrame& frame) {
     renderer_.emplace(make_renderer(device_, run_.scene, options_));
   } else {
     const Scene scene = run_.moving->at(frame.time_s.value_or(0.0));
-    camera_.reset();
-    const ViewOptions& view = run_.options.view;
-    if (!frame.camera && find_file_camera(scene, view) != nullptr) {
-      camera_ = make_view(scene, view, Messages()).camera;
-    }
+    camera_ = file_camera_in(scene, run_, frame);
     if (renderer_) {
       change_pose(scene);
     } else {

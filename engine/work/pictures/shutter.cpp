@@ -73,20 +73,24 @@ PlannedFrame frame_between(const PictureRun& run, const PlannedFrame& frame, dou
   return moment;
 }
 
-TracedFrame trace_open_shutter(FrameRenderers& renderers, const PictureRun& run, const PlannedFrame& frame,
-                               const View& view, const ProgressCallback& on_progress) {
+namespace {
+
+TracedFrame trace_open_shutter(FrameRenderers& renderers, FrameMotion& motion, const PictureRun& run,
+                               const PlannedFrame& frame, const View& view, const ProgressCallback& on_progress) {
   const double shutter = run.options.shutter.value_or(0.0);
   const uint32_t count = view.samples_per_pixel;
   RenderResult sum;
   for (uint32_t i = 0; i < count; ++i) {
-    const PlannedFrame moment = frame_between(run, frame, shutter * radical_inverse(i));
+    const double fraction = shutter * radical_inverse(i);
+    const PlannedFrame moment = frame_between(run, frame, fraction);
     Renderer& renderer = renderers.at(moment);
     View view_then = view;
     RunStats unused;
     renderers.describe(moment, view_then, unused);
     RenderResult sample = render_sample(
-        renderer, view_then, i, [&](double fraction) { return !on_progress || on_progress((i + fraction) / count); });
+        renderer, view_then, i, [&](double done) { return !on_progress || on_progress((i + done) / count); });
     const bool is_middle = i == count / 2;
+    if (is_middle) motion.add(frame, fraction, view_then, sample.aovs);
     if (i == 0) {
       sum = std::move(sample);
     } else {
@@ -97,6 +101,17 @@ TracedFrame trace_open_shutter(FrameRenderers& renderers, const PictureRun& run,
   TracedFrame traced;
   traced.trace_ms.push_back(sum.trace_ms);
   traced.result = std::move(sum);
+  return traced;
+}
+
+}  // namespace
+
+TracedFrame trace_frame(FrameRenderers& renderers, FrameMotion& motion, const PictureRun& run,
+                        const PlannedFrame& frame, const View& view, const std::optional<double>& limit_s,
+                        const ProgressCallback& on_progress) {
+  if (run.options.shutter) return trace_open_shutter(renderers, motion, run, frame, view, on_progress);
+  TracedFrame traced = trace(renderers.at(frame), view, run.options, limit_s, on_progress);
+  motion.add(frame, 0.0, view, traced.result.aovs);
   return traced;
 }
 

@@ -199,12 +199,14 @@ void check_job(const RenderSpec& options) {
             "remove one of them; promin merge writes the picture when all pieces are made");
 }
 
-/// Refuses options that motion blur does not support.
-void check_shutter(const RenderSpec& options) {
+/// Refuses options of motion that the pictures do not support.
+void check_motion_options(const RenderSpec& options) {
+  const bool moves = options.moves_scene() || options.moves_camera();
+  const std::string cure = "give --frames, --fps, --path or --turntable as well";
+  refuse_if("usage.option.needs", options.aovs.motion && !moves, "--aov motion needs frames that move", cure);
   if (!options.shutter) return;
   const ErrorOptions& error = options.error;
-  refuse_if("usage.option.needs", !options.moves_scene() && !options.moves_camera(), "--shutter needs frames that move",
-            "give --frames, --fps, --path or --turntable as well");
+  refuse_if("usage.option.needs", !moves, "--shutter needs frames that move", cure);
   refuse_beside("--shutter", {{error.target.has_value(), "--target-error"},
                               {error.time_limit_s.has_value(), "--time-limit"},
                               {options.quality == Quality::kBest, "--quality best"},
@@ -311,7 +313,7 @@ void check_render_spec(const RenderSpec& options) {
   }
   check_job(options);
   check_frames(options);
-  check_shutter(options);
+  check_motion_options(options);
   check_channels(options);
   check_alpha(options);
   check_dither(options);
