@@ -220,9 +220,25 @@ def check_picture_rays(folder):
     expect(done.returncode == 2 and "--runs 0" in done.stderr, f"rays without a picture: {done}")
 
 
+def check_instances_tables(folder):
+    """Embree is measured if it is installed."""
+    run_lab("instances", "--quick", "--runs", 1, "--side", 32, "-o", folder / "instances.json")
+    rows = read_json(folder / "instances.json")["instances"]["rows"]
+    expect([row["count"] for row in rows] == [10, 1000], f"other scenes: {rows}")
+    expect(rows[0]["copies_bytes"] > 5 * rows[0]["instances_bytes"], f"instances do not share: {rows[0]}")
+    growth = rows[1]["instances_bytes"] - rows[0]["instances_bytes"]
+    expect(0 < growth < 990 * 200, f"990 instances take {growth} bytes")
+    done = run_python("instances_tables.py", folder / "instances.json")
+    expect(done.returncode == 0, f"instances_tables.py: {done.stderr}")
+    lines = _cells(done.stdout)
+    few, many = (next(line for line in lines if line[0] == f"wavy:2000 × {count}") for count in ("10", "1,000"))
+    expect("–" in many and few[1] != "–", f"other rates: {few}, {many}")
+
+
 def makes_tables(folder):
     """Checks the tables of tools/bench and tools/accuracy, and a table for the terminal."""
     check_bench_tables(folder)
+    check_instances_tables(folder)
     check_accuracy_document(folder)
     printed = run_lab("rates", "needles:500", "--runs", 0, "--side", 16, "-o", folder / "runs.json")
     expect("needles:500, 500 primitives" in printed, printed)

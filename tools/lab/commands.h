@@ -9,6 +9,7 @@ namespace promin::lab {
 
 app::Command add_rates_command(CLI::App& program);
 app::Command add_growth_command(CLI::App& program);
+app::Command add_instances_command(CLI::App& program);
 app::Command add_robustness_command(CLI::App& program);
 app::Command add_methods_command(CLI::App& program);
 app::Command add_honesty_command(CLI::App& program);

@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -92,6 +94,11 @@ Hit occlusion_of(float tfar) {
   return hit;
 }
 
+/// Returns the object of a hit: an instance, or a geometry that is no instance.
+int32_t object_of(unsigned geometry, unsigned instance) {
+  return static_cast<int32_t>(instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
+}
+
 void cast_singly(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits, HitQuery query) {
   Calls calls(false);
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -102,12 +109,12 @@ void cast_singly(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits,
       hits[i] = occlusion_of(request.ray.tfar);
       continue;
     }
-    request.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    request.hit.geomID = request.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     calls.intersect(scene, request);
     hits[i] = {};
     if (request.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
     hits[i] = {request.ray.tfar,
-               static_cast<int32_t>(request.hit.geomID),
+               object_of(request.hit.geomID, request.hit.instID[0]),
                static_cast<int32_t>(request.hit.primID),
                request.hit.u,
                request.hit.v,
@@ -133,7 +140,7 @@ void cast_packets(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits
       request.ray.dir_z[i] = ray.dir_z;
       request.ray.tfar[i] = ray.tfar;
       request.ray.mask[i] = ray.mask;
-      request.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      request.hit.geomID[i] = request.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
     if (query == HitQuery::kAny) {
       calls.occluded(valid.data(), scene, request.ray);
@@ -145,7 +152,7 @@ void cast_packets(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits
       hits[first + i] = {};
       if (request.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       hits[first + i] = {request.ray.tfar[i],
-                         static_cast<int32_t>(request.hit.geomID[i]),
+                         object_of(request.hit.geomID[i], request.hit.instID[0][i]),
                          static_cast<int32_t>(request.hit.primID[i]),
                          request.hit.u[i],
                          request.hit.v[i],
@@ -156,7 +163,15 @@ void cast_packets(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits
 
 class Caster final : public EmbreeCaster {
  public:
-  explicit Caster(const world::Scene& scene) : source_(scene), device_(open_embree()), scene_(fill_scene()) {
+  explicit Caster(const world::Scene& scene) : source_(scene), device_(open_embree()) {
+    rtcSetDeviceMemoryMonitorFunction(
+        device_.get(),
+        [](void* bytes, ssize_t change, bool /*post*/) {
+          static_cast<std::atomic<int64_t>*>(bytes)->fetch_add(change);
+          return true;
+        },
+        &bytes_);
+    scene_ = fill_scene();
     rtcCommitScene(scene_.get());
     check();
   }
@@ -177,35 +192,58 @@ class Caster final : public EmbreeCaster {
   }
 
   double time_build() override {
+    commit_ms_ = 0.0;
     const BuiltScene scene = fill_scene();
     const Stopwatch building;
     rtcCommitScene(scene.get());
     const double time_ms = building.ms();
     check();
-    return time_ms;
+    return commit_ms_ + time_ms;
   }
+
+  int64_t size_bytes() const override { return bytes_.load(); }
 
  private:
   static bool has_common_origin(std::span<const Ray> rays) {
     return std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) { return ray.origin == rays.front().origin; });
   }
 
-  /// Returns a scene with copies of the triangles, whose tree is not yet built.
-  BuiltScene fill_scene() const {
+  /// Returns a scene with copies of the triangles, whose tree is not yet built. The trees of meshes that instances
+  /// share are built.
+  BuiltScene fill_scene() {
     BuiltScene scene(rtcNewScene(device_.get()));
     for (size_t i = 0; i < source_.objects.size(); ++i) {
-      const auto* mesh = std::get_if<Mesh>(&source_.objects[i].shape);
-      if (mesh == nullptr || mesh->triangles.empty()) continue;
-      const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-      copy(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, std::as_bytes(std::span(mesh->positions)),
-           sizeof(vec3));
-      copy(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, std::as_bytes(std::span(mesh->triangles)), sizeof(uvec3));
+      if (const auto* mesh = std::get_if<Mesh>(&source_.objects[i].shape)) attach(*mesh, i, scene.get());
+    }
+    std::vector<BuiltScene> shared;
+    for (const Mesh& mesh : source_.meshes) {
+      shared.emplace_back(rtcNewScene(device_.get()));
+      attach(mesh, 0, shared.back().get());
+      const Stopwatch building;
+      rtcCommitScene(shared.back().get());
+      commit_ms_ += building.ms();
+    }
+    for (const world::Instance& instance : source_.instances) {
+      const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(geometry, shared[instance.mesh].get());
+      const glm::mat4x3 place(instance.world_from_object);
+      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &place);
       rtcCommitGeometry(geometry);
-      rtcAttachGeometryByID(scene.get(), geometry, static_cast<unsigned>(i));
+      rtcAttachGeometryByID(scene.get(), geometry, instance.object);
       rtcReleaseGeometry(geometry);
     }
     check();
     return scene;
+  }
+
+  void attach(const Mesh& mesh, size_t number, RTCScene scene) const {
+    if (mesh.triangles.empty()) return;
+    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    copy(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, std::as_bytes(std::span(mesh.positions)), sizeof(vec3));
+    copy(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, std::as_bytes(std::span(mesh.triangles)), sizeof(uvec3));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(number));
+    rtcReleaseGeometry(geometry);
   }
 
   static void copy(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::span<const std::byte> bytes,
@@ -222,8 +260,12 @@ class Caster final : public EmbreeCaster {
   }
 
   const world::Scene& source_;
+  /// The number of bytes that Embree has allocated.
+  std::atomic<int64_t> bytes_ = 0;
   Device device_;
   BuiltScene scene_;
+  /// The time for the trees of meshes that instances share.
+  double commit_ms_ = 0.0;
 };
 
 }  // namespace
