@@ -17,6 +17,7 @@
 #include "core/parallel.h"
 #include "core/rounding.h"
 #include "core/stopwatch.h"
+#include "device_scene/bundle_images.h"
 #include "device_scene/collect_primitives.h"
 #include "device_scene/pack_instances.h"
 #include "promin/error.h"
@@ -403,7 +404,10 @@ std::vector<float> find_mask_cutoffs(const world::Scene& scene) {
 }
 
 void add_images(PackedScene& packed, const world::Scene& scene, uint64_t texture_bytes) {
-  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes, packed.mask_cutoffs);
+  packed.surfaces.images = pack_images(scene.images, scene.textures, texture_bytes, packed.mask_cutoffs,
+                                       find_image_bundles(scene, packed.mask_cutoffs));
+  const auto is_bundled = [](const PlacedImage& image) { return image.stride > 1; };
+  if (std::ranges::any_of(packed.surfaces.images.images, is_bundled)) packed.features |= FEATURE_TEXTURE_BUNDLES;
 }
 
 TreeView PackedScene::tree() const {

@@ -26,8 +26,10 @@ uint flag(bool is_set, uint bit) {
   return is_set ? bit : 0;
 }
 
-uint flags_of(const TextureSlot& slot, const Texture& texture, ImageUse use) {
-  return slot.uv_set * TEXTURE_UV_SET | flag(use == ImageUse::kColor, TEXTURE_IS_SRGB) |
+uint flags_of(const TextureSlot& slot, const Texture& texture, const PlacedImage& image) {
+  return slot.uv_set * TEXTURE_UV_SET | flag(image.has_colors[0], TEXTURE_IS_SRGB) |
+         flag(image.has_colors[1], TEXTURE_SECOND_IS_SRGB) |
+         static_cast<uint>(std::countr_zero(image.stride)) << TEXTURE_STRIDE_SHIFT |
          flag(texture.is_magnified_linearly, TEXTURE_MAGNIFIED_LINEARLY) |
          flag(texture.is_minified_linearly, TEXTURE_MINIFIED_LINEARLY) | flag(texture.has_levels, TEXTURE_HAS_LEVELS) |
          flag(texture.are_levels_linear, TEXTURE_LEVELS_LINEAR) |
@@ -189,20 +191,24 @@ class MaterialPacker {
     return std::bit_cast<float>(number_of(slot));
   }
 
-  /// Returns the slot's number, from 1 on; 0 if there is no texture or no image. Equal slots of a material share a
-  /// number, so the shader reads the texture once; the slots of occlusion, roughness and metal are often equal.
+  /// Returns the slot's number, from 1 on, with the image's place in its bundle above it; 0 if there is no texture or
+  /// no image. Equal slots of a material share a number, so the shader reads the texture once; the slots of occlusion,
+  /// roughness and metal are often equal. Slots of a bundle share a record.
   uint number_of(const TextureSlot& slot) {
     if (!slot.exists() || slot.texture >= tables_.textures.size()) return 0;
     const Texture& texture = tables_.textures[slot.texture];
     const PlacedImage& image = tables_.images[texture.image];
     if (image.levels == 0) return 0;
-    const TextureSlotRecord record{vec4(slot.to_u, std::bit_cast<float>(flags_of(slot, texture, image.use))),
+    const TextureSlotRecord record{vec4(slot.to_u, std::bit_cast<float>(flags_of(slot, texture, image))),
                                    vec4(slot.to_v, 0.0F), uvec4(image.first, image.size, image.levels)};
-    for (size_t i = first_slot_; i < packed_.slots.size(); ++i) {
-      if (std::memcmp(&packed_.slots[i], &record, sizeof(record)) == 0) return static_cast<uint>(i + 1);
-    }
-    packed_.slots.push_back(record);
-    return static_cast<uint>(packed_.slots.size());
+    const auto is_same = [&](const TextureSlotRecord& other) {
+      return std::memcmp(&other, &record, sizeof(record)) == 0;
+    };
+    const auto found =
+        std::find_if(packed_.slots.begin() + static_cast<ptrdiff_t>(first_slot_), packed_.slots.end(), is_same);
+    const auto number = static_cast<uint>(found - packed_.slots.begin()) + 1;
+    if (found == packed_.slots.end()) packed_.slots.push_back(record);
+    return number | image.place << TEXTURE_PLACE_SHIFT;
   }
 
   const TextureTables& tables_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/divide_up.h"
 #include "core/parallel.h"
 #include "core/srgb.h"
 #include "textures/alpha_coverage.h"
@@ -132,37 +133,112 @@ class ImageSizes {
   bool needs_texels_;
 };
 
-/// Writes an image's levels, beginning with the level of the placed size. Each level is computed from the one before
-/// it, and not from rounded texels.
+/// Writes an image's levels, beginning with the level of the placed size, and without the first level of a bundle's
+/// image. The words have the positions of the levels. Each level is computed from the one before it, and not from
+/// rounded texels.
 void write_image(const TextureImage& image, const PlacedImage& placed, float cutoff, std::span<uint32_t> words) {
   const auto halvings = static_cast<uint32_t>(count_levels(image.size) - count_levels(placed.size));
-  uint32_t place = placed.levels;
-  if (halvings == 0) {
-    words[0] = place;
-    std::ranges::copy(image.texels, words.begin() + place);
-    place += static_cast<uint32_t>(image.texels.size());
-  }
   const std::array<float, 256> numbers = make_numbers(image.use);
   const double coverage = cutoff > 0.0F ? alpha_coverage(image.texels, cutoff) : 0.0;
   Level level;
-  for (uint32_t i = 1; i < halvings + placed.levels; ++i) {
+  for (uint32_t i = 0; i < halvings + placed.levels; ++i) {
     if (i == 1) {
       level = make_coarser(image.size, [&](uint32_t x, uint32_t y) {
         const uint32_t word = image.texels[size_t{y} * image.size.x + x];
         return vec4(numbers[word & 0xFF], numbers[(word >> 8) & 0xFF], numbers[(word >> 16) & 0xFF],
                     static_cast<float>(word >> 24) / 255.0F);
       });
-    } else {
+    } else if (i > 1) {
       const Level finer = std::move(level);
       level =
           make_coarser(finer.size, [&](uint32_t x, uint32_t y) { return finer.texels[size_t{y} * finer.size.x + x]; });
     }
     if (i < halvings) continue;
-    words[i - halvings] = place;
-    const std::span<uint32_t> written = words.subspan(place, level.texels.size());
-    for (const vec4& texel : level.texels) words[place++] = encode(texel, image.use);
-    if (cutoff > 0.0F) scale_alpha_to_coverage(written, cutoff, coverage);
+    const std::span<uint32_t> written = words.subspan(words[i - halvings] + placed.place);
+    if (i == 0) {
+      if (placed.stride == 1) std::ranges::copy(image.texels, written.begin());
+      continue;
+    }
+    for (size_t j = 0; j < level.texels.size(); ++j) written[j * placed.stride] = encode(level.texels[j], image.use);
+    if (cutoff > 0.0F) scale_alpha_to_coverage(written.first(level.texels.size()), cutoff, coverage);
   }
+}
+
+/// An image that stands alone, or the images of a bundle.
+struct Share {
+  std::vector<uint32_t> images;
+  /// Size and number of levels of each image.
+  uvec2 size{0};
+  uint32_t levels = 0;
+  uint32_t stride = 1;
+  /// Index of the first word.
+  uint64_t first = 0;
+
+  /// Returns the number of words for the positions of levels. Texels of bundles begin at multiples of the stride.
+  uint64_t head() const { return divide_up(levels, stride) * stride; }
+  uint64_t words() const { return head() + stride * (count_words(size, levels) - levels); }
+};
+
+/// Sets the first words. Returns the number of words of all shares.
+uint64_t place_shares(std::span<Share> shares) {
+  uint64_t words = 0;
+  for (Share& share : shares) {
+    share.first = divide_up<uint64_t>(words, share.stride) * share.stride;
+    words = share.first + share.words();
+  }
+  return words;
+}
+
+/// Returns the images, each in one share, ordered by the first image of each share.
+std::vector<Share> divide_into_shares(std::span<const std::shared_ptr<const TextureImage>> images,
+                                      const ImageSizes& sizes, const TextureFit& fit,
+                                      std::span<const ImageBundle> bundles) {
+  const auto size_of = [&](uint32_t i) { return halve_size(images[i]->size, fit.halvings[i]); };
+  const auto levels_of = [&](uint32_t i) { return sizes.levels(i, fit.halvings[i]); };
+  std::vector<const ImageBundle*> bundle_of(images.size(), nullptr);
+  for (const ImageBundle& bundle : bundles) {
+    const auto is_like_first = [&](uint32_t i) {
+      return levels_of(i) > 0 && levels_of(i) == levels_of(bundle[0]) && images[i]->size == images[bundle[0]]->size &&
+             fit.halvings[i] == 0;
+    };
+    if (!std::ranges::all_of(bundle, is_like_first)) continue;
+    for (const uint32_t i : bundle) bundle_of[i] = &bundle;
+  }
+  std::vector<Share> shares;
+  for (uint32_t i = 0; i < images.size(); ++i) {
+    if (levels_of(i) == 0) continue;
+    const ImageBundle* bundle = bundle_of[i];
+    if (bundle == nullptr) {
+      shares.push_back({{i}, size_of(i), levels_of(i)});
+    } else if (i == std::ranges::min(*bundle)) {
+      shares.push_back({*bundle, size_of(i), levels_of(i), bundle->size() == 2 ? 2U : kMostBundled});
+    }
+  }
+  return shares;
+}
+
+/// Writes the positions of a share's levels, and what its images do not write themselves: the whole pictures of a
+/// bundle, and zeros for its missing image.
+void begin_share(std::span<const std::shared_ptr<const TextureImage>> images, const Share& share,
+                 std::span<uint32_t> words) {
+  std::ranges::fill(words.first(share.head()), 0);
+  uint64_t position = share.head();
+  for (uint32_t level = 0; level < share.levels; ++level) {
+    words[level] = static_cast<uint32_t>(position);
+    position += share.stride * (count_words(halve_size(share.size, level), 1) - 1);
+  }
+  if (share.stride == 1) return;
+  const size_t texels = size_t{share.size.x} * share.size.y;
+  // A core's cache keeps the words of this many texels until all images have written theirs.
+  constexpr size_t kTexelsAtOnce = 2048;
+  for_each_chunk(texels, kTexelsAtOnce, 0, [&](size_t begin, size_t end) {
+    for (uint32_t place = 0; place < share.stride; ++place) {
+      uint32_t* word = &words[share.head() + begin * share.stride + place];
+      const uint32_t* source = place < share.images.size() ? images[share.images[place]]->texels.data() : nullptr;
+      for (size_t i = begin; i < end; ++i, word += share.stride) *word = source == nullptr ? 0 : source[i];
+    }
+  });
+  if (share.images.size() < share.stride) std::ranges::fill(words.subspan(share.head() + texels * share.stride), 0);
 }
 
 std::string to_mib(uint64_t bytes) {
@@ -230,21 +306,38 @@ uint64_t packed_image_bytes(std::span<const std::shared_ptr<const TextureImage>>
 }
 
 PackedImages pack_images(std::span<const std::shared_ptr<const TextureImage>> images, std::span<const Texture> textures,
-                         uint64_t most_bytes, std::span<const float> cutoffs) {
+                         uint64_t most_bytes, std::span<const float> cutoffs, std::span<const ImageBundle> bundles) {
   const TextureFit fit = fit_images(images, textures, most_bytes);
   const ImageSizes sizes(images, textures, true);
   PackedImages packed;
   packed.warning = warn_of(fit);
-  uint64_t words = 0;
-  for (size_t i = 0; i < images.size(); ++i) {
-    PlacedImage& placed = packed.images.emplace_back();
-    const uint32_t halvings = fit.halvings[i];
-    const uint32_t levels = sizes.levels(i, halvings);
-    if (levels == 0) continue;
-    placed = {static_cast<uint32_t>(words), halve_size(images[i]->size, halvings), levels, images[i]->use};
-    words += sizes.words(i, halvings);
+  std::vector<Share> shares = divide_into_shares(images, sizes, fit, bundles);
+  uint64_t words = place_shares(shares);
+  if (!bundles.empty() && sizeof(uint32_t) * words > std::min(most_bytes, kMostBytes)) {
+    shares = divide_into_shares(images, sizes, fit, {});
+    words = place_shares(shares);
   }
   packed.words.resize(words);
+  packed.images.resize(images.size());
+  uint64_t end = 0;
+  for (const Share& share : shares) {
+    std::fill(packed.words.begin() + static_cast<ptrdiff_t>(end),
+              packed.words.begin() + static_cast<ptrdiff_t>(share.first), 0U);
+    end = share.first + share.words();
+    const auto has_colors = [&](size_t place) {
+      return place < share.images.size() && images[share.images[place]]->use == ImageUse::kColor;
+    };
+    for (uint32_t place = 0; place < share.images.size(); ++place) {
+      packed.images[share.images[place]] = {.first = static_cast<uint32_t>(share.first),
+                                            .size = share.size,
+                                            .levels = share.levels,
+                                            .use = images[share.images[place]]->use,
+                                            .stride = share.stride,
+                                            .place = place,
+                                            .has_colors = {has_colors(0), has_colors(1)}};
+    }
+    begin_share(images, share, std::span(packed.words).subspan(share.first, share.words()));
+  }
   for_each_index(images.size(), 0, [&](size_t i) {
     const PlacedImage& placed = packed.images[i];
     if (placed.levels == 0) return;

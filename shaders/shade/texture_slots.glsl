@@ -41,27 +41,19 @@ uint next_slot_number() {
 }
 
 // Fills `shown` with the values of the slots, or 1 for missing textures, and clears `slot_numbers`. It looks up one
-// level after the other at a single place of the code. CPU drivers execute for all lanes what any of them may need, and
-// most materials lack most textures. Slots with the same number are looked up once.
+// slot after the other at a single place of the code. CPU drivers execute for all lanes what any of them may need, and
+// most materials lack most textures. Slots with the same number, or the same bundle, are looked up once.
 void look_up_slots(TexturePlace place) {
   [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) shown[i] = vec4(1.0);
   uint number = next_slot_number();
-  uint levels_seen = 0u;  // levels of the current slot that were looked up
-  vec4 first = vec4(0.0);
   do {
     if (number != 0u) {
-      Lookup lookup = lookup_of(number, place);
-      uint level = lookup.levels.first + levels_seen;
-      vec4 seen = filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear);
-      vec4 result = mix_level(lookup, level, first, seen);
-      bool is_done = level + 1u >= lookup.levels.end;
+      BundleValues values = look_up_bundle(number, place);
       [[unroll]] for (uint i = 0u; i < SLOT_COUNT; ++i) {
-        bool is_shown = is_done && slot_numbers[i] == number;
-        shown[i] = is_shown ? result : shown[i];
+        bool is_shown = slot_numbers[i] != 0u && are_bundled(slot_numbers[i], number);
+        shown[i] = is_shown ? value_of(slot_numbers[i], values) : shown[i];
         slot_numbers[i] = is_shown ? 0u : slot_numbers[i];
       }
-      first = seen;
-      levels_seen = is_done ? 0u : levels_seen + 1u;
       number = next_slot_number();
     }
   } while (number != 0u);

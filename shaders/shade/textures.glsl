@@ -14,18 +14,27 @@ uint load_image_word(uint index) {
   return texelFetch(image_texels, int(index)).x;
 }
 
-// Returns the record of a slot. Numbers of slots start at 1.
+// Returns the record of a slot. Numbers of slots start at 1. With FEATURE_TEXTURE_BUNDLES, their upper bits are the
+// place of the image in its bundle.
 TextureSlotRecord load_slot(uint number) {
-  uint index = VIEW.first_texture.z + number - 1u;
+  uint index = VIEW.first_texture.z + (has(FEATURE_TEXTURE_BUNDLES) ? number & TEXTURE_NUMBER_MASK : number) - 1u;
   if (FETCHES_TEXELS == 0u) return slots[index];
   uint first = TEXTURE_SLOT_TEXELS * index;
   return TextureSlotRecord(shading_vector(first), shading_vector(first + 1u),
                            texelFetch(shading_texels, int(first + 2u)));
 }
 
+uint place_in_bundle(uint number) { return has(FEATURE_TEXTURE_BUNDLES) ? number >> TEXTURE_PLACE_SHIFT : 0u; }
+
 uint flags_of(TextureSlotRecord slot) { return floatBitsToUint(slot.to_u.w); }
 uint wrap_of(TextureSlotRecord slot, uint shift) { return (flags_of(slot) >> shift) & TEXTURE_WRAP_MASK; }
 bool has_flag(TextureSlotRecord slot, uint flag) { return (flags_of(slot) & flag) != 0u; }
+uint stride_shift_of(TextureSlotRecord slot) { return (flags_of(slot) >> TEXTURE_STRIDE_SHIFT) & TEXTURE_STRIDE_MASK; }
+// Returns whether the image at a place of the slot's bundle has sRGB colours. Only the first two may have them.
+bool is_srgb(TextureSlotRecord slot, uint place) {
+  if (!has(FEATURE_TEXTURE_BUNDLES)) return has_flag(slot, TEXTURE_IS_SRGB);
+  return has_flag(slot, place == 0u ? TEXTURE_IS_SRGB : (place == 1u ? TEXTURE_SECOND_IS_SRGB : 0u));
+}
 
 // Returns log2 of a positive number with an error of at most 1e-3, which is a thousandth of a level.
 float log2_about(float x) {
@@ -62,33 +71,46 @@ uint wrap_texel(int i, uint count, uint mode) {
   return uint(mode == WRAP_REPEAT ? other_side : clamp(i, 0, last));
 }
 
-struct Level {
-  uint first;
-  uvec2 size;
+// The texels of a level around a point: the words of the image, or of the first image of its bundle.
+struct Footprint {
+  uint nearest;
+  uint right;
+  uint below;
+  uint across;
+  vec2 part;  // weights of the right and of the lower texels
 };
 
-vec4 load_texel(TextureSlotRecord slot, Level level, ivec2 place) {
-  uint x = wrap_texel(place.x, level.size.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT));
-  uint y = wrap_texel(place.y, level.size.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT));
-  uint word = load_image_word(level.first + y * level.size.x + x);
-  precise vec4 numbers = vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu) * (1.0 / 255.0);
-  if (has_flag(slot, TEXTURE_IS_SRGB)) numbers.xyz = decode_srgb(numbers.xyz);
-  return numbers;
-}
-
-// Returns the bilinear interpolation of the four texels around `uv`. Without `is_linear` it returns the texel that
-// contains `uv`.
-vec4 filter_level(TextureSlotRecord slot, uint number, vec2 uv, bool is_linear) {
-  Level level = Level(slot.image.x + load_image_word(slot.image.x + number), max(slot.image.yz >> number, uvec2(1u)));
-  vec2 wrapped = vec2(wrap(uv.x, wrap_of(slot, TEXTURE_WRAP_U_SHIFT)), wrap(uv.y, wrap_of(slot, TEXTURE_WRAP_V_SHIFT)));
-  precise vec2 place = wrapped * vec2(level.size) - (is_linear ? 0.5 : 0.0);
+// Returns the texels around `uv`. Without `is_linear`, `nearest` contains `uv`, and the others have no weight.
+Footprint find_texels(TextureSlotRecord slot, uint level, vec2 uv, bool is_linear) {
+  uint wrap_u = wrap_of(slot, TEXTURE_WRAP_U_SHIFT);
+  uint wrap_v = wrap_of(slot, TEXTURE_WRAP_V_SHIFT);
+  uint start = slot.image.x + load_image_word(slot.image.x + level);
+  uvec2 size = max(slot.image.yz >> level, uvec2(1u));
+  vec2 wrapped = vec2(wrap(uv.x, wrap_u), wrap(uv.y, wrap_v));
+  precise vec2 place = wrapped * vec2(size) - (is_linear ? 0.5 : 0.0);
   vec2 corner = floor(place);
   ivec2 first = ivec2(corner);
   precise vec2 part = is_linear ? place - corner : vec2(0.0);
-  vec4 nearest = load_texel(slot, level, first);
-  vec4 right = load_texel(slot, level, first + ivec2(1, 0));
-  vec4 below = load_texel(slot, level, first + ivec2(0, 1));
-  vec4 across = load_texel(slot, level, first + ivec2(1, 1));
+  uint shift = has(FEATURE_TEXTURE_BUNDLES) ? stride_shift_of(slot) : 0u;
+  uint left = start + (wrap_texel(first.x, size.x, wrap_u) << shift);
+  uint right = start + (wrap_texel(first.x + 1, size.x, wrap_u) << shift);
+  uint upper = (wrap_texel(first.y, size.y, wrap_v) * size.x) << shift;
+  uint lower = (wrap_texel(first.y + 1, size.y, wrap_v) * size.x) << shift;
+  return Footprint(left + upper, right + upper, left + lower, right + lower, part);
+}
+
+vec4 decode_texel(uint word, bool is_srgb) {
+  precise vec4 numbers = vec4((uvec4(word) >> uvec4(0u, 8u, 16u, 24u)) & 0xFFu) * (1.0 / 255.0);
+  if (is_srgb) numbers.xyz = decode_srgb(numbers.xyz);
+  return numbers;
+}
+
+// Returns the bilinear interpolation of four texels: the nearest, right, below and across.
+vec4 filter_texels(uvec4 words, vec2 part, bool is_srgb) {
+  vec4 nearest = decode_texel(words.x, is_srgb);
+  vec4 right = decode_texel(words.y, is_srgb);
+  vec4 below = decode_texel(words.z, is_srgb);
+  vec4 across = decode_texel(words.w, is_srgb);
   precise vec4 upper = nearest + part.x * (right - nearest);
   precise vec4 lower = below + part.x * (across - below);
   precise vec4 result = upper + part.y * (lower - upper);
@@ -191,15 +213,98 @@ vec4 mix_level(Lookup lookup, uint level, vec4 first, vec4 seen) {
 // Returns the value of a slot at a place. The number of the slot is not 0.
 vec4 look_up(uint number, TexturePlace place) {
   Lookup lookup = lookup_of(number, place);
+  uint image = place_in_bundle(number);
   vec4 result = vec4(0.0);
   uint level = lookup.levels.first;
   do {
     if (level < lookup.levels.end) {
-      result = mix_level(lookup, level, result, filter_level(lookup.slot, level, lookup.uv, lookup.levels.is_linear));
+      Footprint texels = find_texels(lookup.slot, level, lookup.uv, lookup.levels.is_linear);
+      uvec4 words = uvec4(load_image_word(texels.nearest + image), load_image_word(texels.right + image),
+                          load_image_word(texels.below + image), load_image_word(texels.across + image));
+      vec4 seen = filter_texels(words, texels.part, is_srgb(lookup.slot, image));
+      result = mix_level(lookup, level, result, seen);
       ++level;
     }
   } while (level < lookup.levels.end);
   return result;
+}
+
+// The values of the images of a bundle at a point. Images that stand alone are the first of their bundle.
+struct BundleValues {
+  vec4 first;
+  vec4 second;
+  vec4 third;
+  vec4 fourth;
+};
+
+// Returns a texel of all images of a bundle, whose words lie side by side.
+uvec4 load_bundle(uint index) {
+  if (FETCHES_TEXELS == 0u) {
+    uint word = VIEW.first_texture.w + index;
+    return uvec4(image_words[word], image_words[word + 1u], image_words[word + 2u], image_words[word + 3u]);
+  }
+  uvec4 words = texelFetch(shading_texels, int((VIEW.first_texture.w + index) >> 2));
+  // The texels of an image that stands alone, or of two images, begin at any, or any second, of the four words.
+  uint start = index & 3u;
+  uint word = start < 2u ? (start == 0u ? words.x : words.y) : (start == 2u ? words.z : words.w);
+  return uvec4(word, start == 2u ? words.w : words.y, words.z, words.w);
+}
+
+// Returns the values of a slot's bundle at a level.
+BundleValues filter_bundle(Lookup lookup, uint level) {
+  Footprint texels = find_texels(lookup.slot, level, lookup.uv, lookup.levels.is_linear);
+  BundleValues seen;
+  if (!has(FEATURE_TEXTURE_BUNDLES)) {
+    uvec4 words = uvec4(load_image_word(texels.nearest), load_image_word(texels.right), load_image_word(texels.below),
+                        load_image_word(texels.across));
+    seen.first = filter_texels(words, texels.part, is_srgb(lookup.slot, 0u));
+    return seen;
+  }
+  uvec4 nearest = load_bundle(texels.nearest);
+  uvec4 right = load_bundle(texels.right);
+  uvec4 below = load_bundle(texels.below);
+  uvec4 across = load_bundle(texels.across);
+  seen.first = filter_texels(uvec4(nearest.x, right.x, below.x, across.x), texels.part, is_srgb(lookup.slot, 0u));
+  seen.second = filter_texels(uvec4(nearest.y, right.y, below.y, across.y), texels.part, is_srgb(lookup.slot, 1u));
+  seen.third = filter_texels(uvec4(nearest.z, right.z, below.z, across.z), texels.part, false);
+  seen.fourth = filter_texels(uvec4(nearest.w, right.w, below.w, across.w), texels.part, false);
+  return seen;
+}
+
+// Returns the values of all images of a slot's bundle at a place.
+BundleValues look_up_bundle(uint number, TexturePlace place) {
+  Lookup lookup = lookup_of(number, place);
+  BundleValues result;
+  result.first = vec4(0.0);
+  if (has(FEATURE_TEXTURE_BUNDLES)) result = BundleValues(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+  uint level = lookup.levels.first;
+  do {
+    if (level < lookup.levels.end) {
+      BundleValues seen = filter_bundle(lookup, level);
+      result.first = mix_level(lookup, level, result.first, seen.first);
+      if (has(FEATURE_TEXTURE_BUNDLES)) {
+        result.second = mix_level(lookup, level, result.second, seen.second);
+        result.third = mix_level(lookup, level, result.third, seen.third);
+        result.fourth = mix_level(lookup, level, result.fourth, seen.fourth);
+      }
+      ++level;
+    }
+  } while (level < lookup.levels.end);
+  return result;
+}
+
+// Returns whether one look-up finds the values of both slots.
+bool are_bundled(uint number, uint other) {
+  return has(FEATURE_TEXTURE_BUNDLES) ? ((number ^ other) & TEXTURE_NUMBER_MASK) == 0u : number == other;
+}
+
+// Returns a slot's value among those of its bundle.
+vec4 value_of(uint number, BundleValues values) {
+  if (!has(FEATURE_TEXTURE_BUNDLES)) return values.first;
+  uint place = place_in_bundle(number);
+  vec4 low = place == 0u ? values.first : values.second;
+  vec4 high = place == 2u ? values.third : values.fourth;
+  return place < 2u ? low : high;
 }
 
 uint slot_number(float bits) { return floatBitsToUint(bits); }

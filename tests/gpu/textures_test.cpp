@@ -11,6 +11,7 @@
 #include "gpu/test_scenes.h"
 #include "gpu/ways_of_tracing.h"
 #include "promin/validate.h"
+#include "textures/pack_images.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin::test {
@@ -357,6 +358,54 @@ TEST_F(TexturesTest, EveryWayOfTracingGivesTheSameBits) {
   const Image image = render(scene, view);
   for (const TunedRendererOptions& options : ways_of_tracing()) {
     EXPECT_TRUE(has_same_bits(image, render(scene, view, options)));
+  }
+}
+
+/// Returns a board of metal with up to five images of equal size. The first four make a bundle. Three have colours, one
+/// more than a bundle may have.
+Scene make_board_of_images(size_t image_count) {
+  const auto noise = [](uint32_t seed, ImageUse use) {
+    return make_image(
+        {37, 22}, [=](uint32_t x, uint32_t y) { return ((x + seed) * 2654435761U) ^ (y * 40503U * 65537U); }, use);
+  };
+  Scene scene = make_lit_board(noise(1, ImageUse::kData));
+  scene.images.clear();
+  scene.textures.clear();
+  auto& material = std::get<MetallicRoughness>(scene.materials[0].model);
+  scene.materials[0].emissive = vec3(0.5F);
+  const std::pair<TextureSlot*, ImageUse> slots[] = {{&material.metallic_roughness_texture, ImageUse::kData},
+                                                     {&material.base_color_texture, ImageUse::kColor},
+                                                     {&material.normal_texture, ImageUse::kNormal},
+                                                     {&scene.materials[0].emissive_texture, ImageUse::kColor},
+                                                     {&material.specular_color_texture, ImageUse::kColor}};
+  for (uint32_t i = 0; i < image_count; ++i) {
+    slots[i].first->texture = i;
+    scene.images.push_back(std::make_shared<TextureImage>(noise(i + 2, slots[i].second)));
+    scene.textures.push_back({.image = i, .wrap_u = TextureWrap::kMirroredRepeat});
+  }
+  material.occlusion_texture = material.metallic_roughness_texture;
+  return scene;
+}
+
+TEST_F(TexturesTest, ImagesSideBySideHaveTheSameBits) {
+  View view = make_board_view({48, 32}, 3);
+  view.camera.projection = Projection::kPerspective;
+  view.camera.eye = vec3(0.5F, 0.25F, 3.0F);
+  for (const size_t image_count : {2U, 3U, 5U}) {
+    const Scene scene = make_board_of_images(image_count);
+    TunedRendererOptions alone;
+    alone.repack = [&](PackedScene packed) {
+      EXPECT_TRUE(packed.features.has_any(layout::FEATURE_TEXTURE_BUNDLES));
+      packed.surfaces.images = pack_images(scene.images, scene.textures);
+      packed.features = packed.features.without(layout::FEATURE_TEXTURE_BUNDLES);
+      return packed;
+    };
+    const Image image = render(scene, view, alone);
+    TunedRendererOptions without_texels;
+    without_texels.avoids_texels = true;
+    for (const TunedRendererOptions& options : {TunedRendererOptions(), without_texels}) {
+      EXPECT_TRUE(has_same_bits(image, render(scene, view, options))) << image_count << " images";
+    }
   }
 }
 

@@ -26,12 +26,14 @@ PackedImages pack(const TextureImage& image, bool has_levels = true) {
   return pack_images(Images{std::make_shared<TextureImage>(image)}, std::vector{texture});
 }
 
-/// Returns the texels of a level.
-std::vector<uint32_t> level_of(const PackedImages& packed, uint32_t level) {
-  const PlacedImage& placed = packed.images.at(0);
+/// Returns the texels of a level of an image.
+std::vector<uint32_t> level_of(const PackedImages& packed, uint32_t level, size_t image = 0) {
+  const PlacedImage& placed = packed.images.at(image);
   const uint32_t first = placed.first + packed.words[placed.first + level];
-  const uint32_t count = std::max(placed.size.x >> level, 1U) * std::max(placed.size.y >> level, 1U);
-  return {packed.words.begin() + first, packed.words.begin() + first + count};
+  EXPECT_EQ(first % placed.stride, 0U);
+  std::vector<uint32_t> texels(std::max(placed.size.x >> level, 1U) * std::max(placed.size.y >> level, 1U));
+  for (size_t i = 0; i < texels.size(); ++i) texels[i] = packed.words[first + i * placed.stride + placed.place];
+  return texels;
 }
 
 TEST(PackImages, LevelsAreMeansOfAreas) {
@@ -81,7 +83,7 @@ struct Collection {
 
   void add(const uvec2& size, bool has_levels) {
     std::vector<uint32_t> texels(size_t{size.x} * size.y);
-    std::mt19937 random(size.x);
+    std::mt19937 random(size.x + static_cast<uint32_t>(images.size()));
     for (uint32_t& texel : texels) texel = static_cast<uint32_t>(random());
     images.push_back(std::make_shared<TextureImage>(make_image(size, std::move(texels))));
     Texture texture;
@@ -142,6 +144,39 @@ TEST(PackImages, WhatIsHalvedHasTheLevelsThatItHad) {
   ASSERT_EQ(alone.images.at(0).levels, 1U);
   EXPECT_EQ(alone.words.size(), 19U);
   EXPECT_EQ(level_of(alone, 0), level_of(whole, 1));
+}
+
+TEST(PackImages, BundlesHaveTheSameTexelsSideBySide) {
+  Collection scene;
+  for (int i = 0; i < 6; ++i) scene.add({13, 6}, true);
+  scene.add({8, 8}, true);
+  const PackedImages alone = pack_images(scene.images, scene.textures);
+  const std::vector<ImageBundle> bundles = {{3, 1}, {5, 0, 4}};
+  const PackedImages packed = pack_images(scene.images, scene.textures, kDefaultTextureBytes, {}, bundles);
+  const uint32_t strides[] = {4, 2, 1, 2, 4, 4, 1};
+  const uint32_t places[] = {1, 1, 0, 0, 2, 0, 0};
+  for (size_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(packed.images[i].stride, strides[i]) << i;
+    EXPECT_EQ(packed.images[i].place, places[i]) << i;
+    for (uint32_t level = 0; level < 4; ++level) EXPECT_EQ(level_of(packed, level, i), level_of(alone, level, i)) << i;
+  }
+  // The missing fourth image of the second bundle is 0.
+  const uint32_t first = packed.images[0].first + packed.words[packed.images[0].first];
+  EXPECT_EQ(packed.words[first + 3], 0U);
+}
+
+TEST(PackImages, ThereAreNoBundlesWithoutMemoryOrOfUnequalImages) {
+  Collection scene;
+  for (int i = 0; i < 3; ++i) scene.add({8, 8}, true);
+  scene.add({8, 8}, false);
+  const auto stride_of = [&](uint64_t words, const ImageBundle& bundle) {
+    const std::vector<ImageBundle> bundles = {bundle};
+    return pack_images(scene.images, scene.textures, 4 * words, {}, bundles).images[0].stride;
+  };
+  // The bundle has 4 + 4 * 85 words, and the last image 65.
+  EXPECT_EQ(stride_of(409, {0, 1, 2}), 4U);
+  EXPECT_EQ(stride_of(408, {0, 1, 2}), 1U);
+  EXPECT_EQ(stride_of(409, {0, 3}), 1U) << "one has no levels";
 }
 
 TEST(PackImages, WhatIsHalvedIsSaid) {
