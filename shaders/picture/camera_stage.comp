@@ -138,34 +138,54 @@ vec3 arrive_at(inout Path path, Ray ray, Hit hit, out ShadingPoint point) {
   return light;
 }
 
+// Not 0 if a camera ray that hits nothing takes more work than a constant or a gradient.
+const uint MISSES_TAKE_WORK = FEATURE_BIT(FEATURE_SHOWN_SKY) | FEATURE_BIT(FEATURE_AOVS) |
+                              FEATURE_BIT(FEATURE_SAMPLE_IDS) | FEATURE_BIT(FEATURE_RAY_LOG) |
+                              uint(DEBUG_VIEW != DEBUG_VIEW_NONE);
+
+// Returns the first pixel from `first` on that arrive() shades, or PACKET_SIZE.
+uint next_arriving(uint first) {
+  uint next = PACKET_SIZE;
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    bool arrives = is_inside[i] && (MISSES_TAKE_WORK != 0u || found[i].primitive != NO_PRIMITIVE);
+    next = arrives && i >= first ? min(next, i) : next;
+  }
+  return next;
+}
+
 // Shades the pixels one after the other. Each pixel is copied out of the packet and back, because CPU drivers are slow
-// with arrays at variable indices. Drivers do not unroll loops that contain loops, such as those of textures.
+// with arrays at variable indices. Drivers do not unroll loops that contain loops, such as those of textures. A lane
+// passes over pixels without a hit: lavapipe 22 executes the code of shading in each turn, even for no lane.
 void arrive() {
-  uint at = 0u;
+  [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
+    is_lit[i] = false;
+    if (MISSES_TAKE_WORK != 0u) continue;
+    seen[i] = radiance_behind(paths[i].origin, paths[i].direction, true);
+    if (has(FEATURE_LIGHT_AOVS)) own_lights[i] = seen[i];
+  }
+  uint at = next_arriving(0u);
   do {
     Path path = paths[0];
     Ray ray = packet[0];
     Hit hit = found[0];
-    bool takes_part = is_inside[0];
     [[unroll]] for (uint i = 1u; i < PACKET_SIZE; ++i) {
       if (i != at) continue;
       path = paths[i];
       ray = packet[i];
       hit = found[i];
-      takes_part = is_inside[i];
     }
     vec3 light = vec3(0.0);
     ShadingPoint point;
-    if (takes_part) light = arrive_at(path, ray, hit, point);
+    if (at < PACKET_SIZE) light = arrive_at(path, ray, hit, point);
     [[unroll]] for (uint i = 0u; i < PACKET_SIZE; ++i) {
       if (i != at) continue;
       paths[i] = path;
       points[i] = point;
       seen[i] = light;
       if (has(FEATURE_LIGHT_AOVS)) own_lights[i] = light;
-      is_lit[i] = takes_part && SHADES_LIGHT != 0u && hit.primitive != NO_PRIMITIVE;
+      is_lit[i] = SHADES_LIGHT != 0u && hit.primitive != NO_PRIMITIVE;
     }
-    ++at;
+    at = next_arriving(at + 1u);
   } while (at < PACKET_SIZE);
 }
 
