@@ -124,6 +124,21 @@ def names_gaps(folder):
     expect(row["mean_difference"] > 0.01 and row["time_ratio"] == [row["promin_ms"][0] / 2500.0], f"{row}")
 
 
+def names_the_gap_of_mitsuba(folder):
+    """Mitsuba may be missing or fail; the reason is its last line."""
+    gap = folder / "gap.json"
+    for problem, reason in (
+        ("ModuleNotFoundError(\"No module named 'mitsuba'\")", "not installed"),
+        ("RuntimeError('no LLVM')", "RuntimeError: no LLVM (it may need another LLVM, which DRJIT_LIBLLVM_PATH names)"),
+    ):
+        (folder / "mitsuba.py").write_text(f"raise {problem}\n", encoding="utf-8")
+        environment = {**os.environ, "PYTHONPATH": str(folder)}
+        done = run_python("mitsuba_rates.py", folder / "none.json", folder, gap, environment=environment)
+        expect(done.returncode == 0, f"mitsuba_rates.py: {done.stderr}")
+        found = read_json(gap)["mitsuba"]
+        expect(not found["rows"] and [gap["reason"] for gap in found["gaps"]] == [reason], f"{problem}: {found}")
+
+
 def measures_processes(folder):
     """A process with empty caches compiles its kernels; the next one takes them from the caches. A process that fails
     is an error."""
@@ -132,6 +147,10 @@ def measures_processes(folder):
     times = [rows[0][f"{caches}_{clock}"] for caches in ("cached", "empty") for clock in ("cpu_s", "s")]
     expect(all(len(runs) == 2 and min(runs) > 0.0 for runs in times), f"times: {rows}")
     expect(max(rows[0]["cached_cpu_s"]) < min(rows[0]["empty_cpu_s"]), f"kernels are not compiled, or twice: {rows}")
+    row = processes.measure_uses(BIN / "promin-lab", SCENES / "sphere.gltf", 1)
+    expect(row["uses"] == "light, AOVs, normals, target error", f"uses: {row}")
+    expect(0.0 < row["cached_compile_ms"][0] < row["empty_compile_ms"][0], f"kernels are compiled twice: {row}")
+    expect(row["empty_compile_ms"][0] < 1e3 * row["empty_cpu_s"][0] * os.cpu_count(), f"more than all time: {row}")
     try:
         processes.measure(BIN / "promin", [(folder / "none.gltf", 16)], 1)
     except RuntimeError as problem:
@@ -151,11 +170,24 @@ def check_bench_tables(folder):
     run_lab("growth", "--quick", "--runs", 1, "--side", 32, "-o", folder / "growth.json")
     process = {"scene": "a.gltf", "width": 16, "cached_cpu_s": [2.0], "cached_s": [3.0]}
     process |= {"empty_cpu_s": [5.0], "empty_s": [4.0]}
-    (system / "processes.json").write_text(json.dumps({"processes": {"rows": [process]}}), encoding="utf-8")
+    uses = {"scene": "b.gltf", "uses": "light, AOVs", "cached_cpu_s": [2.0], "cached_compile_ms": [3.0]}
+    uses |= {"empty_cpu_s": [5.0], "empty_compile_ms": [4.0]}
+    content = {"processes": {"rows": [process], "uses": [uses]}}
+    (system / "processes.json").write_text(json.dumps(content), encoding="utf-8")
+    rays = {"scene": "c", "rays": "camera", "count": 1000, "peer": "Mitsuba 9", "peer_ms": [4.0], "peer_cpu_ms": [7.0]}
+    rays |= {"promin_ms": [6.0], "differing_hits": 0}
+    gap = {"name": "Mitsuba", "is_installed": True, "reason": "no LLVM"}
+    (system / "mitsuba.json").write_text(json.dumps({"mitsuba": {"rows": [rays], "gaps": [gap]}}), encoding="utf-8")
     done = run_python("bench_tables.py", "-o", folder / "bench.json", "--growth", folder / "growth.json", system)
     expect(done.returncode == 0, f"bench_tables.py: {done.stderr}")
     lines = _cells(done.stdout)
-    report = read_figures(system / "rates.json") | read_figures(system / "processes.json")
+    files = (system / f"{name}.json" for name in ("rates", "processes", "mitsuba"))
+    report = {key: value for file in files for key, value in read_figures(file).items()}
+    cells = next(line for line in lines if line[1:2] == ["b.gltf"])
+    expect([cell.split(" ")[0] for cell in cells[2:]] == ["light,", "3", "2", "4", "5"], f"other uses: {cells}")
+    cells = next(line for line in lines if line[1:2] == ["c"])
+    expect(cells[6].startswith("4 ") and cells[7:] == ["1.5", "7,000", "0"], f"other times of Mitsuba: {cells}")
+    expect("Not measured: Mitsuba, which failed: no LLVM" in done.stdout, done.stdout)
     cells = next(line for line in lines if line[1:2] == ["a.gltf"])
     expect([cell[0] for cell in cells[3:]] == ["2", "3", "5", "4"], f"other processes: {cells}")
     for row in report["rates"]["rows"]:
@@ -279,7 +311,7 @@ def writes_a_report(folder):
     expect(done.returncode == 1 and "no such scene" in done.stderr, f"a scene that is not there: {done}")
 
 
-TESTS = (computes_figures, measures_processes, names_gaps, makes_tables, writes_a_report)
+TESTS = (computes_figures, measures_processes, names_gaps, names_the_gap_of_mitsuba, makes_tables, writes_a_report)
 TESTS = {test.__name__: test for test in TESTS}
 
 with tempfile.TemporaryDirectory() as name:

@@ -69,6 +69,25 @@ _OVER_RAYS_COLUMNS = [
     ("the same rays, ms", lambda r: spread(r.get("peer_ms"))),
     ("over these", lambda r: interval(r.get("time_ratio"))),
 ]
+_MITSUBA_COLUMNS = [
+    ("scene", lambda r: r["scene"]),
+    ("rays", lambda r: r["rays"]),
+    ("number", lambda r: f"{r['count']:,}"),
+    ("promin, ms", lambda r: spread(r.get("promin_ms"))),
+    ("peer", lambda r: r["peer"]),
+    ("peer, ms", lambda r: spread(r["peer_ms"])),
+    ("ratio", lambda r: number(_ratio_of_medians(r, "promin_ms", "peer_ms"))),
+    ("peer, CPU ns a ray", lambda r: number(1e6 * r["peer_cpu_ms"]["median"] / r["count"])),
+    ("other hits", lambda r: number(r["differing_hits"])),
+]
+_USES_COLUMNS = [
+    ("scene", lambda r: r["scene"]),
+    ("uses", lambda r: r["uses"]),
+    ("compiling, ms, cached kernels", lambda r: spread(r["cached_compile_ms"])),
+    ("CPU s", lambda r: spread(r["cached_cpu_s"])),
+    ("compiling, ms, empty caches", lambda r: spread(r["empty_compile_ms"])),
+    ("CPU s", lambda r: spread(r["empty_cpu_s"])),
+]
 _PROCESSES_COLUMNS = [
     ("scene", lambda r: r["scene"]),
     ("width", lambda r: r["width"]),
@@ -95,6 +114,10 @@ def _targets_of(report):
 
 def _ratio_of(row, key="time_ratio"):
     return row[key]["median"] if key in row else None
+
+
+def _ratio_of_medians(row, first, second):
+    return row[first]["median"] / row[second]["median"] if row.get(first) and row.get(second) else None
 
 
 def _rate_target(report, row):
@@ -147,6 +170,10 @@ def tables(reports, growth):
         ("target", _rate_target),
     ]
     yield _table(reports, "rates", "rows", _RAYS_COLUMNS, rates)
+    yield "The same rays by Mitsuba's LLVM mode, whose turns are its own; ratios are promin's time over Mitsuba's:\n"
+    yield _table(reports, "mitsuba", "rows", _MITSUBA_COLUMNS)
+    for report in reports:
+        yield gap_text(report.get("mitsuba", {}).get("gaps", []))
     yield "From triangles in memory to all that is copied to the device, against rtcCommitScene:\n"
     builds = [
         ("target", lambda _, r: _target(_ratio_of(r), most=_MOST_BUILD_TIME)),
@@ -161,15 +188,17 @@ def tables(reports, growth):
         yield gap_text(report.get("peers", {}).get("gaps", []))
     yield "Whole processes that render a first picture, 1 sample per pixel:\n"
     yield _table(reports, "processes", "rows", _PROCESSES_COLUMNS)
+    yield "One process that uses a scene in several ways, one after the other, 16 by 16 pixels:\n"
+    yield _table(reports, "processes", "uses", _USES_COLUMNS)
     yield "Node steps and primitive tests a ray over the triangles of a wavy sphere:\n"
     yield _growth_table(growth["growth"])
 
 
 def _read_driver(folder):
-    """Returns the tables of a driver's rates, with the pictures of the peers and the processes if they were
-    measured."""
+    """Returns the tables of a driver's rates, with the pictures of the peers, Mitsuba's times and the processes if they
+    were measured."""
     report = read_figures(folder / "rates.json")
-    for file in (folder / "peers.json", folder / "processes.json"):
+    for file in (folder / f"{name}.json" for name in ("peers", "mitsuba", "processes")):
         report |= read_figures(file) if file.exists() else {}
     return report
 

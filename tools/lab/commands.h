@@ -8,6 +8,7 @@
 namespace promin::lab {
 
 app::Command add_rates_command(CLI::App& program);
+app::Command add_kernels_command(CLI::App& program);
 app::Command add_growth_command(CLI::App& program);
 app::Command add_instances_command(CLI::App& program);
 app::Command add_robustness_command(CLI::App& program);

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "lab/ray_files.h"
 #include "measure/picture_rays.h"
 #include "measure/samples.h"
-#include "rays/npy.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin::lab {
@@ -59,14 +59,6 @@ Json json_of(const Part& part) {
     json["time_ratio"] = measure::ratios_of(part.ms, peer_ms);
   }
   return json;
-}
-
-void write_sets(const std::filesystem::path& folder, const std::string& scene, std::span<const measure::RaySet> sets) {
-  for (const measure::RaySet& set : sets) {
-    std::string name = scene + "_" + set.name + ".npy";
-    for (const char odd : {' ', '/'}) std::replace(name.begin(), name.end(), odd, '_');
-    write_rays(folder / name, set.rays);
-  }
 }
 
 }  // namespace

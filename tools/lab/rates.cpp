@@ -8,6 +8,7 @@
 #include "core/stopwatch.h"
 #include "device_scene/pack_scene.h"
 #include "lab/picture_over_rays.h"
+#include "lab/ray_files.h"
 #include "measure/embree.h"
 #include "measure/kernel_pair.h"
 #include "measure/meshes.h"
@@ -95,7 +96,12 @@ void add_rates(const Session& session, const world::Scene& scene, Json& rates) {
 
   const measure::StepCounter counter(session.device(), scene, builder);
   const Camera camera = view_of(scene, uvec2(session.side())).camera;
-  for (const measure::RaySet& set : measure::make_ray_sets(caster, scene, camera, session.side(), false)) {
+  const std::vector<measure::RaySet> sets = measure::make_ray_sets(caster, scene, camera, session.side(), false);
+  if (const auto& folder = session.options().rays; folder && runs > 0) {
+    write_sets(*folder, name + "_rates", sets);
+    write_triangles(*folder, name, scene);
+  }
+  for (const measure::RaySet& set : sets) {
     const measure::StepCounts counts = counter.count(set);
     const auto rays = static_cast<double>(std::max<uint64_t>(1, counts.rays));
     Json row = {{"scene", name},

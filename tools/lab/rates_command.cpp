@@ -131,8 +131,11 @@ app::Command add_rates_command(CLI::App& program) {
             [=](const app::OptionValues& words) { options->builder = words.choice(builder_names()); });
   table.add("--max-depth", "N", fmt::format("Largest number of mirror bounces in the picture [{}]", View().max_depth),
             [=](const app::OptionValues& words) { options->max_depth = words.whole(0, 0, kMaxDepth); });
-  table.add("--rays", "FOLDER", "Folder to write the picture's rays to, with one .npy file per set of rays",
-            [=](const app::OptionValues& words) { options->rays = words.text(); });
+  table.add(
+      "--rays", "FOLDER",
+      "Folder to write rays to, with one .npy file per set of rays: those of the rows as SCENE_rates_SET, those of the "
+      "picture as SCENE_SET, and the triangles as SCENE_triangles",
+      [=](const app::OptionValues& words) { options->rays = words.text(); });
   return {&command, [options] { measure_rates(*options); }};
 }
 
