@@ -69,10 +69,10 @@ FAULTS = {
     "srgb_is_linear": {"shade/textures.glsl": [(r"return vec3\(code\.x <= 0\.04045[^;]*;", "return code;")]},
     "srgb_after_filter": {
         "shade/textures.glsl": [
-            (r"if \(has_flag\(slot, TEXTURE_IS_SRGB\)\) numbers.xyz = decode_srgb\(numbers.xyz\);", ""),
+            (r"if \(is_srgb\) numbers.xyz = decode_srgb\(numbers.xyz\);", ""),
             (
                 r"(precise vec4 result = upper [^;]*;)",
-                r"\1 if (has_flag(slot, TEXTURE_IS_SRGB)) result.xyz = decode_srgb(result.xyz);",
+                r"\1 if (is_srgb) result.xyz = decode_srgb(result.xyz);",
             ),
         ]
     },

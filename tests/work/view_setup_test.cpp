@@ -283,11 +283,11 @@ TEST(LightUpTest, LightAndGroundStandOnTheScenesUp) {
   light_up(standing, {.light = LightChoice::kSoft});
   light_up(lying, {.light = LightChoice::kSoft}, {}, z);
   light_up(slanted, {.light = LightChoice::kSoft}, {}, vec3(0.6F, 0.0F, 0.8F));
-  EXPECT_EQ(plane_of(lying).normal, z);
+  EXPECT_EQ(vec3(plane_of(lying).normal), z);
   // The ball of radius 1 lies at (1, 2, 3).
-  EXPECT_NEAR(plane_of(standing).point.y, 1.0F, 1e-3F);
-  EXPECT_NEAR(plane_of(lying).point.z, 2.0F, 1e-3F);
-  EXPECT_NEAR(glm::dot(plane_of(slanted).point, plane_of(slanted).normal), 2.0F, 1e-3F);
+  EXPECT_NEAR(plane_of(standing).point.y, 1.0, 1e-3);
+  EXPECT_NEAR(plane_of(lying).point.z, 2.0, 1e-3);
+  EXPECT_NEAR(glm::dot(plane_of(slanted).point, plane_of(slanted).normal), 2.0, 1e-3);
   EXPECT_TRUE(validate(slanted).empty());
 }
 
