@@ -203,36 +203,35 @@ void DeviceScene::set_environment(const Environment& environment) {
   take_colors(environment);
 }
 
-bool DeviceScene::reserve_nodes(uint64_t count, uint64_t kept) {
+void DeviceScene::reserve_nodes(uint64_t count, uint64_t kept) {
   const uint64_t bytes = count * sizeof(layout::Node);
-  if (bytes <= nodes_.size_bytes()) return false;
+  if (bytes <= nodes_.size_bytes()) return;
   gpu::Buffer larger(*device_, bytes, kStorageOrTexels);
   if (kept > 0) larger.copy_from(nodes_, kept * sizeof(layout::Node));
   vk::raii::BufferView texels = larger.make_texel_view();
   node_texels_ = std::move(texels);
   nodes_ = std::move(larger);
   choose_texels();
-  return true;
+  ++version_;
 }
 
-bool DeviceScene::reserve_stack(uint32_t entries) {
-  if (entries <= stack_size_) return false;
+void DeviceScene::reserve_stack(uint32_t entries) {
+  if (entries <= stack_size_) return;
   stack_size_ = round_stack(entries);
-  return true;
+  ++version_;
 }
 
-bool DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper,
+void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper,
                                   std::shared_ptr<const GlassSolids> glass_solids) {
   constexpr uint64_t kNodeBytes = sizeof(layout::Node);
-  bool must_bind = reserve_nodes(upper.first_record + upper.records.size(), level.first_node());
-  must_bind = reserve_stack(upper.stack_size) || must_bind;
+  reserve_nodes(upper.first_record + upper.records.size(), level.first_node());
+  reserve_stack(upper.stack_size);
   nodes_.write(std::as_bytes(std::span(&upper.root, 1)));
   if (!upper.nodes.empty()) nodes_.write(std::as_bytes(std::span(upper.nodes)), level.first_node() * kNodeBytes);
   if (!upper.records.empty()) nodes_.write(std::as_bytes(std::span(upper.records)), upper.first_record * kNodeBytes);
   uploads_.moves += (1 + upper.nodes.size() + upper.records.size()) * kNodeBytes;
   constants_.tree_bounds = center_and_radius(upper.bounds);
   constants_.glass_solids = std::move(glass_solids);
-  return must_bind;
 }
 
 bool DeviceScene::has_space_for(const PackedScene& packed) const {
@@ -241,10 +240,10 @@ bool DeviceScene::has_space_for(const PackedScene& packed) const {
          (packed.solid_count > packed.bounded_count / 2) == is_mostly_solids_;
 }
 
-bool DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids) {
+void DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids) {
   const TreeView tree = packed.tree();
-  bool must_bind = reserve_nodes(tree.nodes.size(), 0);
-  must_bind = reserve_stack(packed.stack_size) || must_bind;
+  reserve_nodes(tree.nodes.size(), 0);
+  reserve_stack(packed.stack_size);
   const PlacedHead head = place_head(packed.surfaces);
   nodes_.write(std::as_bytes(tree.nodes));
   primitives_.write(std::as_bytes(std::span(packed.primitives)));
@@ -252,7 +251,6 @@ bool DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const 
   uploads_.geometry += tree.nodes.size_bytes() + primitives_.size_bytes() + head.end();
   take_tree(packed);
   constants_.glass_solids = std::move(glass_solids);
-  return must_bind;
 }
 
 void DeviceScene::take_tree(const PackedScene& packed) {
@@ -385,6 +383,7 @@ void DeviceScene::write_tail(Tail tail) {
     constants_.media.push_back(is_medium ? number : 0);
   }
   constants_.irradiance = tail.sky->irradiance;
+  if (needs_larger || constants_.source_count != tail.lights.records.size()) ++version_;
   constants_.source_count = static_cast<uint32_t>(tail.lights.records.size());
   const bool has_sky_light = !tail.lights.numbers.empty() && tail.lights.numbers.back() == ExplainedSource::kSky;
   constants_.light_count = constants_.source_count - (has_sky_light ? 1 : 0);

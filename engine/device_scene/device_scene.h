@@ -45,12 +45,10 @@ class DeviceScene {
   /// Returns whether set_geometry() can replace the geometry by that of another pose: there is space for as many
   /// primitives and vertices, and no instances.
   bool has_space_for(const PackedScene& packed) const;
-  /// Replaces the geometry, for which there is space. The images stay. Returns true if kernels must be bound again, as
-  /// set_upper_level() does.
-  bool set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids);
-  /// Replaces the upper level after instances have moved. Returns true if the buffer of nodes or the size of the stack
-  /// has changed, so that kernels must be bound again.
-  bool set_upper_level(const UpperLevel& level, const UpperNodes& upper,
+  /// Replaces the geometry, for which there is space. The images stay.
+  void set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids);
+  /// Replaces the upper level after instances have moved.
+  void set_upper_level(const UpperLevel& level, const UpperNodes& upper,
                        std::shared_ptr<const GlassSolids> glass_solids);
 
   /// Returns the constants of pictures and casts that depend on the scene.
@@ -59,6 +57,9 @@ class DeviceScene {
   /// environment, which comes last.
   const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
   uint32_t stack_size() const { return stack_size_; }
+  /// Returns a number that changes whenever kernels must be bound to the scene again: because a buffer is another one,
+  /// the stack has grown, or there are more or fewer sources of light.
+  uint64_t version() const { return version_; }
   /// Returns whether the tree has more solids than triangles.
   bool is_mostly_solids() const { return is_mostly_solids_; }
   /// Returns the size of the scene in device memory.
@@ -95,11 +96,10 @@ class DeviceScene {
   void take_tree(const PackedScene& packed);
   /// Sets whether shaders read the whole scene as texels.
   void choose_texels();
-  /// Ensures that the buffer of nodes has this number of nodes, of which the first `kept` stay. Returns true if the
-  /// buffer is another one.
-  bool reserve_nodes(uint64_t count, uint64_t kept);
-  /// Ensures that kernels have a stack of this number of entries. Returns true if it becomes larger.
-  bool reserve_stack(uint32_t entries);
+  /// Ensures that the buffer of nodes has this number of nodes, of which the first `kept` stay.
+  void reserve_nodes(uint64_t count, uint64_t kept);
+  /// Ensures that kernels have a stack of this number of entries.
+  void reserve_stack(uint32_t entries);
   gpu::Buffer make_shading_buffer(uint64_t tail_end) const;
   void take_shading_buffer(gpu::Buffer buffer);
   /// The replaceable parts, which lie behind the surfaces.
@@ -144,6 +144,7 @@ class DeviceScene {
   Environment environment_;
   SceneConstants constants_;
   uint32_t stack_size_;
+  uint64_t version_ = 0;
   bool is_mostly_solids_;
   bool fetches_texels_ = false;
   Uploads uploads_;

@@ -188,11 +188,9 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
   }
 
   void set_pose(const world::Scene& posed) {
-    if (!posed.instances.empty()) {
-      if (const std::optional<bool> must_bind = move_to_pose(posed, copies.empty(), instanced_hash, upper, *scene)) {
-        cube = cube_of(scene->constants().tree_bounds);
-        return update_kernels(*must_bind);
-      }
+    const uint64_t version = scene->version();
+    if (!posed.instances.empty() && move_to_pose(posed, copies.empty(), instanced_hash, upper, *scene)) {
+      return take_move(version);
     }
     const FeatureMask features_before = features;
     PackedScene packed = posed.instances.empty() ? pack_pose(posed, builder, TreeOfPose::kRefitted, kept_tree)
@@ -200,23 +198,29 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     if (packed.numbers.are_instances_whole) throw_too_many(posed);
     packed.stack_size = std::max(packed.stack_size, scene->stack_size());
     const Stopwatch uploading;
-    bool must_bind = true;
-    if (scene->has_space_for(packed)) {
-      must_bind = scene->set_geometry(packed, nullptr);
+    const bool has_space = scene->has_space_for(packed);
+    if (has_space) {
+      scene->set_geometry(packed, nullptr);
     } else {
       scene = upload_scene(device, packed);
     }
     stats.upload_ms = uploading.ms();
     take(packed, posed);
-    update_kernels(must_bind || features != features_before);
+    update_kernels(!has_space || scene->version() != version || features != features_before);
   }
 
   static SceneCube cube_of(const vec4& tree_bounds) { return {vec3(tree_bounds), tree_bounds.w}; }
 
   void set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
-    const bool must_bind = move_instances(world_from_object, numbers, upper, *scene);
+    const uint64_t version = scene->version();
+    move_instances(world_from_object, numbers, upper, *scene);
+    take_move(version);
+  }
+
+  /// Updates what depends on the upper level. `version` is that of the scene before the move.
+  void take_move(uint64_t version) {
     cube = cube_of(scene->constants().tree_bounds);
-    update_kernels(must_bind);
+    update_kernels(scene->version() != version);
   }
 
   /// Updates the kernels after the scene has changed.

@@ -74,22 +74,22 @@ void check_same_scene(const Scene& posed, size_t objects, size_t materials) {
   check("materials", posed.materials.size(), materials);
 }
 
-std::optional<bool> move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
-                                 std::shared_ptr<const UpperLevel>& level, DeviceScene& scene) {
+bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
+                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene) {
   const std::optional<uint64_t> before = std::exchange(hash, hash_instanced(posed));
-  if (!may_move || level == nullptr || before != hash) return std::nullopt;
+  if (!may_move || level == nullptr || before != hash) return false;
   std::vector<Transform> transforms;
   for (const world::Instance& instance : posed.instances) {
     transforms.emplace_back(instance.object, dmat4(instance.world_from_object));
   }
   auto moved = std::make_shared<UpperLevel>(*level);
   moved->move(transforms);
-  const bool must_bind = scene.set_upper_level(*moved, moved->build(), std::make_shared<const GlassSolids>(posed));
+  scene.set_upper_level(*moved, moved->build(), std::make_shared<const GlassSolids>(posed));
   level = std::move(moved);
-  return must_bind;
+  return true;
 }
 
-bool move_instances(std::span<const Transform> world_from_object, const PrimitiveNumbers& numbers,
+void move_instances(std::span<const Transform> world_from_object, const PrimitiveNumbers& numbers,
                     std::shared_ptr<const UpperLevel>& level, DeviceScene& scene) {
   std::vector<Problem> problems;
   for (size_t i = 0; i < world_from_object.size(); ++i) {
@@ -98,15 +98,12 @@ bool move_instances(std::span<const Transform> world_from_object, const Primitiv
     if (problem) problems.push_back(std::move(*problem));
   }
   if (!problems.empty()) throw InputError(problems);
-  if (world_from_object.empty()) return false;
+  if (world_from_object.empty()) return;
   const std::vector<Transform> sorted = sort_by_object(world_from_object);
   auto moved = std::make_shared<UpperLevel>(*level);
   moved->move(sorted);
-  const UpperNodes upper = moved->build();
-  const bool must_bind =
-      scene.set_upper_level(*moved, upper, GlassSolids::moved(scene.constants().glass_solids, sorted));
+  scene.set_upper_level(*moved, moved->build(), GlassSolids::moved(scene.constants().glass_solids, sorted));
   level = std::move(moved);
-  return must_bind;
 }
 
 }  // namespace promin

@@ -18,16 +18,16 @@ namespace promin {
 void check_same_scene(const Scene& posed, size_t objects, size_t materials);
 
 /// Gives instances of a scene on a device other transforms: builds the upper level of its tree again and uploads it. If
-/// an object occurs several times, its last transform counts. Returns true if kernels must be bound to the scene again.
-/// Throws InputError if an object does not exist, is not an instance, or gets a
-/// transform that an instance cannot have; throws RunError and vk::SystemError. Then nothing changes.
-bool move_instances(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const PrimitiveNumbers& numbers,
+/// an object occurs several times, its last transform counts. Throws InputError if an object does not exist, is not an
+/// instance, or gets a transform that an instance cannot have; throws RunError and vk::SystemError. Then nothing
+/// changes.
+void move_instances(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const PrimitiveNumbers& numbers,
                     std::shared_ptr<const UpperLevel>& level, DeviceScene& scene);
 
 /// Gives all instances the transforms that they have in another pose of the scene, if the poses differ in nothing else
 /// and if `may_move`. `hash` is the hash_instanced() of the last pose, if it is known, and becomes that of this pose.
-/// Returns true if kernels must be bound again; nullopt if something else differs, and then only the hash changes.
-std::optional<bool> move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
-                                 std::shared_ptr<const UpperLevel>& level, DeviceScene& scene);
+/// Returns false if something else differs; then only the hash changes.
+bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
+                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene);
 
 }  // namespace promin

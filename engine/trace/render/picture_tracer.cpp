@@ -129,17 +129,35 @@ void PictureTracer::take_change() {
   }
 }
 
+template <typename Change>
+void PictureTracer::change_scene(const Change& change) {
+  // The shared pointer keeps the address of the scene from being used again.
+  const std::shared_ptr<const DeviceScene> before = scene_.device_scene();
+  const uint64_t version = before->version();
+  const auto drop_films = [&] {
+    film_.reset();
+    middle_film_.reset();
+    occlusion_film_.reset();
+  };
+  const auto is_other_scene = [&] { return scene_.device_scene() != before; };
+  try {
+    change();
+  } catch (...) {
+    if (is_other_scene() || before->version() != version) drop_films();
+    throw;
+  }
+  if (is_other_scene()) return drop_films();
+  if (before->version() != version) take_change();
+}
+
 void PictureTracer::set_pose(const world::Scene& posed, TreeOfPose tree) {
   // Steps show the tree, so it must be that of a new renderer.
   const bool shows_tree = wanted_.steps || options_.mode.debug_view == DebugView::kSteps;
-  switch (scene_.set_pose(device_, posed, options_, shows_tree ? TreeOfPose::kBuilt : tree, stats_)) {
-    case SceneOnDevice::PoseChange::kOfScene:
-      return take_change();
-    case SceneOnDevice::PoseChange::kToOtherScene:
-      film_.reset();
-      middle_film_.reset();
-      occlusion_film_.reset();
-  }
+  change_scene([&] { scene_.set_pose(device_, posed, options_, shows_tree ? TreeOfPose::kBuilt : tree, stats_); });
+}
+
+void PictureTracer::set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+  change_scene([&] { scene_.set_transforms(world_from_object); });
 }
 
 void PictureTracer::trace_window(Film& onto, const PixelWindow& window, const View& view, const SampleRange& samples,

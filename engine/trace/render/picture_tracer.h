@@ -50,6 +50,8 @@ class PictureTracer {
 
   /// Shows the scene in another pose. It has the objects, materials and cameras of the constructor's scene.
   void set_pose(const world::Scene& posed, TreeOfPose tree);
+  /// SceneOnDevice::set_transforms().
+  void set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object);
 
   const TunedRendererOptions& options() const { return options_; }
 
@@ -69,6 +71,9 @@ class PictureTracer {
   /// Vulkan guarantees for a storage buffer.
   static constexpr uint32_t kMaxFilmRecords = ((64U << 20) - 4096) / sizeof(uvec4);
 
+  /// Makes a change of the scene, and updates the films if they must be bound to it again.
+  template <typename Change>
+  void change_scene(const Change& change);
   /// Creates the film that a mode needs, unless it exists.
   void prepare_film(const RenderMode& mode, bool has_lens);
   /// Returns the features for AOVs of all samples.

@@ -118,9 +118,7 @@ void Renderer::set_environment(const Environment& environment) {
 }
 
 void Renderer::set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
-  gpu::translate_vulkan_errors([&] {
-    if (impl_->tracer.scene().set_transforms(world_from_object)) impl_->tracer.take_change();
-  });
+  gpu::translate_vulkan_errors([&] { impl_->tracer.set_transforms(world_from_object); });
 }
 
 void RendererAccess::set_pose(Renderer& renderer, const world::Scene& posed, TreeOfPose tree) {

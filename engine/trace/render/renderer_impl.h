@@ -44,20 +44,13 @@ class SceneOnDevice {
   void set_lights(std::span<const Light> lights);
   void set_materials(std::span<const Material> materials);
   void set_environment(const Environment& environment);
-  /// The state of films after a change of the pose.
-  enum class PoseChange {
-    /// The scene must be bound to films again.
-    kOfScene,
-    /// The device has another scene, so films must be created again.
-    kToOtherScene,
-  };
   /// Replaces everything but images and textures by that of the scene in another pose, for pictures of a renderer with
-  /// these options. The number of objects and of materials stays the same.
-  PoseChange set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
-                      TreeOfPose tree, SetupStats& stats);
+  /// these options. The number of objects and of materials stays the same. The device may then have another scene.
+  void set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
+                TreeOfPose tree, SetupStats& stats);
   /// Calls move_instances() for this scene.
-  bool set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
-    return move_instances(world_from_object, numbers_, upper_, *device_scene_);
+  void set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_from_object) {
+    move_instances(world_from_object, numbers_, upper_, *device_scene_);
   }
 
  private:

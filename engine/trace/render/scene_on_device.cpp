@@ -67,13 +67,11 @@ bool SceneOnDevice::has_images_of(const world::Scene& posed, const PackedScene& 
 bool SceneOnDevice::move_only(const world::Scene& posed) {
   const bool may_move = copied_materials_.empty() && posed.images == images_ && posed.textures == textures_ &&
                         find_mask_cutoffs(posed) == mask_cutoffs_;
-  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_).has_value();
+  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_);
 }
 
-SceneOnDevice::PoseChange SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& posed,
-                                                  const TunedRendererOptions& options, TreeOfPose tree,
-                                                  SetupStats& stats) {
-  auto change = PoseChange::kOfScene;
+void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
+                             TreeOfPose tree, SetupStats& stats) {
   if (posed.instances.empty() || !move_only(posed)) {
     PackedScene packed = posed.instances.empty() ? pack_pose(posed, options.builder, tree, kept_tree_)
                                                  : pack_scene(posed, options.builder, {}, options.texture_bytes);
@@ -89,14 +87,12 @@ SceneOnDevice::PoseChange SceneOnDevice::set_pose(const gpu::Device& device, con
       upload(device, posed, packed, stats);
       images_ = posed.images;
       textures_ = posed.textures;
-      change = PoseChange::kToOtherScene;
     }
     take(posed, packed, stats);
   }
   set_materials(posed.materials);
   set_lights(posed.lights);
   set_environment(posed.environment);
-  return change;
 }
 
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const {
