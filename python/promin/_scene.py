@@ -576,7 +576,7 @@ class Scene:
                 scene.add_material(to_dict(material))
         elif self._parts and self._material_count() == 0:
             scene.add_material(to_dict(Phong()))
-        moves = self._native_moves = {}
+        moves = self._native_moves
         number = self._base_count()
         for part in self._parts:
             if isinstance(part, _Instances):
