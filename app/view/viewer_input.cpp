@@ -219,6 +219,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.motion = scene_->motion;
   described.center = scene_->scene->center;
   described.camera_index = find_half_height(*scene_->scene, view.camera);
+  described.instances = on.instances;
   described.builder = on.builder;
   described.bvh = on.bvh;
   return described;

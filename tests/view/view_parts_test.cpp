@@ -44,6 +44,21 @@ TEST(DescribeCommand, LeavesOutWhatTheWindowDoes) {
   EXPECT_THAT(command, testing::Not(testing::HasSubstr("--fov")));
 }
 
+TEST(DescribeCommand, NamesWhatChangesBits) {
+  View view;
+  view.seed = 3;
+  view.occlusion_distance = 2.5F;
+  view.camera.aperture_radius = 0.25F;
+  view.camera.focus_distance = 4.0F;
+  LookOptions look;
+  look.has_ground = false;
+  const std::string command = describe_command({.file = "s", .look = look, .instances = Instancing::kAll}, view);
+  for (const char* words : {" --seed 3 --occlusion-distance 2.5 ", " --ground off ",
+                            " --aperture-radius 0.25 --focus-distance 4 --instances all"}) {
+    EXPECT_THAT(command, testing::HasSubstr(words));
+  }
+}
+
 TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
   const View view;
   EXPECT_THAT(describe_command({.file = "s"}, view), testing::HasSubstr(" --max-depth 5 --eye "));

@@ -51,6 +51,7 @@ std::string options_of(const LookOptions& look) {
   if (look.light != LightChoice::kAuto) {
     options += fmt::format(" --light {}", light_choice_names()[static_cast<size_t>(look.light)]);
   }
+  if (look.has_ground) options += *look.has_ground ? " --ground on" : " --ground off";
   if (look.background) {
     options += " --background " + word_of(*look.background);
   }
@@ -89,6 +90,8 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
     command += fmt::format(" --filter {} --filter-width {}", pixel_filter_names()[static_cast<size_t>(view.filter)],
                            view.filter_width);
   }
+  if (view.seed != 0) command += fmt::format(" --seed {}", view.seed);
+  if (view.occlusion_distance != 0.0F) command += fmt::format(" --occlusion-distance {}", view.occlusion_distance);
   if (view.mode.debug_view != DebugView::kNone) {
     command += fmt::format(" --shading {}", debug_view_names()[static_cast<size_t>(view.mode.debug_view)]);
   }
@@ -111,6 +114,13 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
     command += fmt::format(" --fov {:.9g}", glm::degrees(static_cast<double>(camera.yfov)));
   }
   command += fmt::format(" --near {}", camera.near);
+  if (has_lens(camera)) {
+    command += fmt::format(" --aperture-radius {} --focus-distance {}", camera.aperture_radius, camera.focus_distance);
+  }
+  // Hits on instances and on copies differ in some bits.
+  if (scene.instances != Instancing::kAuto) {
+    command += fmt::format(" --instances {}", instancing_names()[static_cast<size_t>(scene.instances)]);
+  }
   // Only the picture of steps depends on the tree.
   if (view.mode.debug_view != DebugView::kSteps) return command;
   return command + (scene.bvh ? " --bvh " + quote(scene.bvh->string()) : " --builder " + scene.builder);

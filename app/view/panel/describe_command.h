@@ -30,6 +30,7 @@ struct DescribedScene {
   dvec3 center = dvec3(0.0);
   /// Index of the scene's camera that has the same half height as the view.
   std::optional<size_t> camera_index = std::nullopt;
+  Instancing instances = Instancing::kAuto;
   /// The builder of the tree, which affects the step counts that a picture may show.
   std::string builder = "sah";
   std::optional<std::filesystem::path> bvh = std::nullopt;
