@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "oracle/distance.h"
+#include "oracle/emitters.h"
 #include "oracle/lobe.h"
 #include "oracle/normal_error.h"
 #include "oracle/samples.h"
@@ -18,6 +19,7 @@
 #include "oracle/smooth_lobe.h"
 #include "oracle/surface.h"
 #include "oracle/verdict.h"
+#include "scene/glass.h"
 #include "scene/light_kinds.h"
 
 namespace promin::oracle {
@@ -339,6 +341,7 @@ class Tracer {
         surroundings_(scene.environment, integrator != Integrator::kWhitted),
         sky_light_(scene.environment),
         scatters_(integrator == Integrator::kPath),
+        emitters_(integrator != Integrator::kWhitted ? std::optional<Emitters>(scene) : std::nullopt),
         has_glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
                                [](const Material& m) { return glass_of(m).is_clear; })) {}
 
@@ -407,6 +410,7 @@ class Tracer {
       if (way.is_diffused && point.face->from > point.face->to) std::swap(point.face->from, point.face->to);
     }
     point.is_after_diffusion = way.is_diffused;
+    if (scatters_ && !std::holds_alternative<world::Plane>(object.shape)) point.emission_share = way.environment_share;
     point.slots = slots_of(*point.material);
     for (TextureSlot& slot : point.slots) {
       if (!textures_.shows(slot, point.on_triangle)) slot = {};
@@ -502,15 +506,14 @@ class Tracer {
   }
 
   /// Returns the fraction of the source's light that reaches the point, and the error that a device may have.
-  ArrivingShare arriving_share(const SurfacePoint& point, const Light& light, const Illumination& illumination,
+  /// The source is at a place, or at infinity.
+  ArrivingShare arriving_share(const SurfacePoint& point, const Vector& to_light, const std::optional<Vector>& place,
                                const PointError& error, const Media& media) const {
-    const Vector& to_light = illumination.to_light;
     // If the surface scatters light to its other side, the shadow ray starts on the side of the light.
     const bool begins_behind = scatters_through(*point.material) && glm::dot(point.geometric_normal, to_light) < 0;
     const Vector origin = begins_behind ? point.position - point.lift * point.geometric_normal
                                         : point.shadow_position + point.lift * point.geometric_normal;
-    const Vector source = has_size(light) ? point.position + illumination.distance * to_light : Vector(light.position);
-    const Ray ray = has_place(light.kind) ? Ray{origin, source - origin, 0, 1} : Ray{origin, to_light};
+    const Ray ray = place ? Ray{origin, *place - origin, 0, 1} : Ray{origin, to_light};
     const RayError of_ray{error.position, 4 * kRoundoff};
     if (has_glass_) return share_through_glass(ray, of_ray, media);
     Coverage share;
@@ -544,22 +547,91 @@ class Tracer {
     const bool has_normals = point.slots[kNormalSlot].exists() || point.slots[kCoatNormalSlot].exists();
     std::vector<ArrivingLight> arriving;
     // Each light has its own pair of dimensions for each ray of the sample.
-    const size_t sources = scene_.lights.size() + (surroundings_.is_source() && sky_light_.exists() ? 1 : 0);
-    auto pair = static_cast<uint32_t>(way.step * sources + (has_lens_ ? 1 : 0));
-    for (const Light& light : scene_.lights) {
+    auto pair = static_cast<uint32_t>(way.step * source_count() + (has_lens_ ? 1 : 0));
+    const auto is_behind = [&](const Vector& to_light) {
+      return !has_normals && !scatters_through(*point.material) && !(glm::dot(point.normal, to_light) > 0);
+    };
+    const auto add_light = [&](const Light& light, const std::array<Real, 2>& u, Real chance) {
       const Illumination illumination =
-          has_size(light) ? illuminate_sized(light, point.position, sample_pair(way.sample, pair), lobe)
-                          : illuminate(light, point.position);
-      ++pair;
-      const bool is_behind =
-          !has_normals && !scatters_through(*point.material) && !(glm::dot(point.normal, illumination.to_light) > 0);
-      if (is_behind || !(illumination.strength > 0)) continue;
-      const ArrivingShare share = arriving_share(point, light, illumination, error, way.media);
-      if (share.value == Vector(0) && share.error == 0) continue;
-      arriving.push_back({&light, illumination.to_light, illumination.distance, share.value * illumination.strength,
-                          share.error * illumination.strength, std::nullopt});
+          has_size(light) ? illuminate_sized(light, point.position, u, lobe) : illuminate(light, point.position);
+      if (is_behind(illumination.to_light) || !(illumination.strength > 0)) return;
+      const Vector source =
+          has_size(light) ? point.position + illumination.distance * illumination.to_light : Vector(light.position);
+      const std::optional<Vector> place = has_place(light.kind) ? std::optional(source) : std::nullopt;
+      const ArrivingShare share = arriving_share(point, illumination.to_light, place, error, way.media);
+      if (share.value == Vector(0) && share.error == 0) return;
+      const Real strength = illumination.strength / chance;
+      arriving.push_back({&light, illumination.to_light, illumination.distance, share.value * strength,
+                          share.error * strength, std::nullopt});
+    };
+    if (!chooses_lights()) {
+      for (const Light& light : scene_.lights) add_light(light, sample_pair(way.sample, pair++), 1);
+    }
+    for (size_t source = 0; emitters_ && source < emitters_->source_count(); ++source) {
+      const Emitters::Choice choice = emitters_->choose(source, way.sample, pair++);
+      if (choice.emitter.is_light()) {
+        add_light(scene_.lights[choice.emitter.light], choice.u, choice.chance);
+      } else {
+        const LampPoint lamp = emitters_->sample(choice.emitter, point.position, point.geometric_normal, choice.u);
+        if (!is_behind(lamp.place - point.position)) add_lamp(point, choice, lamp, error, way, arriving);
+      }
     }
     return arriving;
+  }
+
+  bool chooses_lights() const { return emitters_ && emitters_->are_lights_chosen(); }
+
+  /// Returns the number of sources, each of which has its own pair of dimensions for each ray of a sample.
+  size_t source_count() const {
+    const size_t lights = chooses_lights() ? 0 : scene_.lights.size();
+    const size_t sky = surroundings_.is_source() && sky_light_.exists() ? 1 : 0;
+    return lights + (emitters_ ? emitters_->source_count() : 0) + sky;
+  }
+
+  /// Adds a point of an emissive surface as a source. The shadow ray ends before the surface.
+  void add_lamp(const SurfacePoint& point, const Emitters::Choice& choice, const LampPoint& lamp,
+                const PointError& error, const Way& way, std::vector<ArrivingLight>& arriving) const {
+    static const Light kSurface = {.name = ""};
+    const Vector to_lamp = lamp.place - point.position;
+    const Real distance = glm::length(to_lamp);
+    const Hit hit{distance, choice.emitter.object, choice.emitter.primitive, lamp.u, lamp.v, lamp.normal};
+    const Material& material = material_of(scene_, hit);
+    const bool is_of_back = glm::dot(lamp.normal, to_lamp) > 0;
+    const world::Shape& shape = scene_.objects[static_cast<size_t>(hit.object)].shape;
+    if (is_of_back && std::holds_alternative<Mesh>(shape) && !shows_backs(material)) return;
+    const Real scale = distance + bounding_sphere(shape, hit.primitive).radius + glm::length(lamp.place);
+    const Vector end = lamp.place + (is_of_back ? -1 : 1) * 0x1p-50L * scale * lamp.normal;
+    const Vector to_light = to_lamp / distance;
+    const ArrivingShare share = arriving_share(point, to_light, end, error, way.media);
+    const Vector radiance = emission_of(hit, material, std::abs(glm::dot(lamp.normal, to_light)));
+    const Real strength = emitters_->radiance_factor() * lamp.inverse_density / choice.chance;
+    if (strength == 0 || radiance == Vector(0) || (share.value == Vector(0) && share.error == 0)) return;
+    arriving.push_back(
+        {&kSurface, to_light, distance, share.value * strength, share.error * strength, radiance, false});
+  }
+
+  /// Returns the radiance of a point of an emissive surface, at an angle with this cosine to its normal. Textures have
+  /// their finest level.
+  Vector emission_of(const Hit& hit, const Material& material, Real cosine) const {
+    TrianglePoint at;
+    at.mesh = std::get_if<Mesh>(&scene_.objects[static_cast<size_t>(hit.object)].shape);
+    at.triangle = hit.primitive;
+    at.u = hit.u;
+    at.v = hit.v;
+    const auto look_up = [&](Slot slot) {
+      const Slots slots = slots_of(material);
+      return textures_.shows(slots[slot], at) ? textures_.look_up(slots[slot], at).value : Texel(1);
+    };
+    Vector radiance = Vector(material.emissive) * Vector(look_up(kEmissionSlot));
+    const Real alpha = alpha_of(material, at).value;
+    if (material.alpha_mode == AlphaMode::kBlend) radiance *= alpha;
+    if (material.alpha_mode == AlphaMode::kMask && alpha < material.alpha_cutoff) return Vector(0);
+    const auto* model = std::get_if<MetallicRoughness>(&material.model);
+    if (model != nullptr && model->clearcoat > 0) {
+      const Real fresnel = 0.04L + 0.96L * std::pow(1 - cosine, Real(5));
+      radiance *= 1 - model->clearcoat * look_up(kCoatSlot).r * fresnel;
+    }
+    return radiance;
   }
 
   /// Adds the environment as a source: the light of one direction, divided by the sum of the densities of all ways to
@@ -568,8 +640,8 @@ class Tracer {
                const Way& way, std::vector<ArrivingLight>& arriving) const {
     if (!surroundings_.is_source() || !sky_light_.exists()) return;
     const SkyWays ways = sky_ways(point, texels, direction, error, surroundings_);
-    const size_t lights = scene_.lights.size();
-    const auto pair = static_cast<uint32_t>(way.step * (lights + 1) + lights + (has_lens_ ? 1 : 0));
+    // The environment is the last source.
+    const auto pair = static_cast<uint32_t>((way.step + 1) * source_count() - 1 + (has_lens_ ? 1 : 0));
     std::array<Real, 2> u = sample_pair(way.sample, pair);
     const Real of_lobes = ways.coat.share + ways.material.share;
     const Real of_back = (1 - of_lobes) * ways.behind;
@@ -590,10 +662,10 @@ class Tracer {
     if (!is_behind && ways.material.share > 0) density += ways.material.share * material.density(to_light);
     if (!(density > 0)) return;
     static const Light kAtInfinity = {.name = "", .kind = LightKind::kDirectional};
-    const ArrivingShare share = arriving_share(point, kAtInfinity, {to_light}, error, way.media);
+    const ArrivingShare share = arriving_share(point, to_light, {}, error, way.media);
     if (share.value == Vector(0) && share.error == 0) return;
     arriving.push_back({&kAtInfinity, to_light, kInfinity, share.value / density, share.error / density,
-                        sky_light_.radiance(to_light)});
+                        sky_light_.radiance(to_light), true});
   }
 
   /// The response of a surface to light, with the errors that its textures cause. The error of each texture is computed
@@ -928,6 +1000,7 @@ class Tracer {
   Surroundings surroundings_;
   SkyLight sky_light_;
   bool scatters_;
+  std::optional<Emitters> emitters_;
   bool has_glass_;
 };
 

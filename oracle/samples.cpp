@@ -63,17 +63,21 @@ uint32_t scramble(uint32_t x, uint32_t seed) {
   return mirrored(reversed);
 }
 
-std::array<Real, 2> sample_pair(const SampleId& id, uint32_t pair) {
+std::array<uint32_t, 2> sample_pair_bits(const SampleId& id, uint32_t pair) {
   const uint32_t key = hashed(id.pixel.x + hashed(id.pixel.y + hashed(2 + hashed(id.seed))));
   const uint32_t seed = hashed(key + 3 * pair);
   const bool is_joint = id.is_refined && pair == 0;
   const uint32_t index = is_joint ? joint_index(id.number) : scramble(id.number, seed);
-  std::array<Real, 2> point{};
+  std::array<uint32_t, 2> bits{};
   for (uint32_t axis = 0; axis < 2; ++axis) {
-    const uint32_t bits = scramble(sobol(index, static_cast<int>(axis)), hashed(seed + 1 + axis));
-    point[axis] = ((bits >> 9) + 0.5L) / 8388608;
+    bits[axis] = scramble(sobol(index, static_cast<int>(axis)), hashed(seed + 1 + axis));
   }
-  return point;
+  return bits;
+}
+
+std::array<Real, 2> sample_pair(const SampleId& id, uint32_t pair) {
+  const auto [x, y] = sample_pair_bits(id, pair);
+  return {((x >> 9) + 0.5L) / 8388608, ((y >> 9) + 0.5L) / 8388608};
 }
 
 std::array<Real, 2> place_on_disc(const std::array<Real, 2>& u) {

@@ -33,6 +33,9 @@ struct SampleId {
   bool is_refined = false;
 };
 
+/// Returns the point of a pair of dimensions as fractions of 2^32.
+std::array<uint32_t, 2> sample_pair_bits(const SampleId& id, uint32_t pair);
+
 /// Returns the point of a pair of dimensions in the unit square.
 std::array<Real, 2> sample_pair(const SampleId& id, uint32_t pair);
 

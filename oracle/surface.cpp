@@ -154,7 +154,9 @@ struct Glimpse {
   const Surroundings& surroundings;
 
   Vector to_eye() const { return -direction; }
-  Vector emission() const { return Vector(point.material->emissive) * rgb(texels[kEmissionSlot]); }
+  Vector emission() const {
+    return point.emission_share * Vector(point.material->emissive) * rgb(texels[kEmissionSlot]);
+  }
   Vector vertex_color() const { return rgb(point.vertex_color); }
 };
 
@@ -193,7 +195,7 @@ class PhongSurface {
   Radiance contribution(const ArrivingLight& arriving) const {
     const Real cosine = glm::dot(normal_, arriving.to_light);
     if (!(cosine > 0)) return {};
-    if (arriving.radiance) return {ambient_ / std::numbers::pi_v<Real> * *arriving.radiance * cosine};
+    if (arriving.is_environment) return {ambient_ / std::numbers::pi_v<Real> * *arriving.radiance * cosine};
     Vector share = diffuse_ * arriving.diffuse() * cosine;
     const Real highlight = glm::dot(2 * cosine * normal_ - arriving.to_light, at_.to_eye());
     if (shininess_ > 0 && highlight > 0) {
@@ -390,7 +392,7 @@ class MetallicRoughnessSurface {
   }
 
   Radiance contribution(const ArrivingLight& arriving) const {
-    // A mirror ray contributes the sharp part of each lobe's reflection of the environment.
+    // A mirror ray contributes the sharp part of each lobe's reflection of the environment and of other surfaces.
     const Real of_lobe = arriving.radiance ? 1 - sharpness_below() : Real(1);
     const Real of_coat = arriving.radiance ? 1 - coat_.sharpness() : Real(1);
     Radiance coated;

@@ -76,6 +76,8 @@ struct SurfacePoint {
   /// Distance along the geometric normal at which secondary rays start.
   Real lift = 0;
   Texel vertex_color{1};
+  /// The fraction of the point's emission that the ray adds. A source contributes the rest.
+  Real emission_share = 1;
   /// The face, for glass and for mirrors whose reflectance depends on the angle.
   std::optional<Face> face;
   const Material* material = nullptr;
@@ -100,8 +102,10 @@ struct ArrivingLight {
   /// device.
   Vector strength{1};
   Real strength_error = 0;
-  /// The radiance of the environment if it is the source. Its light has no other power.
+  /// The radiance of the source if it is the environment or a surface. Its light has no other power, and mirror rays
+  /// show the sharp part of its reflection.
   std::optional<Vector> radiance = std::nullopt;
+  bool is_environment = false;
 
   Vector diffuse() const { return radiance ? *radiance : Vector(light->diffuse); }
   Vector specular() const { return radiance ? *radiance : Vector(light->specular); }

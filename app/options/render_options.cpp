@@ -216,9 +216,10 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
       [&](const OptionValues& w) { view.debug_view = read_shading(w); });
   table.add_flag("--no-shadows", "Do not trace shadow rays, so nothing casts a shadow", view.has_no_shadows);
   table.add("--integrator", fmt::format("{}", fmt::join(integrator_names(), "|")),
-            "Method that computes light. whitted: the light of the environment reaches every point. direct: objects "
-            "also block the light of the environment, which gives soft shadows and takes more samples. path: surfaces "
-            "also scatter light to other surfaces, up to --max-depth times [whitted]",
+            "Method that computes light. whitted: the light of the environment reaches every point, and surfaces that "
+            "emit light do not light others. direct: they light others, and objects also block the light of the "
+            "environment, which gives soft shadows and takes more samples. path: surfaces also scatter light to other "
+            "surfaces, up to --max-depth times [whitted]",
             [&](const OptionValues& w) { view.integrator = w.name<Integrator>(integrator_names()); });
   table.add("--lights-off", "INDICES", "Indices of lights to switch off, counted from 0 and separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });

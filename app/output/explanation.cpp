@@ -39,6 +39,13 @@ OrderedJson json_of_part(const Ray& ray, const Scene& scene) {
           {"tmax", json_of_part(ray.tmax)}};
 }
 
+/// Returns the name of a source that is no light of the scene; empty for a light.
+std::string_view name_of_other(const ExplainedSource& source) {
+  if (source.light == ExplainedSource::kSky) return "environment";
+  if (source.light == ExplainedSource::kSurfaces) return "emissive surface";
+  return source.light == ExplainedSource::kChosen ? "chosen source" : "";
+}
+
 /// Writes the members that every hit has, also a blocker's. json_of_part(ExplainedRay) adds the members of hits on the
 /// path.
 OrderedJson json_of_part(const Hit& hit) {
@@ -51,9 +58,9 @@ OrderedJson json_of_part(const Hit& hit) {
 }
 
 OrderedJson json_of_part(const ExplainedSource& source, const Scene& scene) {
-  const bool is_sky = source.light == ExplainedSource::kSky;
-  OrderedJson json = {{"light", is_sky ? OrderedJson("environment") : OrderedJson(source.light)},
-                      {"name", is_sky ? std::string() : scene.lights[source.light].name},
+  const std::string_view other = name_of_other(source);
+  OrderedJson json = {{"light", other.empty() ? OrderedJson(source.light) : OrderedJson(other)},
+                      {"name", other.empty() ? scene.lights[source.light].name : std::string()},
                       {"visible", source.is_visible()},
                       {"contribution", json_of_part(source.contribution)},
                       {"shadow_ray", nullptr}};
@@ -123,9 +130,10 @@ std::string text_of(const Hit& hit, const Scene& scene) {
 }
 
 std::string text_of(const ExplainedSource& source, const Scene& scene) {
-  const bool is_sky = source.light == ExplainedSource::kSky;
-  const std::string name = is_sky ? std::string("the environment")
-                                  : with_name(fmt::format("light {}", source.light), scene.lights[source.light].name);
+  const std::string_view other = name_of_other(source);
+  const std::string name = other.empty()
+                               ? with_name(fmt::format("light {}", source.light), scene.lights[source.light].name)
+                               : fmt::format("the {}", other);
   if (source.is_visible()) return fmt::format("{}: visible, adds {}", name, text_of(source.contribution));
   if (!source.shadow_ray) return name + ": adds nothing from where it is";
   return fmt::format("{}: blocked by {}", name, text_of(source.blocker, scene));

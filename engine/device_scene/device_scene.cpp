@@ -102,9 +102,11 @@ struct DeviceScene::PlacedTail {
   Placed glasses;
   Placed lobe_tables;
   Placed sky;
-  /// Lights come last, because their number changes most often.
+  /// Lights and other sources come last, because their number changes most often.
   Placed lights;
-  uint64_t end() const { return lights.end(); }
+  /// They follow the lights without a gap.
+  Placed tables;
+  uint64_t end() const { return tables.end(); }
 };
 
 struct DeviceScene::PlacedHead {
@@ -142,6 +144,7 @@ DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
   placed.lobe_tables = place(*tail.lobe_tables, placed.glasses.end());
   placed.sky = place(tail.sky->texels, placed.lobe_tables.end());
   placed.lights = place(tail.lights.records, placed.sky.end());
+  placed.tables = place(tail.lights.tables, placed.lights.end());
   return placed;
 }
 
@@ -151,6 +154,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)))),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
+      emitter_ranges_(packed),
       stack_size_(round_stack(packed.stack_size)),
       is_mostly_solids_(packed.solid_count > packed.bounded_count / 2) {
   const PlacedHead head = place_head(packed.surfaces);
@@ -170,7 +174,14 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   Tail tail{std::make_shared<const PackedMaterials>(pack_materials(shading.materials)),
             lobe_tables_for(shading.materials), std::make_shared<const PackedSky>(pack_sky(shading.environment)),
             pack_lights(shading.lights)};
-  put_sky_light(tail, shading.environment);
+  lights_.assign(shading.lights.begin(), shading.lights.end());
+  materials_.assign(shading.materials.begin(), shading.materials.end());
+  emission_maps_ = make_emission_maps(packed.surfaces.images, textures_, materials_);
+  const std::vector<vec4>& uvs = packed.surfaces.vertices.uvs;
+  uv_count_ = uvs.size();
+  emissive_surfaces_ = find_emissive_surfaces({packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, uvs},
+                                              emitter_ranges_, materials_, {textures_, emission_maps_});
+  put_direct_sources(tail, shading.environment);
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : head.parts()) write(*shading_, placed);
   write(*shading_, image_words);
@@ -182,13 +193,22 @@ void DeviceScene::set_materials(std::span<const Material> materials) {
   Tail tail = tail_;
   tail.materials = std::make_shared<const PackedMaterials>(pack_materials(materials));
   tail.lobe_tables = lobe_tables_for(materials);
+  bool is_new = false;
+  for (size_t i = 0; i < materials.size(); ++i) {
+    is_new = is_new || (emits_light(materials[i]) && !emits_light(materials_[i]));
+  }
+  const bool may_change = is_new || !emissive_surfaces_.empty();
+  materials_.assign(materials.begin(), materials.end());
+  if (is_new) find_emissive_again();
+  if (may_change) put_direct_sources(tail, environment_);
   write_tail(std::move(tail));
 }
 
 void DeviceScene::set_lights(std::span<const Light> lights) {
   Tail tail = tail_;
   tail.lights = pack_lights(lights);
-  put_sky_light(tail, environment_);
+  lights_.assign(lights.begin(), lights.end());
+  put_direct_sources(tail, environment_);
   write_tail(std::move(tail));
 }
 
@@ -197,7 +217,7 @@ void DeviceScene::set_environment(const Environment& environment) {
   if (is_new_sky || gives_light(environment) != gives_light(environment_)) {
     Tail tail = tail_;
     if (is_new_sky) tail.sky = std::make_shared<const PackedSky>(pack_sky(environment));
-    put_sky_light(tail, environment);
+    put_direct_sources(tail, environment);
     write_tail(std::move(tail));
   }
   take_colors(environment);
@@ -232,6 +252,8 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   uploads_.moves += (1 + upper.nodes.size() + upper.records.size()) * kNodeBytes;
   constants_.tree_bounds = center_and_radius(upper.bounds);
   constants_.glass_solids = std::move(glass_solids);
+  emitter_ranges_.first_instance = upper.first_record;
+  move_sources();
 }
 
 bool DeviceScene::has_space_for(const PackedScene& packed) const {
@@ -251,6 +273,17 @@ void DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const 
   uploads_.geometry += tree.nodes.size_bytes() + primitives_.size_bytes() + head.end();
   take_tree(packed);
   constants_.glass_solids = std::move(glass_solids);
+  emitter_ranges_ = EmitterRanges(packed);
+  move_sources();
+}
+
+void DeviceScene::move_sources() {
+  const bool has_surfaces = std::ranges::any_of(materials_, emits_light);
+  if (!has_surfaces && source_features_ == FeatureMask()) return;
+  if (has_surfaces) find_emissive_again();
+  Tail tail = tail_;
+  put_direct_sources(tail, environment_);
+  write_tail(std::move(tail));
 }
 
 void DeviceScene::take_tree(const PackedScene& packed) {
@@ -266,17 +299,59 @@ std::shared_ptr<const std::vector<uvec4>> DeviceScene::lobe_tables_for(std::span
   return std::make_shared<const std::vector<uvec4>>(std::move(tables));
 }
 
-void DeviceScene::put_sky_light(Tail& tail, const Environment& environment) {
+void DeviceScene::put_direct_sources(Tail& tail, const Environment& environment) {
   PackedLights& lights = tail.lights;
-  if (!lights.numbers.empty() && lights.numbers.back() == ExplainedSource::kSky) {
-    lights.records.pop_back();
-    lights.numbers.pop_back();
+  lights.records.resize(lights.light_count);
+  lights.numbers.resize(lights.light_count);
+  DirectSources direct = pack_direct_sources(lights_, emissive_surfaces_, materials_, constants_.tree_bounds.w);
+  lights.first_direct = direct.are_lights_chosen ? lights.light_count : 0;
+  for (const layout::LightRecord& record : direct.records) {
+    lights.records.push_back(record);
+    lights.numbers.push_back(direct.are_lights_chosen ? ExplainedSource::kChosen : ExplainedSource::kSurfaces);
   }
-  if (!gives_light(environment)) return;
-  layout::LightRecord record{};
-  record.kind = uvec4(layout::LIGHT_SKY, tail.sky->pyramid_levels, 0, tail.sky->first_of_pyramid);
-  lights.records.push_back(record);
-  lights.numbers.push_back(ExplainedSource::kSky);
+  if (gives_light(environment)) {
+    layout::LightRecord record{};
+    record.kind = uvec4(layout::LIGHT_SKY, tail.sky->pyramid_levels, 0, tail.sky->first_of_pyramid);
+    lights.records.push_back(record);
+    lights.numbers.push_back(ExplainedSource::kSky);
+  }
+  // The tables follow the records, and elements that are lights are counted from the first source.
+  const auto sources = static_cast<uint32_t>(lights.records.size()) - lights.first_direct;
+  const uint32_t first_texel = layout::LIGHT_TEXELS * sources + 1;
+  for (uint32_t i = 0; i < direct.records.size(); ++i) lights.records[lights.light_count + i].kind.w += first_texel;
+  for (size_t i = 1; i < direct.table.size(); i += layout::EMITTER_TEXELS) {
+    if (direct.table[i].y == layout::EMITTER_IS_LIGHT) direct.table[i].x -= lights.first_direct;
+  }
+  if (!direct.table.empty()) {
+    const auto count = static_cast<uint32_t>(direct.table.size()) / layout::EMITTER_TEXELS;
+    direct.table.insert(direct.table.begin(), uvec4(count, 0, 0, 0));
+  }
+  lights.tables = std::move(direct.table);
+  source_features_ = {};
+  if (direct.has_surfaces) source_features_ |= layout::FEATURE_EMITTERS;
+  // A light that is switched on later needs no other kernel.
+  if (direct.may_choose_lights) source_features_ |= layout::FEATURE_CHOSEN_LIGHTS;
+}
+
+void DeviceScene::find_emissive_again() {
+  std::vector<layout::Node> nodes(nodes_.size_bytes() / sizeof(layout::Node));
+  std::vector<layout::Primitive> primitives(primitives_.size_bytes() / sizeof(layout::Primitive));
+  std::vector<layout::SurfaceRecord> surfaces(primitives.size());
+  nodes_.read(std::as_writable_bytes(std::span(nodes)));
+  primitives_.read(std::as_writable_bytes(std::span(primitives)));
+  shading_->read(std::as_writable_bytes(std::span(surfaces)));
+  std::vector<vec4> uvs(uv_count_);
+  if (!uvs.empty()) {
+    shading_->read(std::as_writable_bytes(std::span(uvs)), uint64_t{constants_.first_texture.x} * sizeof(vec4));
+  }
+  emissive_surfaces_ = find_emissive_surfaces({primitives, surfaces, nodes, uvs}, emitter_ranges_, materials_,
+                                              {textures_, emission_maps_});
+}
+
+std::span<const uint32_t> DeviceScene::source_numbers(Integrator integrator) const {
+  const std::span<const uint32_t> numbers = tail_.lights.numbers;
+  const uint32_t first = integrator == Integrator::kWhitted ? 0 : tail_.lights.first_direct;
+  return numbers.subspan(first);
 }
 
 void DeviceScene::take_colors(const Environment& environment) {
@@ -288,9 +363,9 @@ void DeviceScene::take_colors(const Environment& environment) {
 }
 
 uint64_t DeviceScene::size_bytes() const {
-  const uint64_t tail_bytes =
-      total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->extensions,
-                  tail_.materials->glasses, *tail_.lobe_tables, tail_.sky->texels, tail_.lights.records);
+  const uint64_t tail_bytes = total_bytes(tail_.materials->records, tail_.materials->slots, tail_.materials->extensions,
+                                          tail_.materials->glasses, *tail_.lobe_tables, tail_.sky->texels,
+                                          tail_.lights.records, tail_.lights.tables);
   return nodes_.size_bytes() + primitives_.size_bytes() + head_bytes_ + tail_bytes;
 }
 
@@ -360,8 +435,9 @@ void DeviceScene::write_tail(Tail tail) {
     larger.copy_from(*shading_, head_bytes_);
     take_shading_buffer(std::move(larger));
   }
-  for (const auto part : {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::extensions,
-                          &PlacedTail::glasses, &PlacedTail::lobe_tables, &PlacedTail::sky, &PlacedTail::lights}) {
+  for (const auto part :
+       {&PlacedTail::materials, &PlacedTail::texture_slots, &PlacedTail::extensions, &PlacedTail::glasses,
+        &PlacedTail::lobe_tables, &PlacedTail::sky, &PlacedTail::lights, &PlacedTail::tables}) {
     if (!needs_larger && is_same(placed.*part, last.*part)) continue;
     write(*shading_, placed.*part);
     uploads_.shading += (placed.*part).bytes.size();
@@ -383,10 +459,14 @@ void DeviceScene::write_tail(Tail tail) {
     constants_.media.push_back(is_medium ? number : 0);
   }
   constants_.irradiance = tail.sky->irradiance;
-  if (needs_larger || constants_.source_count != tail.lights.records.size()) ++version_;
-  constants_.source_count = static_cast<uint32_t>(tail.lights.records.size());
-  const bool has_sky_light = !tail.lights.numbers.empty() && tail.lights.numbers.back() == ExplainedSource::kSky;
-  constants_.light_count = constants_.source_count - (has_sky_light ? 1 : 0);
+  const auto direct_count = static_cast<uint32_t>(tail.lights.records.size()) - tail.lights.first_direct;
+  const bool has_other_sources = constants_.light_count != tail.lights.light_count ||
+                                 constants_.first_direct != tail.lights.first_direct ||
+                                 constants_.direct_count != direct_count;
+  if (needs_larger || has_other_sources) ++version_;
+  constants_.light_count = tail.lights.light_count;
+  constants_.first_direct = tail.lights.first_direct;
+  constants_.direct_count = direct_count;
   tail_ = std::move(tail);
 }
 

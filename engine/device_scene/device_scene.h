@@ -10,6 +10,7 @@
 
 #include "device/buffer.h"
 #include "device/pipeline.h"
+#include "device_scene/pack_emitters.h"
 #include "device_scene/pack_instances.h"
 #include "device_scene/pack_scene.h"
 #include "device_scene/pack_shading.h"
@@ -53,9 +54,10 @@ class DeviceScene {
 
   /// Returns the constants of pictures and casts that depend on the scene.
   const SceneConstants& constants() const { return constants_; }
-  /// Returns the index in Scene::lights of each source of light on the device; ExplainedSource::kSky for the
-  /// environment, which comes last.
-  const std::vector<uint32_t>& light_numbers() const { return tail_.lights.numbers; }
+  /// Returns the index in Scene::lights, or the constant of ExplainedSource, of each source of light of an integrator.
+  std::span<const uint32_t> source_numbers(Integrator integrator) const;
+  /// Returns the features that the sources of Integrator::kDirect need, without those of lights and sky.
+  FeatureMask source_features() const { return source_features_; }
   uint32_t stack_size() const { return stack_size_; }
   /// Returns a number that changes whenever kernels must be bound to the scene again: because a buffer is another one,
   /// the stack has grown, or there are more or fewer sources of light.
@@ -115,8 +117,12 @@ class DeviceScene {
   struct PlacedTail;
   PlacedTail place_tail(const Tail& tail) const;
   PackedMaterials pack_materials(std::span<const Material> materials) const;
-  /// Adds the environment to the lights as a source, or removes it.
-  static void put_sky_light(Tail& tail, const Environment& environment);
+  /// Replaces the sources of Integrator::kDirect that are no lights.
+  void put_direct_sources(Tail& tail, const Environment& environment);
+  /// Finds the emissive surfaces of the current materials again, in the geometry on the device.
+  void find_emissive_again();
+  /// Finds the sources of Integrator::kDirect again after the geometry has moved.
+  void move_sources();
   std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
   /// Copies the changed parts of the tail to the device, or the whole tail to a larger buffer if needed. If this buffer
   /// cannot be created, nothing changes.
@@ -140,8 +146,16 @@ class DeviceScene {
   std::vector<Texture> textures_;
   std::vector<PlacedImage> images_;
   Tail tail_;
-  /// The current environment.
+  /// The current environment, lights and materials.
   Environment environment_;
+  std::vector<Light> lights_;
+  std::vector<Material> materials_;
+  EmitterRanges emitter_ranges_;
+  EmissionMaps emission_maps_;
+  /// The number of vertices with texture coordinates.
+  size_t uv_count_ = 0;
+  std::vector<EmissiveSurface> emissive_surfaces_;
+  FeatureMask source_features_;
   SceneConstants constants_;
   uint32_t stack_size_;
   uint64_t version_ = 0;

@@ -93,6 +93,8 @@ class UpperLevel {
   void move(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const BuildOptions& options = {});
 
   uint32_t first_node() const { return first_node_; }
+  /// Returns the index of the root of a mesh's tree.
+  uint32_t root_of(size_t mesh) const { return meshes_[mesh].root; }
   /// Returns the number of instances that a ray can hit.
   size_t instance_count() const { return instances_.size(); }
   /// Returns the bounds of the mesh of an object; empty if it is not an instance or if no ray can hit its mesh.

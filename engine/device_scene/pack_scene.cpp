@@ -317,6 +317,13 @@ PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, s
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
   packed.stack_size = upper.stack_size + kSpareStack;
   packed.instance_count = packed.upper->instance_count();
+  packed.first_instance = upper.first_record;
+  auto first = static_cast<uint32_t>(own_count);
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    const uint32_t end = first + static_cast<uint32_t>(meshes[i].primitives.size());
+    packed.mesh_ranges.push_back({packed.upper->root_of(i), first, end});
+    first = end;
+  }
   pack_contents(packed, scene, collected);
   add_images(packed, scene, texture_bytes);
   packed.tree_bounds = center_and_radius(upper.bounds);

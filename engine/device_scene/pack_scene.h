@@ -38,6 +38,14 @@ struct PackedSurfaces {
   uint64_t size_bytes() const;
 };
 
+/// The primitives of a mesh that instances share.
+struct MeshRange {
+  /// Index of the root of the mesh's tree.
+  uint32_t root = 0;
+  uint32_t first = 0;
+  uint32_t end = 0;
+};
+
 /// Tree, primitives and surfaces, ready to be copied to the device.
 struct PackedScene {
   /// At least one node; empty if a file contains the nodes.
@@ -62,6 +70,9 @@ struct PackedScene {
   bool is_tree_fitted = false;
   /// The result of find_mask_cutoffs().
   std::vector<float> mask_cutoffs;
+  /// The meshes that instances share, and the index of the first record of an instance in the nodes.
+  std::vector<MeshRange> mesh_ranges;
+  uint32_t first_instance = 0;
   /// The features that the geometry uses.
   FeatureMask features;
   /// For each of Scene::materials, whether a visible primitive uses it.
@@ -90,6 +101,8 @@ struct PackedScene {
   /// of both levels, which pack_instances.h describes. The view is valid as long as this object exists.
   TreeView tree() const;
   uint32_t first_unbounded() const { return static_cast<uint32_t>(references.size()); }
+  /// Returns the number of the tree's primitives that belong to no mesh of instances. They come first.
+  uint32_t own_primitive_count() const { return mesh_ranges.empty() ? first_unbounded() : mesh_ranges.front().first; }
   /// Returns the number of primitives. A triangle in parts counts once, and degenerate triangles count too.
   uint64_t primitive_count() const { return numbers.first_order.empty() ? 0 : numbers.first_order.back(); }
   uint64_t size_bytes() const;

@@ -45,14 +45,6 @@ bool catches_shadows(const Material& material) {
   return unlit != nullptr && unlit->catches_shadows;
 }
 
-/// Returns whether lights have the power that Phong's model expects (docs/model.md, "Light").
-bool has_phong_alone(std::span<const Material> materials) {
-  const auto has = [&]<typename Model>(const Model& /*any*/) {
-    return std::ranges::any_of(materials, [](const Material& m) { return std::holds_alternative<Model>(m.model); });
-  };
-  return has(Phong()) && !has(MetallicRoughness());
-}
-
 constexpr float kLeastAlpha = std::numeric_limits<float>::min();
 
 /// Packs a model's numbers into the members that the model's shader file reads.
@@ -248,6 +240,13 @@ LightRecord pack(const Light& light) {
 
 }  // namespace
 
+bool has_phong_alone(std::span<const Material> materials) {
+  const auto has = [&]<typename Model>(const Model& /*any*/) {
+    return std::ranges::any_of(materials, [](const Material& m) { return std::holds_alternative<Model>(m.model); });
+  };
+  return has(Phong()) && !has(MetallicRoughness());
+}
+
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables) {
   MaterialPacker packer(tables, materials);
   for (const Material& material : materials) packer.add(material);
@@ -261,6 +260,7 @@ PackedLights pack_lights(std::span<const Light> lights) {
     packed.records.push_back(pack(lights[i]));
     packed.numbers.push_back(i);
   }
+  packed.light_count = static_cast<uint32_t>(packed.records.size());
   return packed;
 }
 

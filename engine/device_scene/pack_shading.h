@@ -32,11 +32,19 @@ struct PackedMaterials {
 };
 PackedMaterials pack_materials(std::span<const Material> materials, const TextureTables& tables = {});
 
-/// The lights that are on.
+/// Returns whether lights have the power that Phong's model expects (docs/model.md, "Light").
+bool has_phong_alone(std::span<const Material> materials);
+
+/// The lights that are on, and behind them the other sources of Integrator::kDirect.
 struct PackedLights {
   std::vector<layout::LightRecord> records;
-  /// For each record, the index of its light in Scene::lights.
+  /// For each record, the index of its light in Scene::lights, or a constant of ExplainedSource.
   std::vector<uint32_t> numbers;
+  uint32_t light_count = 0;
+  /// The first source of Integrator::kDirect.
+  uint32_t first_direct = 0;
+  /// The tables of sources (shaders/shade/emitters.glsl).
+  std::vector<glm::uvec4> tables;
 };
 PackedLights pack_lights(std::span<const Light> lights);
 

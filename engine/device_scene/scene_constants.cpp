@@ -69,6 +69,7 @@ layout::ViewConstants make_view_constants(const SceneConstants& scene, const Vie
       .first_texture = scene.first_texture,
       .first_glass = uvec4(scene.first_glass.x, media_around(scene, camera.eye), key_of_points(view.seed, 2)),
       .irradiance = {}};
+  if (view.mode.integrator != Integrator::kWhitted) constants.first_index.y += scene.first_direct;
   std::ranges::copy(scene.irradiance, constants.irradiance);
   return constants;
 }
@@ -82,13 +83,13 @@ layout::ViewConstants make_cast_constants(const SceneConstants& scene) {
 layout::Dispatch make_tile_dispatch(const SceneConstants& scene, const View& view, const PixelWindow& window,
                                     const TileRange& range) {
   const uvec2 size = window.hi - window.lo;
-  const bool has_sky_light = view.mode.integrator != Integrator::kWhitted;
+  const bool is_direct = view.mode.integrator != Integrator::kWhitted;
   const uint32_t is_orthographic = view.camera.projection == Projection::kOrthographic ? 1 : 0;
   return {.range = uvec4(range.first_block, range.end_block, range.sample, view.max_depth),
           .window = uvec4(window.lo, size),
           .sampling = uvec4(view.samples_per_pixel, std::bit_cast<uint32_t>(range.sample_point.x),
                             divide_up(size.x, layout::BLOCK_SIZE), is_orthographic),
-          .counts = counts_of(scene, has_sky_light ? scene.source_count : scene.light_count),
+          .counts = counts_of(scene, scene.source_count(is_direct)),
           // Kernels with glass may also trace scenes without glass, which have no limits.
           .outcome = uvec4(0, scene.has_glass ? layout::MOST_TREE_RAYS : ~0U,
                            std::bit_cast<uint32_t>(scene.has_glass ? layout::LEAST_TREE_WEIGHT : 0.0F),

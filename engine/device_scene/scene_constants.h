@@ -38,8 +38,13 @@ struct SceneConstants {
   uint32_t first_unbounded = 0;
   uint32_t unbounded_count = 0;
   uint32_t light_count = 0;
-  /// The number of sources with Integrator::kDirect or kPath: the lights, and the environment if it gives light.
-  uint32_t source_count = 0;
+  /// The sources of Integrator::kDirect and kPath: the first one, counted from the first light, and their number.
+  /// Besides the lights they are surfaces that emit light and the environment if it gives light.
+  uint32_t first_direct = 0;
+  uint32_t direct_count = 0;
+
+  /// Returns the number of sources of an integrator.
+  uint32_t source_count(bool is_direct) const { return is_direct ? direct_count : light_count; }
   vec3 ambient{0.0F};
   vec3 background{0.0F};
   /// True if the sky is visible in place of the background.

@@ -14,8 +14,12 @@ namespace promin {
 struct ExplainedSource {
   /// The value of `light` for the light of the environment, with Integrator::kDirect and kPath.
   static constexpr uint32_t kSky = 0xFFFFFFFF;
+  /// The value of `light` for the light of an object that emits light, with Integrator::kDirect.
+  static constexpr uint32_t kSurfaces = 0xFFFFFFFE;
+  /// The value of `light` if the sample has chosen one of many sources, with Integrator::kDirect.
+  static constexpr uint32_t kChosen = 0xFFFFFFFD;
 
-  /// Index into Scene::lights, or kSky.
+  /// Index into Scene::lights, or one of the constants above.
   uint32_t light = 0;
   /// The ray from the hit point to the light. Empty if the light contributes nothing even when nothing blocks it, or if
   /// nothing in the scene can cast a shadow.

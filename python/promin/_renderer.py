@@ -183,7 +183,8 @@ class Renderer:
         self._chosen = device
         self._light = str(light)
         # The light stands on the view's `up`, unless a Camera replaces the scene's framing.
-        framing = {} if isinstance(view.camera, Camera) else pose_of(view)
+        self._view = of_view(view)
+        framing = {} if isinstance(self._view.camera, Camera) else pose_of(self._view)
         self._surroundings = to_spec(
             {
                 **framing,
@@ -204,7 +205,6 @@ class Renderer:
         self._expected_samples = None if expected_samples is None else _count(expected_samples, "expected_samples")
         self._aovs = _names(aovs)
         self._check_background(self._aovs)
-        self._view = of_view(view)
         self._changes: dict[str, Any] = {}
         self._make_private()
         self._open(progress=progress)

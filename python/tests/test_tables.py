@@ -125,7 +125,7 @@ def test_arguments_have_the_defaults_of_the_library() -> None:
 def test_every_field_of_a_view_is_a_keyword_of_render() -> None:
     parameters = inspect.signature(promin.Renderer.render).parameters
     fields = {field.name for field in dataclasses.fields(promin.View)}
-    assert parameters.keys() == {"self", "view", "aovs", "progress"} | fields
+    assert parameters.keys() == {"self", "view", "aovs", "progress", "next_scene", "next_camera"} | fields
     assert all(parameters[name].default is None for name in fields)
     keywords = inspect.signature(promin.render).parameters
     own = inspect.signature(promin.Renderer.__init__).parameters.keys() - {"self", "view", "bvh", "texture_memory"}

@@ -301,6 +301,12 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   make_shading_point(ray, path.direction, hit, path.cone_width, path.media, color_of(path.weight), point);
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
+  // The sources contribute the rest of the light of surfaces that are sources. Planes are none.
+  if (has(FEATURE_SCATTERING) && has(FEATURE_EMITTERS) && model_of(point) != MATERIAL_UNLIT &&
+      hit.primitive < first_unbounded()) {
+    precise vec3 share = environment_share * own;
+    own = share;
+  }
   log_own_light(own);
   if (begins_bounce(turn)) {
     seen = own;

@@ -66,6 +66,14 @@ bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool
   return alpha_at(material, p, surface, weights, cosine, cone_width) < material.cover.y;
 }
 
+// Returns the texel of the texture's finest level at a hit; 1 if there is no texture.
+vec4 texel_at_hit(uint slot, Hit hit, Primitive p, SurfaceRecord surface) {
+  uvec4 corners = surface.corners_material;
+  if (!has(FEATURE_TEXTURES) || slot == 0u || (corners.w & SURFACE_HAS_UVS) == 0u) return vec4(1.0);
+  precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
+  return look_up(slot, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0));
+}
+
 // Returns the opacity of a hit: 1 unless its material blends.
 float coverage_of_hit(Hit hit, vec3 direction) {
   SurfaceRecord surface = load_surface_of(hit.primitive, hit.part);

@@ -20,14 +20,6 @@ void absorb_until(inout LightWay way, Ray ray, float t) {
   way.t = t;
 }
 
-// Returns the texel of the texture's finest level at a hit; 1 if there is no texture.
-vec4 texel_at_hit(uint slot, Hit hit, Primitive p, SurfaceRecord surface) {
-  uvec4 corners = surface.corners_material;
-  if (!has(FEATURE_TEXTURES) || slot == 0u || (corners.w & SURFACE_HAS_UVS) == 0u) return vec4(1.0);
-  precise vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
-  return look_up(slot, texture_place(p, load_corner_uvs(corners.xyz), weights, 1.0, 0.0));
-}
-
 vec3 tint_at_hit(Hit hit, Primitive p, SurfaceRecord surface, MaterialRecord material) {
   precise vec3 tint = material.a.xyz * texel_at_hit(slot_number(material.cover.z), hit, p, surface).xyz;
   uvec4 corners = surface.corners_material;

@@ -37,10 +37,9 @@ LightSample sample_round_light(LightRecord light, vec3 position) {
   return point_of_round(light, seen, sample_cone(seen.axis, seen.cap));
 }
 
-// Returns the light as seen from `position`; of a light with a size, the point of the chosen sample (choose_sample).
-LightSample sample_light(LightRecord light, vec3 position) {
+// Returns the light as seen from `position`; of a light with a size, the point of sample_u.
+LightSample sample_light_at(LightRecord light, vec3 position) {
   if (has(FEATURE_SAMPLED_LIGHT)) {
-    sample_u = sample_pair_point();
     if (is_round(light)) return sample_round_light(light, position);
   }
 #define PROMIN_LIGHT(KIND, ENUMERATOR, PREFIX, NUMBER, FEATURE, BIT, NAME)            \
@@ -50,6 +49,12 @@ LightSample sample_light(LightRecord light, vec3 position) {
 #include "promin/kinds/lights.def"
   // The pipeline was compiled without lights of this kind, so the light adds nothing.
   return LightSample(vec3(0.0), 0.0, 0.0);
+}
+
+// Returns the light as seen from `position`; of a light with a size, the point of the chosen sample (choose_sample).
+LightSample sample_light(LightRecord light, vec3 position) {
+  if (has(FEATURE_SAMPLED_LIGHT)) sample_u = sample_pair_point();
+  return sample_light_at(light, position);
 }
 
 // Returns the direction from `origin` to a light source. For a source at infinity it is the same for all origins.

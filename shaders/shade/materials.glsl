@@ -21,9 +21,13 @@ float coat_share;
 // With FEATURE_SCATTERING: the least roughness of surfaces, which is not 0 after a diffuse surface. Glass then does not
 // bend rays.
 float least_roughness = 0.0;
+// Features of sources with tables (emitters.glsl).
+const uint TABLE_FEATURES = FEATURE_BIT(FEATURE_EMITTERS) | FEATURE_BIT(FEATURE_CHOSEN_LIGHTS);
+
+bool has_table(LightRecord light) { return TABLE_FEATURES != 0u && light.kind.x == LIGHT_EMITTERS; }
 
 // Returns whether a source is the environment.
-bool is_of_sky(LightRecord light) { return LIGHT_KIND_COUNT == 0u || light.kind.x == LIGHT_SKY; }
+bool is_of_sky(LightRecord light) { return LIGHT_KIND_COUNT + TABLE_FEATURES == 0u || light.kind.x == LIGHT_SKY; }
 
 #include "shade/materials/phong.glsl"
 #include "shade/materials/metallic_roughness.glsl"

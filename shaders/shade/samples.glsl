@@ -77,18 +77,23 @@ uint joint_index(uint number) {
   return index;
 }
 
-// Returns the point of the chosen pair, an odd multiple of 2^-24 in each coordinate. The first 2^m points of a pair are
-// a (0, m, 2)-net. All pairs have Sobol's first two dimensions, in an order of their own. The order of the first pair
+// Returns the point of the chosen pair as fractions of 2^32. sample_pair_point() rounds it to odd multiples of 2^-24 in
+// each coordinate. The first 2^m points of a pair are a (0, m, 2)-net. All pairs have Sobol's first two dimensions, in an order of their own. The order of the first pair
 // with FEATURE_LISTED_SAMPLES is the one that suits the positions in the pixel, which have the same dimensions.
-vec2 sample_pair_point() {
+uvec2 sample_pair_bits() {
   uint seed = mix_bits(sample_key + 3u * sample_pair);
   uvec2 seeds = uvec2(mix_bits(seed + 1u), mix_bits(seed + 2u));
   uint shuffled = bitfieldReverse(permute_upwards(uvec2(bitfieldReverse(sample_number)), uvec2(seed)).x);
   if (has(FEATURE_LISTED_SAMPLES)) shuffled = sample_pair == 0u ? joint_index(sample_number) : shuffled;
-  uvec2 bits = bitfieldReverse(permute_upwards(first_sobols(shuffled), seeds)) >> 9;
-  precise vec2 point = vec2(bits) * 1.1920928955078125e-7 + 5.9604644775390625e-8;
+  return bitfieldReverse(permute_upwards(first_sobols(shuffled), seeds));
+}
+
+vec2 unit_square_point(uvec2 bits) {
+  precise vec2 point = vec2(bits >> 9) * 1.1920928955078125e-7 + 5.9604644775390625e-8;
   return point;
 }
+
+vec2 sample_pair_point() { return unit_square_point(sample_pair_bits()); }
 
 // Maps a point of the unit square to the unit disc; areas stay in proportion (Shirley and Chiu, "A Low Distortion Map
 // Between Disk and Square", 1997). Returns the position, and in z the squared distance from the centre.

@@ -543,19 +543,16 @@ vec3 choose_from_lobe(vec3 normal, float alpha, vec3 to_eye, vec2 u) {
 }
 
 #include "shade/sky_light.glsl"
+#include "shade/emitters.glsl"
 
-// Returns a point of a light as sample_light() does. A lobe that is narrower than a round light reflects an image of it,
+// Returns the point of sample_u of a light. A lobe that is narrower than a round light reflects an image of it,
 // which light sampling alone would see in few samples of large weight. Half of the samples then choose a direction from
 // the lobe. The strength is 1 / density of the mixture (Veach and Guibas, 1995: the balance heuristic), and 0 if the
-// direction misses the light. If the light is the environment, its powers are set to the radiance of the direction.
-LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRecord light) {
-  if (has(FEATURE_SKY_LIGHT)) {
-    lobe_share = 1.0;
-    coat_share = 1.0;
-    if (is_of_sky(light)) return sample_sky(point, to_eye, light);
-  }
+// direction misses the light.
+LightSample sample_light_or_lobe_at(ShadingPoint point, vec3 to_eye, LightRecord light, vec2 u) {
   if (!has(FEATURE_METALLIC_ROUGHNESS) || model_of(point) != MATERIAL_METALLIC_ROUGHNESS || !is_round(light)) {
-    return sample_light(light, point.position);
+    sample_u = u;
+    return sample_light_at(light, point.position);
   }
   bool has_coat = is_coated(point);
   float roughness = has_coat ? point.coat.roughness : point.material.c.x;
@@ -564,7 +561,6 @@ LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRec
   RoundLight seen = round_light(light, point.position);
   precise float alpha2 = alpha * alpha;
   bool is_mixed = alpha2 < seen.cap;
-  vec2 u = sample_pair_point();
   bool is_of_lobe = is_mixed && u.x > 0.5;
   precise float x = is_mixed ? 2.0 * u.x - (is_of_lobe ? 1.0 : 0.0) : u.x;
   sample_u = vec2(x, u.y);
@@ -584,12 +580,47 @@ LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRec
   return sampled;
 }
 
+// Sets the light of an element. It is an out parameter and not returned, because glslang 12 never ends if a cycle passes
+// through the result of a call (propagateNoContraction.cpp): the element comes from the source that it replaces.
+void take_light(uint index, out LightRecord light) { light = load_light(VIEW.first_index.y + index); }
+
+// Returns a point of a source as sample_light() does. If the source is the environment or has emissive surfaces, its
+// powers are set to the radiance of the direction. If it is one of many lights, it becomes this light.
+LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRecord light) {
+  if (has(FEATURE_SKY_LIGHT)) {
+    lobe_share = 1.0;
+    coat_share = 1.0;
+    if (is_of_sky(light)) return sample_sky(point, to_eye, light);
+  }
+  if (TABLE_FEATURES != 0u) {
+    uvec2 bits = sample_pair_bits();
+    vec2 u = unit_square_point(bits);
+    float chance = 1.0;
+    if (has_table(light)) {
+      Emitter emitter = choose_emitter(light, bits, u);
+      bool is_light = has(FEATURE_CHOSEN_LIGHTS) && emitter.part == EMITTER_IS_LIGHT;
+      if (has(FEATURE_EMITTERS) && !is_light) {
+        // The rest of a lobe is that of the mirror ray.
+        sky_shares(point);
+        return sample_emitter(emitter, u, point.position, point.geometric_normal, light);
+      }
+      take_light(emitter.index, light);
+      chance = emitter.chance;
+    }
+    LightSample sampled = sample_light_or_lobe_at(point, to_eye, light, u);
+    precise float strength = sampled.strength / chance;
+    sampled.strength = strength;
+    return sampled;
+  }
+  return sample_light_or_lobe_at(point, to_eye, light, sample_pair_point());
+}
+
 // With FEATURE_SAMPLED_LIGHT, returns the shadow ray to the chosen point of a light. For a light without size it has
 // the same bits as shadow_ray(origin, light).
 Ray sampled_shadow_ray(ShadingPoint point, vec3 origin, LightRecord light, LightSample sampled) {
   precise vec3 to_point = sampled.direction + (point.position - origin);
   precise vec3 to_place = light.position.xyz - origin;
-  bool has_size = is_round(light) || (FLAT_KINDS != 0u && is_flat(light));
+  bool has_size = is_round(light) || (FLAT_KINDS != 0u && is_flat(light)) || has_table(light);
   vec3 to_source = has_size ? to_point : to_place;
   return make_ray(origin, sampled.tmax < INFINITY ? to_source : sampled.direction, 0.0, sampled.tmax);
 }

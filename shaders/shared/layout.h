@@ -118,6 +118,8 @@ LAYOUT_CONSTANT INSTANCE_RECORDS = 2u;
 LAYOUT_CONSTANT INSTANCE_HASH_MASK = 0xFFFFu;        // hash of the object, as in Primitive::c.w
 LAYOUT_CONSTANT INSTANCE_IS_MIRRORED = 0x80000000u;  // R changes the handedness
 LAYOUT_CONSTANT NO_INSTANCE_MATERIAL = 0xFFFFFFFFu;
+// Hit::part in an instance is the index of its record plus this number, which is above the parts of all shapes.
+LAYOUT_CONSTANT FIRST_INSTANCE_PART = 8u;
 
 // A primitive. The primitives of the tree come first, in leaf order, then the unbounded primitives. The kind determines
 // the meaning of a, b and c.x: the comment at the kind's pack() and its shader file in primitives/ define it. c.y is
@@ -255,6 +257,18 @@ struct LightRecord {
                // that of the sky
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
+// A source with a table of elements, one of which a sample chooses, needs FEATURE_EMITTERS or FEATURE_CHOSEN_LIGHTS. In
+// its LightRecord, kind.y is the number of elements. kind.w is the first texel of the table, counted from the record of
+// the first source. position.w is a factor of the radiance of surfaces. The tables follow the records of the sources. A
+// texel before the tables holds the number of all elements in x. An element takes two texels. In the first, x is the
+// first number of the element's range in 0...2^32 - 1, y has the bits of its chance, and z is the element that contains
+// the first number of the cell with this index. The second texel has an index of a primitive, or of a light's record
+// counted from that of the first source. Its y is Hit::part of points on the primitive, or EMITTER_IS_LIGHT. Its z is
+// the number of the primitive in the scene plus 1, or 0 for a light. It never decreases over all tables. Its last word
+// has the bits of the area.
+LAYOUT_CONSTANT LIGHT_EMITTERS = 7u;
+LAYOUT_CONSTANT EMITTER_TEXELS = 2u;
+LAYOUT_CONSTANT EMITTER_IS_LIGHT = 0xFFFFFFFFu;
 
 // The constants of a view of a scene (uniform buffer). No branch or loop depends on them. Constants on which control
 // flow depends are in Dispatch.

@@ -30,7 +30,6 @@ const uint NO_PRIMITIVE = 0xFFFFFFFFu;
 const uint PART_SIDE = 0u;
 const uint PART_BOTTOM = 1u;
 const uint PART_TOP = 2u;
-const uint FIRST_INSTANCE_PART = 8u;  // above the parts of all shapes
 
 // The crossing of a ray with one primitive: the crossing with the smallest t > tmin, or NO_CROSSING.
 struct Crossing {

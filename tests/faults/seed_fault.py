@@ -133,6 +133,12 @@ FAULTS = {
     "scattering_unshuffled": {"picture/scatter.glsl": [(r"FIRST_DIRECTION_PAIR \+ step", "FIRST_DIRECTION_PAIR")]},
     "facets_unmasked": {"picture/scatter.glsl": [(r"l \* \(v \+ v_length\) / both", "1.0")]},
     "roughness_unbounded": {"picture/scatter.glsl": [(r"is_diffused \? ROUGHNESS_AFTER_DIFFUSION : 0\.0", "0.0")]},
+    # These are faults of emissive surfaces as sources (tests/gpu/emitters_test.cpp).
+    "lamp_angle_off": {"shade/emitters.glsl": [(r"\? seen\.solid_angle : 6\.28318531", "? 1.02 * seen.solid_angle : 6.4")]},
+    "lamp_area_off": {"shade/emitters.glsl": [(r"0\.5 \* abs\(seen\.height\)", "0.51 * abs(seen.height)")]},
+    "lamp_chance_off": {"shade/emitters.glsl": [(r"/ emitter\.chance;", "/ (1.02 * emitter.chance);")]},
+    "lamp_ball_off": {"shade/emitters.glsl": [(r"6\.28318531 \* cap;", "6.4 * cap;")]},
+    "lamp_back_shines": {"shade/emitters.glsl": [(r"is_dark \? 0\.0 : strength", "strength")]},
     "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},
     # These are faults of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},

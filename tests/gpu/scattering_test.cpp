@@ -110,6 +110,17 @@ TEST_F(ScatteringTest, EachSampleUnderASkyIsTheOracles) {
   expect_samples(scene, make_path_view());
 }
 
+// Rays that metal scatters see a part of the lamp's light, and the source contributes the rest.
+TEST_F(ScatteringTest, EachSampleWithAGlowingBallIsTheOracles) {
+  world::Scene scene = make_room_of_balls();
+  Material lamp = make_lambert(0.5F);
+  lamp.emissive = vec3(4.0F, 3.0F, 2.0F);
+  scene.materials.push_back(lamp);
+  scene.objects.push_back({"lamp", world::Sphere{vec3(0.2F, 1.4F, 0.4F), 0.25F},
+                           static_cast<uint32_t>(scene.materials.size() - 1)});
+  expect_samples(scene, make_path_view());
+}
+
 // A density that is off by 2 % is seen, and so are other faults.
 TEST_F(ScatteringTest, FaultsAreSeen) {
   for (const char* fault :
@@ -134,22 +145,35 @@ TEST_F(ScatteringTest, WithoutBouncesLightIsDirect) {
   EXPECT_TRUE(test::has_same_bits(scattered, renderer_of(scene).render(view).image));
 }
 
-// Each sample inside a closed box whose walls emit e and scatter the fraction r has e (1 + r + r^2 + ...), with a term
-// for each ray.
+// Inside a closed box whose walls emit e and scatter the fraction r, light is e (1 + r + r^2 + ...), with a term for
+// each ray. Planes are no sources, so that rays find their light in each sample. The faces of a box are sources. They
+// add the term of one further ray, and the mean has the closed form.
 TEST_F(ScatteringTest, AClosedBoxThatEmitsHasItsClosedForm) {
   world::Scene scene;
   scene.materials = {make_lambert(0.6F)};
   scene.materials[0].emissive = vec3(0.5F, 1.0F, 2.0F);
-  scene.objects = {{"box", world::Box{vec3(0.0F), vec3(3.0F, 2.0F, 5.0F)}, 0}};
+  const vec3 half_size(3.0F, 2.0F, 5.0F);
+  const auto sum_of = [](uint32_t terms) { return (1.0 - std::pow(0.6, terms)) / 0.4; };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0F, 1.0F}) {
+      vec3 normal(0.0F);
+      normal[axis] = -side;
+      scene.objects.push_back({"wall", world::Plane{-half_size[axis] * normal, normal}, 0});
+    }
+  }
   for (const uint32_t depth : {0U, 1U, 6U}) {
     View view = make_path_view(depth, uvec2(16));
     view.camera.eye = vec3(0.2F, 0.1F, 0.3F);
-    const double sum = (1.0 - std::pow(0.6, depth + 1.0)) / 0.4;
     for (const vec3& pixel : renderer_of(scene).render(view).image.pixels) {
-      EXPECT_NEAR(pixel.x, 0.5 * sum, 1e-5) << depth;
-      EXPECT_NEAR(pixel.z, 2.0 * sum, 1e-5) << depth;
+      EXPECT_NEAR(pixel.x, 0.5 * sum_of(depth + 1), 1e-5) << depth;
+      EXPECT_NEAR(pixel.z, 2.0 * sum_of(depth + 1), 1e-5) << depth;
     }
   }
+  scene.objects = {{"box", world::Box{vec3(0.0F), half_size}, 0}};
+  View view = make_path_view(2, uvec2(16));
+  view.camera.eye = vec3(0.2F, 0.1F, 0.3F);
+  view.samples_per_pixel = 64;
+  EXPECT_NEAR(mean_of(scene, view).x, 0.5 * sum_of(4), 0.01);
 }
 
 // White bodies of all kinds under a white sky are white, whether the sky is a source or a ball of light around them

@@ -76,10 +76,15 @@ class ExplanationTree {
     return text + " " + name + (material == name ? "" : ", " + material);
   }
 
+  std::string name_of(const ExplainedSource& source) const {
+    if (source.light == ExplainedSource::kSky) return "the environment";
+    if (source.light == ExplainedSource::kSurfaces) return "an emissive surface";
+    if (source.light == ExplainedSource::kChosen) return "the chosen source";
+    return name_or(scene_.lights[source.light].name, "light", source.light);
+  }
+
   void show_source(const ExplainedSource& source) const {
-    const bool is_sky = source.light == ExplainedSource::kSky;
-    const std::string name =
-        is_sky ? std::string("the environment") : name_or(scene_.lights[source.light].name, "light", source.light);
+    const std::string name = name_of(source);
     if (source.is_visible()) return show_row(name, source.contribution);
     if (!source.shadow_ray) return show_row(name + " does not reach it", source.contribution);
     const auto blocker = static_cast<uint32_t>(std::max(source.blocker.object, 0));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/film/explain_pixel.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -23,7 +24,8 @@ constexpr uint64_t kMostLogBytes = 64U << 20;
 uint64_t most_entries(const DeviceScene& scene, FeatureMask features, const View& view) {
   const uint32_t layers = features.has_any(layout::FEATURE_BLENDING) ? layout::MOST_LAYERS : 0;
   const uint64_t steps = most_steps(view.max_depth, refracted_rays(features), layers);
-  const uint64_t entries = (1 + steps) * (uint64_t{1} + scene.constants().source_count);
+  const uint64_t entries =
+      (1 + steps) * (uint64_t{1} + std::max(scene.constants().light_count, scene.constants().direct_count));
   if (entries > kMostLogBytes / sizeof(layout::RayLog)) {
     throw RunError({"explain.rays.many",
                     "a pixel may need " + std::to_string(entries) + " rays and light sources, too many to explain", "",
@@ -65,7 +67,7 @@ Explanation explain_pixel(const gpu::Device& device, const std::shared_ptr<const
   while (!samples.is_done()) {
     const TileSample sample = samples.next(1.0);
     film.run({&sample, 1});
-    explanation.samples.push_back(explain_sample(read_log(film), numbers, scene->light_numbers()));
+    explanation.samples.push_back(explain_sample(read_log(film), numbers, scene->source_numbers(view.mode.integrator)));
   }
   refuse_cut_loops(film.take_counts().has_cut_loops);
   explanation.sum = read_sum(film);

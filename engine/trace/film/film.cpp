@@ -289,8 +289,7 @@ StreamShape Film::stream_shape(uint32_t pixel_count, uint32_t depth) const {
   if (!has_stream()) return {};
   const uint32_t most_paths = std::min(device_->profile().most_stream_paths, divide_up(pixel_count, kLanes) * kLanes);
   const SceneConstants& constants = scene_->constants();
-  const bool has_sky_light = features_.has_any(layout::FEATURE_SKY_LIGHT);
-  const uint32_t sources = has_sky_light ? constants.source_count : constants.light_count;
+  const uint32_t sources = constants.source_count(features_.has_any(layout::FEATURE_SKY_LIGHT));
   StreamShape shape = StreamShape::of(sources, features_, most_paths, depth);
   shape.first_record = pixel_count * records_.count + log_records_;
   return shape;

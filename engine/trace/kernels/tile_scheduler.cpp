@@ -70,7 +70,8 @@ TileSample TileScheduler::next(double units) {
   piece.depth = view_.max_depth;
   piece.units = block_count_;
   const double most_hits = 1.0 + piece.steps;
-  piece.most_rays_a_lane = most_hits * (1.0 + scene_.source_count) * (1.0 + options_.most_layers) * piece.units;
+  piece.most_rays_a_lane = most_hits * (1.0 + std::max(scene_.light_count, scene_.direct_count)) *
+                           (1.0 + options_.most_layers) * piece.units;
 
   ++sample_;
   if (sample_ == end_sample_) {

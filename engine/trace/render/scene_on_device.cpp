@@ -100,7 +100,7 @@ FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environ
       more_features_ | picture_features(geometry_features_, material_features_, lights, environment, primitive_count_);
   if (mode.integrator != Integrator::kWhitted && mode.debug_view == DebugView::kNone) {
     if (mode.integrator == Integrator::kPath) features |= layout::FEATURE_SCATTERING;
-    features |= layout::FEATURE_SKY_LIGHT | layout::FEATURE_SAMPLED_LIGHT;
+    features |= layout::FEATURE_SKY_LIGHT | layout::FEATURE_SAMPLED_LIGHT | device_scene_->source_features();
     if (casts_shadows(geometry_features_, primitive_count_)) features |= layout::FEATURE_SHADOWS;
   }
   if (mode.debug_view == DebugView::kOcclusion) {

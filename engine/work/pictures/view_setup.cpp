@@ -93,8 +93,9 @@ View make_view(const Scene& scene, const ViewOptions& options, const Messages& c
 
 std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& options) {
   const PoseOptions& pose = options.pose;
-  const bool is_framed = !options.given_camera && !pose.eye && find_file_camera(scene, options) == nullptr;
-  if (!is_framed || !pose.up) return {};
+  const bool has_camera = options.given_camera || options.camera || pose.eye;
+  const bool is_framed = pose.from || pose.fit || options.frames_scene || scene.cameras.empty();
+  if (!pose.up || has_camera || !is_framed) return {};
   return vec3(glm::normalize(*pose.up));
 }
 

@@ -1,0 +1,479 @@
+// SPDX-FileCopyrightText: The promin developers
+// SPDX-License-Identifier: Apache-2.0
+// These tests check surfaces that emit light as sources, and the choice of one of many sources (Integrator::kDirect):
+// sample by sample against the oracle, in the mean against closed forms, and their bits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "device_scene/pack_emitters.h"
+#include "gpu/device_fixture.h"
+#include "gpu/faulty_shaders.h"
+#include "gpu/test_scenes.h"
+#include "gpu/ways_of_tracing.h"
+#include "oracle/compare_picture.h"
+#include "oracle/emitters.h"
+#include "trace/render/renderer_impl.h"
+
+namespace promin {
+namespace {
+
+Material make_diffuse(const vec3& color) {
+  MetallicRoughness model;
+  model.base_color = color;
+  model.metallic = 0.0F;
+  model.roughness = 1.0F;
+  model.specular = 0.0F;
+  return {.name = "", .model = model};
+}
+
+Material make_glow(const vec3& radiance, bool is_double_sided = false) {
+  Material material = make_diffuse(vec3(0.0F));
+  material.emissive = radiance;
+  material.is_double_sided = is_double_sided;
+  return material;
+}
+
+/// Returns a rectangle with this middle and these halves of its sides. It faces the product of the sides.
+Mesh make_sheet(const vec3& middle, const vec3& right, const vec3& up) {
+  Mesh mesh;
+  mesh.positions = {middle - right - up, middle + right - up, middle + right + up, middle - right + up};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+Mesh make_triangle(const vec3& a, const vec3& b, const vec3& c) {
+  Mesh mesh;
+  mesh.positions = {a, b, c};
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+/// A floor and two balls under lamps of all regimes: a sheet that is large for points below it, a sheet of two sides, a
+/// ball, a small triangle, a sheet that nearly touches the floor, and a point light.
+world::Scene make_lamps() {
+  world::Scene scene;
+  scene.materials = {make_diffuse(vec3(0.8F, 0.7F, 0.6F)), make_diffuse(vec3(0.3F, 0.5F, 0.8F)),
+                     make_glow(vec3(2.0F, 1.5F, 0.5F)),    make_glow(vec3(0.5F, 1.5F, 3.0F), true),
+                     make_glow(vec3(1.0F, 4.0F, 1.0F)),    make_glow(vec3(300.0F, 200.0F, 250.0F)),
+                     make_glow(vec3(0.7F, 0.3F, 0.2F))};
+  scene.objects = {
+      {"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0},
+      {"ball", world::Sphere{vec3(-0.8F, 0.5F, 0.0F), 0.5F}, 1},
+      {"ceiling", make_sheet(vec3(-0.4F, 1.7F, 0.2F), vec3(0.8F, 0.1F, 0.0F), vec3(0.0F, 0.1F, -0.7F)), 2},
+      {"screen", make_sheet(vec3(1.5F, 0.7F, -0.5F), vec3(0.2F, 0.0F, 0.5F), vec3(0.0F, 0.5F, 0.1F)), 3},
+      {"glowing ball", world::Sphere{vec3(0.6F, 0.4F, 0.5F), 0.3F}, 4},
+      {"spark", make_triangle(vec3(-2.0F, 2.5F, 1.0F), vec3(-1.9F, 2.5F, 1.05F), vec3(-2.0F, 2.45F, 1.1F)), 5},
+      {"low sheet", make_sheet(vec3(0.0F, 0.01F, 1.6F), vec3(0.4F, 0.0F, 0.0F), vec3(0.0F, 0.0F, 0.3F)), 6}};
+  // The low sheet faces down.
+  for (uvec3& corners : std::get<Mesh>(scene.objects.back().shape).triangles) std::swap(corners.y, corners.z);
+  // The ceiling faces down too.
+  for (uvec3& corners : std::get<Mesh>(scene.objects[2].shape).triangles) std::swap(corners.y, corners.z);
+  Light point;
+  point.position = vec3(2.0F, 2.0F, 1.0F);
+  point.diffuse = point.specular = vec3(1.0F);
+  point.attenuation = Attenuation::kInverseSquare;
+  scene.lights = {point};
+  return scene;
+}
+
+/// The same lamps over metals, a coat and Phong's mirrors.
+world::Scene make_glossy_lamps() {
+  world::Scene scene = make_lamps();
+  MetallicRoughness metal;
+  metal.base_color = vec3(0.9F, 0.7F, 0.4F);
+  metal.metallic = 1.0F;
+  metal.roughness = 0.3F;
+  MetallicRoughness coated;
+  coated.base_color = vec3(0.2F, 0.3F, 0.7F);
+  coated.metallic = 0.0F;
+  coated.roughness = 0.7F;
+  coated.clearcoat = 1.0F;
+  coated.clearcoat_roughness = 0.25F;
+  scene.materials[0].model = coated;
+  scene.materials[1].model = metal;
+  // A lamp under a coat.
+  std::get<MetallicRoughness>(scene.materials[3].model).clearcoat = 0.7F;
+  scene.environment.ambient = vec3(0.1F, 0.2F, 0.15F);
+  return scene;
+}
+
+View make_lamp_view(uvec2 size = uvec2(40, 30)) {
+  View view;
+  view.size = size;
+  view.camera.eye = vec3(0.0F, 1.6F, 4.0F);
+  view.camera.look = glm::normalize(vec3(0.0F, -0.3F, -1.0F));
+  view.camera.up = glm::normalize(glm::cross(glm::cross(view.camera.look, vec3(0, 1, 0)), view.camera.look));
+  view.max_depth = 2;
+  view.mode.integrator = Integrator::kDirect;
+  return view;
+}
+
+/// Returns a view that sees one point of the plane y = 0.
+View make_point_view(const vec3& point, float height = 0.05F) {
+  View view = make_lamp_view(uvec2(8));
+  view.camera.eye = point + vec3(0.0F, height, 0.0F);
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  view.camera.yfov = 0.002F;
+  view.samples_per_pixel = 256;
+  return view;
+}
+
+/// A white floor, and a lamp as its other object.
+world::Scene make_lit_floor(const world::Shape& lamp, const Material& material) {
+  world::Scene scene;
+  scene.materials = {make_diffuse(vec3(1.0F)), material};
+  scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}, {"lamp", lamp, 1}};
+  return scene;
+}
+
+/// Returns Lambert's formula for the irradiance that a polygon of radiance 1 causes at a point of a plane y = 0.
+double irradiance_of(std::vector<dvec3> corners, const dvec3& at) {
+  double sum = 0.0;
+  for (dvec3& corner : corners) corner = glm::normalize(corner - at);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const dvec3& a = corners[i];
+    const dvec3& b = corners[(i + 1) % corners.size()];
+    sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(b, a)).y;
+  }
+  return std::abs(0.5 * sum);
+}
+
+class EmittersTest : public test::DeviceTest {
+ protected:
+  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
+    return make_renderer(device(), scene, options);
+  }
+  static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
+    // Densities that are off by 2 % change few pixels of smooth surfaces.
+    oracle::PictureReport report = compare_picture(scene, truth, image, {}, {.color_mean = 2e-6L});
+    std::printf("%s\n", report.summary(scene).c_str());
+    return report;
+  }
+  /// Compares the first sample of each pixel, for several seeds.
+  static void expect_samples(const world::Scene& scene, View view) {
+    Renderer renderer = renderer_of(scene);
+    for (const uint32_t seed : {0U, 1U, 4294967295U}) {
+      view.seed = seed;
+      EXPECT_TRUE(compare(scene, oracle::render(scene, view), renderer.render(view).image).passes()) << seed;
+    }
+  }
+  /// Returns the mean over a picture.
+  static double mean_of(const world::Scene& scene, const View& view) {
+    const Image image = renderer_of(scene).render(view).image;
+    double sum = 0.0;
+    for (const vec3& pixel : image.pixels) sum += static_cast<double>(pixel.x);
+    return sum / static_cast<double>(image.pixels.size());
+  }
+};
+
+TEST_F(EmittersTest, EachSampleIsTheOracles) {
+  expect_samples(make_lamps(), make_lamp_view());
+}
+
+TEST_F(EmittersTest, EachSampleOnGlossySurfacesIsTheOracles) {
+  expect_samples(make_glossy_lamps(), make_lamp_view());
+}
+
+// Boxes, cylinders, cones and capsules are sampled by area, and lights of shapes reach their own insides.
+TEST_F(EmittersTest, EachSampleOfShapesIsTheOracles) {
+  world::Scene scene = make_lamps();
+  scene.objects.resize(2);
+  world::Box box{vec3(-1.6F, 0.4F, 0.6F), vec3(0.2F, 0.3F, 0.15F), vec3(0.1F, 0.2F, 0.05F)};
+  world::Cylinder cylinder;
+  cylinder.center = vec3(0.7F, 0.5F, 0.8F);
+  cylinder.axis = glm::normalize(vec3(0.3F, 1.0F, 0.2F));
+  cylinder.half_height = 0.3F;
+  cylinder.radius = 0.15F;
+  world::Cone cone;
+  cone.center = vec3(1.5F, 0.5F, -0.4F);
+  cone.axis = vec3(0, 1, 0);
+  cone.half_height = 0.4F;
+  cone.radius_bottom = 0.3F;
+  cone.radius_top = 0.05F;
+  world::Capsule capsule;
+  capsule.center = vec3(-0.2F, 1.3F, 0.9F);
+  capsule.axis = vec3(1, 0, 0);
+  capsule.half_height = 0.3F;
+  capsule.radius_bottom = 0.12F;
+  capsule.radius_top = 0.05F;
+  world::Cylinder tube = cylinder;
+  tube.center = vec3(-0.3F, 0.3F, -1.0F);
+  tube.is_open = true;
+  scene.objects.push_back({"box", box, 2});
+  scene.objects.push_back({"cylinder", cylinder, 4});
+  scene.objects.push_back({"cone", cone, 6});
+  scene.objects.push_back({"capsule", capsule, 2});
+  scene.objects.push_back({"tube", tube, 6});
+  expect_samples(scene, make_lamp_view());
+}
+
+// In a scene of Phong materials alone, lights have another power than surfaces.
+TEST_F(EmittersTest, EachSampleOnPhongsMaterialsIsTheOracles) {
+  world::Scene scene = make_lamps();
+  for (Material& material : scene.materials) {
+    Phong phong;
+    phong.diffuse = std::get<MetallicRoughness>(material.model).base_color;
+    phong.ambient = vec3(0.0F);
+    phong.specular = vec3(0.4F);
+    phong.shininess = 20.0F;
+    material.model = phong;
+  }
+  std::get<Phong>(scene.materials[1].model).reflection = vec3(0.5F);
+  expect_samples(scene, make_lamp_view());
+}
+
+// With more than 16 sources, each sample asks one of them.
+TEST_F(EmittersTest, EachSampleOfManySourcesIsTheOracles) {
+  world::Scene scene = make_lamps();
+  for (int i = 0; i < 14; ++i) {
+    Light light = scene.lights[0];
+    light.position = vec3(-1.5F + 0.25F * static_cast<float>(i), 1.2F + 0.1F * static_cast<float>(i % 3), 0.8F);
+    light.diffuse = light.specular = vec3(0.05F * static_cast<float>(i + 1));
+    if (i % 4 == 1) light.radius = 0.1F;
+    if (i % 4 == 2) {
+      light.kind = LightKind::kSpot;
+      light.direction = vec3(0, -1, 0);
+    }
+    if (i % 4 == 3) light = test::make_sun(vec3(0.1F * static_cast<float>(i), -1.0F, 0.2F), 0.2F);
+    scene.lights.push_back(light);
+  }
+  scene.environment.ambient = vec3(0.1F, 0.2F, 0.15F);
+  expect_samples(scene, make_lamp_view());
+}
+
+// A density that is off by 2 % is seen, and so are other faults.
+TEST_F(EmittersTest, FaultsAreSeen) {
+  for (const char* fault : test::cases_of<const char*>(
+           {"lamp_angle_off", "lamp_area_off", "lamp_chance_off", "lamp_ball_off", "lamp_back_shines"}, 1)) {
+    const world::Scene scene = make_lamps();
+    const View view = make_lamp_view();
+    const test::FaultyShaders faulty(fault);
+    TunedRendererOptions options;
+    options.shaders = faulty.shaders();
+    const Image image = renderer_of(scene, options).render(view).image;
+    EXPECT_FALSE(compare(scene, oracle::render(scene, view), image).passes()) << fault;
+  }
+}
+
+// A floor of albedo 1 has the radiance E / pi, with Lambert's formula for a polygon of radiance L.
+TEST_F(EmittersTest, TrianglesHaveTheirClosedForm) {
+  const std::vector<std::array<vec3, 3>> triangles = {
+      {vec3(-1.0F, 0.6F, -0.5F), vec3(0.2F, 0.6F, 1.1F), vec3(1.2F, 0.8F, -0.7F)},     // large
+      {vec3(0.0F, 0.6F, 0.0F), vec3(0.02F, 0.6F, 0.05F), vec3(0.05F, 0.6F, 0.0F)},     // small
+      {vec3(-3.0F, 0.02F, -4.0F), vec3(0.0F, 0.02F, 5.0F), vec3(4.0F, 0.02F, -3.0F)},  // nearly a half space
+      {vec3(0.2F, 0.01F, -0.3F), vec3(0.2F, 0.01F, 0.7F), vec3(0.2F, 1.0F, 0.1F)}};    // upright, cut by no horizon
+  for (const auto& [a, b, c] : triangles) {
+    const world::Scene scene = make_lit_floor(make_triangle(a, b, c), make_glow(vec3(2.0F), true));
+    for (const vec3& at : {vec3(0.0F), vec3(0.6F, 0.0F, 0.3F)}) {
+      const double expected = 2.0 / std::numbers::pi * irradiance_of({dvec3(a), dvec3(b), dvec3(c)}, dvec3(at));
+      EXPECT_NEAR(mean_of(scene, make_point_view(at, 0.005F)) / expected, 1.0, 0.004) << a.y << " " << at.x;
+    }
+  }
+}
+
+// Two triangles light a floor like the light of EXT_lights_area of the same shape, and a sphere like the ball of light:
+// E = pi L (R / d)^2 cos above the horizon.
+TEST_F(EmittersTest, LampsLightLikeLightsOfTheirShape) {
+  const Mesh sheet = make_sheet(vec3(0.1F, 0.8F, -0.2F), vec3(0.0F, 0.0F, 0.35F), vec3(0.6F, 0.0F, 0.0F));
+  const world::Scene as_mesh = make_lit_floor(sheet, make_glow(vec3(2.0F), true));
+  world::Scene as_light = make_lit_floor(world::NotDrawn{}, make_glow(vec3(0.0F)));
+  Light rect;
+  rect.kind = LightKind::kRect;
+  rect.position = vec3(0.1F, 0.8F, -0.2F);
+  rect.direction = vec3(0, -1, 0);
+  rect.size = vec2(1.2F, 0.7F);
+  rect.diffuse = rect.specular = vec3(2.0F);
+  as_light.lights = {rect};
+  for (const vec3& at : {vec3(0.0F), vec3(0.9F, 0.0F, 0.4F), vec3(-2.0F, 0.0F, 1.5F)}) {
+    const View view = make_point_view(at);
+    EXPECT_NEAR(mean_of(as_mesh, view) / mean_of(as_light, view), 1.0, 0.004) << at.x;
+  }
+  const world::Scene ball = make_lit_floor(world::Sphere{vec3(0.2F, 1.5F, -0.3F), 0.9F}, make_glow(vec3(3.0F)));
+  for (const vec3& at : {vec3(0.2F, 0.0F, -0.3F), vec3(1.0F, 0.0F, 0.4F)}) {
+    const double d = static_cast<double>(glm::distance(at, vec3(0.2F, 1.5F, -0.3F)));
+    EXPECT_NEAR(mean_of(ball, make_point_view(at)) / (3.0 * 0.81 / (d * d) * 1.5 / d), 1.0, 0.004) << at.x;
+  }
+}
+
+// A ball of many triangles lights like a sphere.
+TEST_F(EmittersTest, BallsOfTrianglesLightLikeSpheres) {
+  Mesh mesh;
+  constexpr uint32_t kRows = 24;
+  for (uint32_t i = 0; i <= kRows; ++i) {
+    const double polar = std::numbers::pi * i / kRows;
+    for (uint32_t j = 0; j < 2 * kRows; ++j) {
+      const double azimuth = std::numbers::pi * j / kRows;
+      mesh.positions.push_back(
+          vec3(dvec3(0.2, 1.5, -0.3) +
+               0.5 * dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth))));
+      const uint32_t next = (j + 1) % (2 * kRows);
+      if (i == kRows) continue;
+      const auto at = [&](uint32_t row, uint32_t column) { return row * 2 * kRows + column; };
+      if (i > 0) mesh.triangles.emplace_back(at(i, j), at(i, next), at(i + 1, j));
+      if (i + 1 < kRows) mesh.triangles.emplace_back(at(i, next), at(i + 1, next), at(i + 1, j));
+    }
+  }
+  const View view = make_point_view(vec3(0.6F, 0.0F, 0.1F));
+  const double as_mesh = mean_of(make_lit_floor(mesh, make_glow(vec3(3.0F))), view);
+  const double as_sphere =
+      mean_of(make_lit_floor(world::Sphere{vec3(0.2F, 1.5F, -0.3F), 0.5F}, make_glow(vec3(3.0F))), view);
+  EXPECT_NEAR(as_mesh / as_sphere, 1.0, 0.02);
+}
+
+// Inside a closed box that emits e with albedo r, each point has e + r e: one bounce of a furnace.
+TEST_F(EmittersTest, FurnacesHaveOneBounce) {
+  Mesh box = make_sheet(vec3(0, 0, -1), vec3(1, 0, 0), vec3(0, 1, 0));
+  const auto add = [&](const vec3& middle, const vec3& right, const vec3& up) {
+    const Mesh side = make_sheet(middle, right, up);
+    const auto first = static_cast<uint32_t>(box.positions.size());
+    box.positions.insert(box.positions.end(), side.positions.begin(), side.positions.end());
+    for (const uvec3& corners : side.triangles) box.triangles.push_back(corners + first);
+  };
+  add(vec3(0, 0, 1), vec3(-1, 0, 0), vec3(0, 1, 0));
+  add(vec3(-1, 0, 0), vec3(0, 0, -1), vec3(0, 1, 0));
+  add(vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0));
+  add(vec3(0, -1, 0), vec3(1, 0, 0), vec3(0, 0, -1));
+  add(vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
+  world::Scene scene;
+  Material material = make_diffuse(vec3(0.5F));
+  material.emissive = vec3(1.0F);
+  scene.materials = {material};
+  scene.objects = {{"box", box, 0}};
+  View view = make_lamp_view(uvec2(16));
+  view.camera.eye = vec3(0.1F, 0.2F, 0.3F);
+  view.camera.look = vec3(0, 0, -1);
+  view.camera.up = vec3(0, 1, 0);
+  view.camera.yfov = 1.5F;
+  view.samples_per_pixel = 256;
+  EXPECT_NEAR(mean_of(scene, view), 1.5, 0.003);
+  // A sphere shines to its inside, as the camera sees it.
+  scene.objects = {{"sphere", world::Sphere{vec3(0.0F), 1.0F}, 0}};
+  EXPECT_NEAR(mean_of(scene, view), 1.5, 0.003);
+}
+
+// The densities of the oracle, and so those of the device, integrate to 1: the mean of 1 / density is the solid angle.
+TEST_F(EmittersTest, DensitiesIntegrateToOne) {
+  const world::Scene scene = make_lamps();
+  const oracle::Emitters emitters(scene);
+  for (const oracle::Vector& at : {oracle::Vector(0.1L, 0, 1.6L), oracle::Vector(-0.4L, 1.6L, 0.2L)}) {
+    for (int32_t object = 2; object < 7; ++object) {
+      oracle::Real sum = 0;
+      constexpr int kSide = 60;
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const std::array<oracle::Real, 2> u = {(i % kSide + 0.5L) / kSide,
+                                               (static_cast<oracle::Real>(i / kSide) + 0.5L) / kSide};
+        sum += emitters.sample({.object = object}, at, oracle::Vector(0, 1, 0), u).inverse_density;
+      }
+      oracle::Real expected = 0;
+      const auto& shape = scene.objects[static_cast<size_t>(object)].shape;
+      if (const auto* sphere = std::get_if<world::Sphere>(&shape)) {
+        const oracle::Real d = glm::distance(oracle::Vector(sphere->center), at);
+        const oracle::Real cosine = std::sqrt(1 - oracle::Real(sphere->radius * sphere->radius) / (d * d));
+        expected = 2 * std::numbers::pi_v<oracle::Real> * (1 - cosine);
+      } else {
+        const auto& mesh = std::get<Mesh>(shape);
+        const uvec3 corners = mesh.triangles[0];
+        expected = oracle::solid_angle_of({oracle::Vector(mesh.positions[corners.x]) - at,
+                                           oracle::Vector(mesh.positions[corners.y]) - at,
+                                           oracle::Vector(mesh.positions[corners.z]) - at});
+      }
+      EXPECT_NEAR(static_cast<double>(sum / (kSide * kSide) / expected), 1.0, 0.01) << object;
+    }
+  }
+}
+
+TEST_F(EmittersTest, EveryWayOfTracingHasTheSameBits) {
+  const world::Scene scene = make_glossy_lamps();
+  View view = make_lamp_view();
+  view.samples_per_pixel = 3;
+  const Image expected = renderer_of(scene).render(view).image;
+  for (const TunedRendererOptions& way : test::ways_of_tracing()) {
+    EXPECT_TRUE(test::has_same_bits(renderer_of(scene, way).render(view).image, expected));
+  }
+  View crop = view;
+  crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
+  const Image part = renderer_of(scene).render(crop).image;
+  for (uint32_t y = 0; y < part.size.y; ++y) {
+    for (uint32_t x = 0; x < part.size.x; ++x) {
+      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * view.size.x + x + 13]);
+    }
+  }
+}
+
+// Lights, materials and environments can change: the picture is that of a new renderer.
+TEST_F(EmittersTest, SourcesCanChange) {
+  world::Scene scene = make_lamps();
+  const View view = make_lamp_view();
+  Renderer renderer = renderer_of(scene);
+  const Image first = renderer.render(view).image;
+  std::swap(scene.materials[0].emissive, scene.materials[2].emissive);
+  scene.materials[1].emissive = vec3(0.5F);
+  renderer.set_materials(scene.materials);
+  EXPECT_TRUE(test::has_same_bits(renderer.render(view).image, renderer_of(scene).render(view).image));
+  scene.lights.resize(20, scene.lights[0]);
+  renderer.set_lights(scene.lights);
+  EXPECT_TRUE(test::has_same_bits(renderer.render(view).image, renderer_of(scene).render(view).image));
+  scene.environment.ambient = vec3(0.2F);
+  renderer.set_environment(scene.environment);
+  EXPECT_TRUE(test::has_same_bits(renderer.render(view).image, renderer_of(scene).render(view).image));
+  View hard = view;
+  hard.mode.integrator = Integrator::kWhitted;
+  EXPECT_TRUE(test::has_same_bits(renderer.render(hard).image, renderer_of(scene).render(hard).image));
+  scene = make_lamps();
+  renderer.set_environment(scene.environment);
+  renderer.set_lights(scene.lights);
+  renderer.set_materials(scene.materials);
+  EXPECT_TRUE(test::has_same_bits(renderer.render(view).image, first));
+}
+
+// Lamps that touch what they light, slivers, two lamps in one place, lamps of all sizes: pictures are finite, and a
+// lamp does not light its own plane.
+TEST_F(EmittersTest, ExtremeLampsGiveFinitePictures) {
+  View view = make_lamp_view(uvec2(16, 12));
+  const auto expect_finite = [&](const world::Scene& scene, const char* name) {
+    for (const vec3& pixel : renderer_of(scene).render(view).image.pixels) {
+      for (int i = 0; i < 3; ++i) ASSERT_TRUE(std::isfinite(pixel[i]) && pixel[i] >= 0.0F) << name;
+    }
+  };
+  const Material glow = make_glow(vec3(3.0F), true);
+  expect_finite(make_lit_floor(make_triangle(vec3(0, 1, 0), vec3(1, 1, 0), vec3(2, 1, 0)), glow), "no area");
+  expect_finite(make_lit_floor(make_triangle(vec3(0, 1, 0), vec3(1, 1, 0), vec3(0.5F, 1, 1e-6F)), glow), "sliver");
+  expect_finite(make_lit_floor(make_sheet(vec3(0, 0.5F, 0), vec3(0, 0.5F, 0), vec3(0.5F, 0, 0)), glow), "touching");
+  expect_finite(make_lit_floor(make_sheet(vec3(0, 0, 0), vec3(0, 0.5F, 0), vec3(0.5F, 0, 0)), glow), "crossing");
+  expect_finite(make_lit_floor(world::Sphere{vec3(0.0F), 0.5F}, glow), "sunk ball");
+  for (const float size : {1e-15F, 1e-6F, 1e6F, 1e12F}) {
+    expect_finite(make_lit_floor(make_sheet(vec3(0, size, 0), vec3(size, 0, 0), vec3(0, 0, size)), glow), "size");
+    expect_finite(make_lit_floor(world::Sphere{vec3(0.0F, 2.0F * size, 0.0F), size}, glow), "ball");
+  }
+  // The plane of a lamp that lies in it is not lit by the lamp: a sheet on a sheet.
+  world::Scene scene =
+      make_lit_floor(make_sheet(vec3(0, 0, 0), vec3(0, 0, 0.5F), vec3(0.5F, 0, 0)), make_glow(vec3(1.0F)));
+  scene.objects[0].shape = make_sheet(vec3(0, 0, 0), vec3(0, 0, 4.0F), vec3(4.0F, 0, 0));
+  view.camera.eye = vec3(2.0F, 0.3F, 2.0F);
+  view.camera.look = vec3(0, -1, 0);
+  view.camera.up = vec3(0, 0, -1);
+  EXPECT_EQ(mean_of(scene, view), 0.0);
+  // Two lamps in one place are one lamp, as the camera sees it.
+  scene = make_lit_floor(make_sheet(vec3(0, 1, 0), vec3(0, 0, 0.5F), vec3(0.5F, 0, 0)), glow);
+  const double one = mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F)));
+  scene.objects.push_back(scene.objects[1]);
+  EXPECT_NEAR(mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F))) / one, 2.0, 0.01);
+}
+
+TEST_F(EmittersTest, NumbersAreSharedByWeight) {
+  const std::vector<double> weights = {1.0, 0.0, 3.0, 1e-30};
+  const std::vector<uint64_t> begins = share_numbers(weights);
+  ASSERT_EQ(begins.size(), 5U);
+  EXPECT_EQ(begins.front(), 0U);
+  EXPECT_EQ(begins.back(), uint64_t{1} << 32);
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const double chance = std::ldexp(static_cast<double>(begins[i + 1] - begins[i]), -32);
+    EXPECT_NEAR(chance, (1.0 - kEvenShare) * weights[i] / 4.0 + kEvenShare / 4.0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace promin
