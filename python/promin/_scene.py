@@ -152,6 +152,7 @@ class Scene:
     _base: _promin.Scene | None
     _native: _promin.Scene | None
     _native_center: NDArray[np.float64]
+    _native_moves: dict[int, NDArray[np.float64]]
 
     def __init__(self, *, center: ArrayLike | None = None) -> None:
         """Creates an empty scene. center: the point (3,) that is subtracted from coordinates before they are rounded.
@@ -657,7 +658,7 @@ class Scene:
         self._native = None
         self._native_center = np.zeros(3)
         # The translation from the stored vertices of an object to the caller's, if it is not 0.
-        self._native_moves: dict[int, NDArray[np.float64]] = {}
+        self._native_moves = {}
 
     def _forget_native(self) -> None:
         self._native = None
