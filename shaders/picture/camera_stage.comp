@@ -418,15 +418,15 @@ void leave_pixel(Path path, ShadingPoint point, vec3 light, vec3 own, bool is_on
     if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
     ++pass_count;
   } else if (has(FEATURE_SCATTERING)) {
-    if (!is_on_surface || !leads_on(point, 0u) || !scatter(path, point, 0u, false)) {
+    if (is_on_surface && leads_on(point, 0u) && scatter(path, point, 0u, false)) {
+      uint number = put_path(path);
+      if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
+      bool is_refracted = has(FEATURE_GLASS) && path.kind == LOG_REFRACTION;
+      refraction_count += is_refracted ? 1u : 0u;
+      ray_count.z += is_refracted ? 0u : 1u;
+    } else {
       finish_path(path);
-      return;
     }
-    uint number = put_path(path);
-    if (has(FEATURE_GLASS)) store_glass(number, path, 0u, false);
-    bool is_refracted = has(FEATURE_GLASS) && path.kind == LOG_REFRACTION;
-    refraction_count += is_refracted ? 1u : 0u;
-    ray_count.z += is_refracted ? 0u : 1u;
   } else if (has(FEATURE_GLASS) && is_on_surface) {
     leave_glass(path, point);
   } else if (is_on_surface && leads_on(point, 0u) && bounce(path, point)) {

@@ -81,14 +81,20 @@ float meet_face(inout ShadingPoint point, vec3 direction, uvec2 media, uint colo
   Face face;
   make_face(number, is_thin || !lets_through, lets_through && leaves, media, color, face);
   // After a diffuse surface, rays run straight through glass, like shadow rays.
-  bool is_straight = has(FEATURE_SCATTERING) && least_roughness > 0.0;
-  if (is_straight) face = Face(min(face.from, face.to), max(face.from, face.to), face.beyond);
+  bool bends = face.from != face.to;
+  if (has(FEATURE_SCATTERING)) {
+    bool is_straight = least_roughness > 0.0;
+    bends = bends && !is_straight;
+    float from = is_straight ? min(face.from, face.to) : face.from;
+    face.to = is_straight ? max(face.from, face.to) : face.to;
+    face.from = from;
+  }
   vec3 normal = seen > 0.0 ? point.normal : point.geometric_normal;
   float cosine = clamp(-dot3(normal, direction), SMALLEST_NORMAL, 1.0);
   float k = cosine2_beyond(face, cosine);
   float beyond = sqrt(max(k, 0.0));
   bool is_total = !(k > 0.0);
-  bool is_bent = lets_through && !is_thin && !is_straight && face.from != face.to;
+  bool is_bent = lets_through && !is_thin && bends;
   if (is_bent) {
     vec3 refracted;
     is_total = !refract_at(point, direction, face, refracted);
