@@ -282,7 +282,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
     vec3 beyond = is_of_camera ? radiance_behind(ray.origin, normalize3(ray.direction), true)
                                : radiance_beyond(ray.origin, ray.direction, path.roughness);
-    if (has(FEATURE_SCATTERING)) beyond *= environment_share;
+    if (has(FEATURE_SCATTERING)) beyond = share_of_ray(beyond);
     if (has(FEATURE_UNLIT_SHARE) && is_of_camera) add_backdrop(path, beyond);
     add_radiance(path, beyond, 1.0);
     add_beyond(path, beyond);
@@ -301,11 +301,10 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   make_shading_point(ray, path.direction, hit, path.cone_width, path.media, color_of(path.weight), point);
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
-  // The sources contribute the rest of the light of surfaces that are sources. Planes are none.
+  // Planes and unlit surfaces are no sources, so their light arrives by rays alone.
   if (has(FEATURE_SCATTERING) && has(FEATURE_EMITTERS) && model_of(point) != MATERIAL_UNLIT &&
       hit.primitive < first_unbounded()) {
-    precise vec3 share = environment_share * own;
-    own = share;
+    own = share_of_ray(own);
   }
   log_own_light(own);
   if (begins_bounce(turn)) {
@@ -322,7 +321,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     bool is_of_camera = has(FEATURE_BLENDING) && bounces == 0u;
     vec3 behind = is_of_camera ? radiance_behind(ray.origin, path.direction, true)
                                : radiance_beyond(ray.origin, ray.direction, path.roughness);
-    if (has(FEATURE_SCATTERING)) behind *= environment_share;
+    if (has(FEATURE_SCATTERING)) behind = share_of_ray(behind);
     precise vec3 shown = path.weight * behind;
     if (catches_shadows(point)) path.weight = shown;
     store_vector(record_of_weight(number, turn), path.weight);

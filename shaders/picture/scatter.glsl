@@ -9,6 +9,12 @@ float environment_share = 1.0;  // fraction of the environment's light that the 
                                 // rest is the light of a source
 bool is_diffused = false;       // true after a diffuse surface
 
+// Returns the part of the light of a source that the path's ray adds.
+vec3 share_of_ray(vec3 light) {
+  precise vec3 share = environment_share * light;
+  return share;
+}
+
 // The first of the pairs of dimensions that choose directions. The pairs of sources have smaller numbers.
 const uint FIRST_DIRECTION_PAIR = 0x40000000u;
 // The roughness that surfaces have at least after a diffuse one.
