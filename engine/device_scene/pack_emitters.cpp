@@ -107,7 +107,9 @@ class EmissiveFinder {
         add(i, part, geometry.primitives[i].c.y, areas[part], material_of(i));
       }
     }
-    for (uint32_t i = 0; i < ranges.instance_count; ++i) add_instance(ranges.first_instance + INSTANCE_RECORDS * i);
+    if (!has_too_many_emitters(geometry, ranges, materials)) {
+      for (uint32_t i = 0; i < ranges.instance_count; ++i) add_instance(ranges.first_instance + INSTANCE_RECORDS * i);
+    }
     // The tree determines the order of primitives, and it may refer to a primitive several times.
     const auto key = [](const EmissiveSurface& s) { return std::tuple(s.order, s.part, s.primitive); };
     std::ranges::sort(found_, {}, key);
@@ -158,7 +160,7 @@ class EmissiveFinder {
     const uint32_t material = look.frame.w;
     if (material != NO_INSTANCE_MATERIAL && !emits_[material]) return;
     const std::array<dvec3, 3> rows = {vector_of(look.frame), vector_of(look.lo), vector_of(look.hi)};
-    const auto mesh = std::ranges::find(ranges_.meshes, map.children.y, &MeshRange::root);
+    const auto mesh = std::ranges::lower_bound(ranges_.meshes, map.children.y, {}, &MeshRange::root);
     for (uint32_t i = mesh->first; i < mesh->end; ++i) {
       const uint32_t used = material == NO_INSTANCE_MATERIAL ? material_of(i) : material;
       if (!emits_[used]) continue;
@@ -236,6 +238,34 @@ EmitterRanges::EmitterRanges(const PackedScene& packed)
       first_instance(packed.first_instance),
       instance_count(static_cast<uint32_t>(packed.instance_count)),
       first_order(packed.numbers.first_order) {}
+
+bool has_too_many_emitters(const EmitterGeometry& geometry, const EmitterRanges& ranges,
+                           std::span<const Material> materials) {
+  if (std::ranges::none_of(materials, emits_light)) return false;
+  std::vector<bool> emits;
+  for (const Material& material : materials) emits.push_back(emits_light(material));
+  const auto material_of = [&](uint32_t primitive) {
+    return geometry.surfaces[primitive].corners_material.w & SURFACE_MATERIAL_MASK;
+  };
+  // For each mesh, the number of triangles that emit light by their own materials.
+  std::vector<uint64_t> own_counts(ranges.meshes.size(), 0);
+  for (size_t i = 0; i < ranges.meshes.size(); ++i) {
+    for (uint32_t k = ranges.meshes[i].first; k < ranges.meshes[i].end; ++k)
+      own_counts[i] += emits[material_of(k)] ? 1 : 0;
+  }
+  uint64_t count = 0;
+  for (uint32_t i = 0; i < ranges.instance_count; ++i) {
+    const uint32_t record = ranges.first_instance + INSTANCE_RECORDS * i;
+    const uint32_t material = geometry.nodes[record + 1].frame.w;
+    const auto mesh = std::ranges::lower_bound(ranges.meshes, geometry.nodes[record].children.y, {}, &MeshRange::root);
+    if (material == NO_INSTANCE_MATERIAL) {
+      count += own_counts[static_cast<size_t>(mesh - ranges.meshes.begin())];
+    } else if (emits[material]) {
+      count += mesh->end - mesh->first;
+    }
+  }
+  return count > kMostInstancedEmitters;
+}
 
 std::vector<EmissiveSurface> find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,
                                                     std::span<const Material> materials,

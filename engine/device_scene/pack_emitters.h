@@ -61,6 +61,7 @@ struct EmissionTextures {
 struct EmitterRanges {
   /// The number of primitives of the tree that belong to no mesh of instances. They come first.
   uint32_t own_count = 0;
+  /// In the order of their roots.
   std::vector<MeshRange> meshes;
   uint32_t first_instance = 0;
   uint32_t instance_count = 0;
@@ -69,6 +70,12 @@ struct EmitterRanges {
 
   explicit EmitterRanges(const PackedScene& packed);
 };
+
+/// The largest number of emissive triangles of instances that are sources. Each takes about 100 bytes.
+inline constexpr uint64_t kMostInstancedEmitters = uint64_t{1} << 22;
+/// Returns whether instances have more emissive triangles than that. They then light nothing.
+bool has_too_many_emitters(const EmitterGeometry& geometry, const EmitterRanges& ranges,
+                           std::span<const Material> materials);
 
 /// Returns all primitives whose materials emit light, sorted by order. The result does not depend on the tree.
 std::vector<EmissiveSurface> find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,

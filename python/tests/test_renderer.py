@@ -197,6 +197,8 @@ def test_the_pipeline_is_that_of_the_first_picture(box: promin.Scene, monkeypatc
 
 def test_soft_light_has_soft_shadows_and_a_ground(box: promin.Scene) -> None:
     view = promin.View(size=(24, 18), spp=4)
+    # Light that the floor scatters reaches the sides of the box.
+    box.add_triangles([[-4, -1, -4], [0, -1, 6], [4, -1, -4]], [[0, 1, 2]])
     soft = promin.Renderer(box, light="soft", view=view)
     assert soft.materials[-1].catches_shadows and soft.lights[-1].angle > 0.17  # type: ignore[attr-defined]
     assert (soft.render().rgb == soft.render(integrator="direct").rgb).all()

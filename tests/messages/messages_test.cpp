@@ -91,6 +91,7 @@ const std::set<std::string> kNotProvoked = {
     // A test would take long to reach these sizes.
     "bvh.primitives.many",
     "bvh.tree.wrong",
+    "scene.emitters.many",
     "scene.glasses.many",
     // These need pictures in formats that promin does not write.
     "picture.channels",

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "core/stopwatch.h"
 #include "device/device.h"
+#include "device_scene/pack_emitters.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin {
@@ -37,6 +40,13 @@ void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene,
   stats.upload_ms = uploading.ms();
   stats.warnings = packed.warnings;
   if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
+  if (has_too_many_emitters({packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, {}},
+                            EmitterRanges(packed), scene.materials)) {
+    stats.warnings.push_back(
+        {"scene.emitters.many",
+         fmt::format("instances have more than {} triangles that emit light", kMostInstancedEmitters),
+         scene.file.string(), "they light no other surfaces"});
+  }
   mask_cutoffs_ = packed.mask_cutoffs;
 }
 
