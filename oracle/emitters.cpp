@@ -135,7 +135,7 @@ LampPoint sample_sphere(const world::Sphere& sphere, const Vector& position, con
   const Real half_chord = std::sqrt(std::max((radius - aside) * (radius + aside), Real(0)));
   lamp.place = position + (is_inside ? along + half_chord : along - half_chord) * direction;
   lamp.normal = glm::normalize(lamp.place - Vector(sphere.center));
-  if (is_on && !is_inside) return lamp;
+  if (is_on && (!is_inside || glm::dot(facing, direction) <= 0)) return lamp;
   lamp.inverse_density = 4 * kLampPi * std::sin(half_angle / 2) * std::sin(half_angle / 2);
   return lamp;
 }

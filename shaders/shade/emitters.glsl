@@ -176,8 +176,8 @@ LampPoint point_of_triangle(SeenTriangle seen, vec2 u) {
       direction = sample_cone(normalize3(seen.height > 0.0 ? -seen.normal : seen.normal), 1.0).direction;
     }
     vec2 weights = weights_in_direction(seen, direction);
-    is_seen = seen.solid_angle <= LARGEST_TRIANGLE_ANGLE ||
-              (weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0);
+    precise float both = weights.x + weights.y;
+    is_seen = seen.solid_angle <= LARGEST_TRIANGLE_ANGLE || (weights.x >= 0.0 && weights.y >= 0.0 && both <= 1.0);
     weights = clamp(weights, vec2(0.0), vec2(1.0));
     precise float sum = max(weights.x + weights.y, 1.0);
     precise vec2 inside = weights / sum;
@@ -200,7 +200,8 @@ struct LampDirection {
 float side_of_sphere(vec3 to_center, float radius, vec3 position, vec3 facing) {
   float distance = length3(to_center);
   precise float doubt = UNIT_ROUNDOFF * (16.0 * max_abs(position) + 32.0 * (radius + max_abs(to_center)));
-  if (abs(distance - radius) <= doubt) return dot3(facing, to_center) > 0.0 ? 1.0 : 0.0;
+  precise float height = distance - radius;
+  if (abs(height) <= doubt) return dot3(facing, to_center) > 0.0 ? 1.0 : 0.0;
   return distance < radius ? 1.0 : -1.0;
 }
 
@@ -277,7 +278,7 @@ ShapePoint point_of_box(Primitive p, uint part, vec2 u) {
   precise vec2 in_face = 2.0 * u - 1.0;
   float side = (part & 1u) != 0u ? 1.0 : -1.0;
   vec3 place = axis == 0u ? vec3(side, in_face) : (axis == 1u ? vec3(in_face.y, side, in_face.x) : vec3(in_face, side));
-  vec3 along = side * vec3(axis == 0u ? 1.0 : 0.0, axis == 1u ? 1.0 : 0.0, axis == 2u ? 1.0 : 0.0);
+  precise vec3 along = side * vec3(axis == 0u ? 1.0 : 0.0, axis == 1u ? 1.0 : 0.0, axis == 2u ? 1.0 : 0.0);
   precise vec3 local = place * half_size;
   vec3 turn = box_turn(p);
   float w = scalar_of(turn);
@@ -462,5 +463,7 @@ LightSample sample_emitter(Emitter emitter, vec2 u, vec3 position, vec3 facing, 
   light.diffuse.xyz = radiance;
   light.specular.xyz = radiance;
   precise float strength = light.position.w * inverse_density / emitter.chance;
-  return LightSample(to_end, 1.0, is_dark ? 0.0 : strength);
+  // A point in the tangent plane of the lamp's point, up to rounding, receives no light: it may be the same point.
+  bool is_lit = abs(front) > height && !is_dark;
+  return LightSample(to_end, 1.0, is_lit ? strength : 0.0);
 }

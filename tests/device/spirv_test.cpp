@@ -117,9 +117,12 @@ class KernelTest : public testing::TestWithParam<Kernel> {};
 // of their hash.
 TEST(KernelsTest, OnlyFeaturesWithSamplePointsHaveTheirHash) {
   constexpr uint32_t kOfHash = 0xB82F1E52;
-  constexpr uint64_t kSamples = uint64_t{1} << 55 | uint64_t{1} << 39 | uint64_t{1} << 24;
+  constexpr uint64_t kSamples = uint64_t{1} << 55 | uint64_t{1} << 39 | uint64_t{7} << 27 | uint64_t{1} << 24;
   static_assert(static_cast<uint32_t>(layout::FEATURE_SAMPLED_LIGHT) == 55);
   static_assert(static_cast<uint32_t>(layout::FEATURE_LENS) == 39);
+  static_assert(static_cast<uint32_t>(layout::FEATURE_EMITTERS) == 27);
+  static_assert(static_cast<uint32_t>(layout::FEATURE_CHOSEN_LIGHTS) == 28);
+  static_assert(static_cast<uint32_t>(layout::FEATURE_SCATTERING) == 29);
   static_assert(static_cast<uint32_t>(layout::FEATURE_SKY_LIGHT) == 24);
   const auto has_hash = [&](std::span<const uint32_t> spirv, uint64_t mask) {
     const std::vector<uint32_t> module = specialize(spirv, constants_of(mask, 1, 0));
@@ -200,14 +203,14 @@ TEST(SpecializeTest, UsesOfOneSceneShareTheKernelsThatDoNotDiffer) {
   for (uint64_t debug_view = 1; debug_view <= layout::DEBUG_VIEW_OCCLUSION; ++debug_view) {
     masks.push_back(kScene | debug_view << (32 + layout::DEBUG_VIEW_SHIFT));
   }
-  ASSERT_EQ(masks.size(), 18U);
+  ASSERT_EQ(masks.size(), 21U);
   const auto count_kernels = [&](std::span<const uint32_t> spirv) {
     std::set<std::vector<uint32_t>> kernels;
     for (const uint64_t mask : masks) kernels.insert(specialize(spirv, constants_of(mask, 1, 0)));
     return kernels.size();
   };
-  EXPECT_EQ(count_kernels(k_camera_stage_spirv), 18U);
-  EXPECT_EQ(count_kernels(k_follow_paths_spirv), 8U);
+  EXPECT_EQ(count_kernels(k_camera_stage_spirv), 19U);
+  EXPECT_EQ(count_kernels(k_follow_paths_spirv), 9U);
   EXPECT_EQ(count_kernels(k_trace_shadow_rays_spirv), 3U);
   EXPECT_EQ(count_kernels(k_list_rays_spirv), 1U);
   EXPECT_EQ(count_kernels(k_place_rays_spirv), 1U);

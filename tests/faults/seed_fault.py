@@ -138,7 +138,7 @@ FAULTS = {
     "lamp_area_off": {"shade/emitters.glsl": [(r"0\.5 \* abs\(seen\.height\)", "0.51 * abs(seen.height)")]},
     "lamp_chance_off": {"shade/emitters.glsl": [(r"/ emitter\.chance;", "/ (1.02 * emitter.chance);")]},
     "lamp_ball_off": {"shade/emitters.glsl": [(r"6\.28318531 \* cap;", "6.4 * cap;")]},
-    "lamp_back_shines": {"shade/emitters.glsl": [(r"is_dark \? 0\.0 : strength", "strength")]},
+    "lamp_back_shines": {"shade/emitters.glsl": [(r" && !is_dark", "")]},
     "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},
     # These are faults of glass (tests/gpu/oracle_picture_test.cpp).
     "absorption_per_face": {"shade/glass.glsl": [(r"= -absorption \* way;", "= -absorption;")]},

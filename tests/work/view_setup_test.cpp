@@ -284,10 +284,10 @@ TEST(LightUpTest, LightAndGroundStandOnTheScenesUp) {
   light_up(lying, {.light = LightChoice::kSoft}, {}, z);
   light_up(slanted, {.light = LightChoice::kSoft}, {}, vec3(0.6F, 0.0F, 0.8F));
   EXPECT_EQ(vec3(plane_of(lying).normal), z);
-  // The ball of radius 1 lies at (1, 2, 3).
-  EXPECT_NEAR(plane_of(standing).point.y, 1.0, 1e-3);
-  EXPECT_NEAR(plane_of(lying).point.z, 2.0, 1e-3);
-  EXPECT_NEAR(glm::dot(plane_of(slanted).point, plane_of(slanted).normal), 2.0, 1e-3);
+  // The ball of radius 0.5 lies at (1, 2, 3).
+  EXPECT_NEAR(plane_of(standing).point.y, 1.5, 1e-3);
+  EXPECT_NEAR(plane_of(lying).point.z, 2.5, 1e-3);
+  EXPECT_NEAR(glm::dot(plane_of(slanted).point, plane_of(slanted).normal), 2.5, 1e-3);
   EXPECT_TRUE(validate(slanted).empty());
 }
 

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "core/stopwatch.h"
@@ -44,7 +43,7 @@ void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene,
                             EmitterRanges(packed), scene.materials)) {
     stats.warnings.push_back(
         {"scene.emitters.many",
-         fmt::format("instances have more than {} triangles that emit light", kMostInstancedEmitters),
+         "instances have more than " + std::to_string(kMostInstancedEmitters) + " triangles that emit light",
          scene.file.string(), "they light no other surfaces"});
   }
   mask_cutoffs_ = packed.mask_cutoffs;
