@@ -96,7 +96,7 @@ TEST_F(MotionCliTest, FollowsTheCamera) {
   EXPECT_NEAR(moved[8 + 4].y, -0.5F * pixel, 1e-5F);
   // A turntable turns around x = 4, the middle of the picture, by 45 degrees a frame. A pixel has a unit. The bar lies
   // in the plane of the axis, so its distances from the middle shrink.
-  render({"bar.gltf", "--turntable", "8", "--frames", "0", "--size", "16x16", "--aov", "motion"}, "b.exr");
+  render({"bar.gltf", "--turntable", "8", "--frames", "0", "--size", "16x16", "-s", "1", "--aov", "motion"}, "b.exr");
   const std::vector<vec2> turned = read_movements("b.exr");
   ASSERT_EQ(turned.size(), 256U);
   EXPECT_NEAR(turned[8 * 16 + 4].x, 3.5F * (1.0F - std::sqrt(0.5F)), 1e-5F);
