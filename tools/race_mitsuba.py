@@ -5,9 +5,9 @@
 
 The scene is a glTF file of meshes with diffuse materials (factors only) and one camera. Mitsuba renders its emissive
 meshes; a second file may have the same scene with an area light for promin. Both programs render the same picture. The
-errors are those of the pixels that are not next to an emissive surface, compared with a picture of Mitsuba with many samples. The
-times are CPU times of tracing on all cores, so other programs disturb them little: the difference of a run and of a
-short run, which contains loading and compiling. They are medians of several runs that alternate.
+errors are those of the pixels that are not next to an emissive surface, compared with a picture of Mitsuba with many
+samples. The times are CPU times of tracing on all cores, so other programs disturb them little: the difference of a run
+and of a short run, which contains loading and compiling. They are medians of several runs that alternate.
 
 Needs `pip install mitsuba numpy`. Mitsuba's LLVM variant needs LLVM 16 or later (DRJIT_LIBLLVM_PATH).
 """

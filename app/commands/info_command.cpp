@@ -27,6 +27,7 @@
 #include "promin/load_scene.h"
 #include "promin/motion.h"
 #include "scene/features.h"
+#include "scene/upright.h"
 #include "textures/pack_images.h"
 #include "work/pictures/load_posed.h"
 #include "work/pictures/scene_counts.h"
@@ -118,7 +119,7 @@ struct SkyDescription {
 std::string describe_sky(const Environment& environment) {
   std::string text = std::visit(SkyDescription(), environment.sky);
   if (!environment.has_sky()) return text;
-  if (environment.up != vec3(0.0F, 1.0F, 0.0F)) {
+  if (environment.up != kUsualUp) {
     text += fmt::format(", up is {:.4g} {:.4g} {:.4g}", environment.up.x, environment.up.y, environment.up.z);
   }
   if (environment.rotation != 0.0F) {

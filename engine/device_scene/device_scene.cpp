@@ -83,6 +83,10 @@ constexpr uint64_t align(uint64_t offset, uint64_t alignment) {
   return divide_up(offset, alignment) * alignment;
 }
 
+EmitterGeometry geometry_of(const PackedScene& packed) {
+  return {packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, packed.surfaces.vertices.uvs};
+}
+
 /// Rounds the size of the stack up, so that scenes of about the same depth share pipelines.
 uint32_t round_stack(uint32_t entries) {
   return divide_up(entries, 8U) * 8U;
@@ -177,10 +181,8 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   lights_.assign(shading.lights.begin(), shading.lights.end());
   materials_.assign(shading.materials.begin(), shading.materials.end());
   emission_maps_ = make_emission_maps(packed.surfaces.images, textures_, materials_);
-  const std::vector<vec4>& uvs = packed.surfaces.vertices.uvs;
-  uv_count_ = uvs.size();
-  emissive_surfaces_ = find_emissive_surfaces({packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, uvs},
-                                              emitter_ranges_, materials_, {textures_, emission_maps_});
+  uv_count_ = packed.surfaces.vertices.uvs.size();
+  find_emissive(geometry_of(packed));
   put_direct_sources(tail, shading.environment);
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : head.parts()) write(*shading_, placed);
@@ -197,7 +199,7 @@ void DeviceScene::set_materials(std::span<const Material> materials) {
   for (size_t i = 0; i < materials.size(); ++i) {
     is_new = is_new || (emits_light(materials[i]) && !emits_light(materials_[i]));
   }
-  const bool may_change = is_new || !emissive_surfaces_.empty();
+  const bool may_change = is_new || !emissive_.surfaces.empty();
   materials_.assign(materials.begin(), materials.end());
   if (is_new) find_emissive_again();
   if (may_change) put_direct_sources(tail, environment_);
@@ -253,6 +255,7 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   constants_.tree_bounds = center_and_radius(upper.bounds);
   constants_.glass_solids = std::move(glass_solids);
   emitter_ranges_.first_instance = upper.first_record;
+  if (std::ranges::any_of(materials_, emits_light)) find_emissive_again();
   move_sources();
 }
 
@@ -274,13 +277,12 @@ void DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const 
   take_tree(packed);
   constants_.glass_solids = std::move(glass_solids);
   emitter_ranges_ = EmitterRanges(packed);
+  find_emissive(geometry_of(packed));
   move_sources();
 }
 
 void DeviceScene::move_sources() {
-  const bool has_surfaces = std::ranges::any_of(materials_, emits_light);
-  if (!has_surfaces && source_features_ == FeatureMask()) return;
-  if (has_surfaces) find_emissive_again();
+  if (emissive_.surfaces.empty() && source_features_ == FeatureMask()) return;
   Tail tail = tail_;
   put_direct_sources(tail, environment_);
   write_tail(std::move(tail));
@@ -303,7 +305,7 @@ void DeviceScene::put_direct_sources(Tail& tail, const Environment& environment)
   PackedLights& lights = tail.lights;
   lights.records.resize(lights.light_count);
   lights.numbers.resize(lights.light_count);
-  DirectSources direct = pack_direct_sources(lights_, emissive_surfaces_, materials_, constants_.tree_bounds.w);
+  DirectSources direct = pack_direct_sources(lights_, emissive_.surfaces, materials_, constants_.tree_bounds.w);
   lights.first_direct = direct.are_lights_chosen ? lights.light_count : 0;
   for (const layout::LightRecord& record : direct.records) {
     lights.records.push_back(record);
@@ -317,20 +319,20 @@ void DeviceScene::put_direct_sources(Tail& tail, const Environment& environment)
   }
   // The tables follow the records, and elements that are lights are counted from the first source.
   const auto sources = static_cast<uint32_t>(lights.records.size()) - lights.first_direct;
-  const uint32_t first_texel = layout::LIGHT_TEXELS * sources + 1;
+  const uint32_t first_texel = layout::LIGHT_TEXELS * sources;
   for (uint32_t i = 0; i < direct.records.size(); ++i) lights.records[lights.light_count + i].kind.w += first_texel;
   for (size_t i = 1; i < direct.table.size(); i += layout::EMITTER_TEXELS) {
     if (direct.table[i].y == layout::EMITTER_IS_LIGHT) direct.table[i].x -= lights.first_direct;
-  }
-  if (!direct.table.empty()) {
-    const auto count = static_cast<uint32_t>(direct.table.size()) / layout::EMITTER_TEXELS;
-    direct.table.insert(direct.table.begin(), uvec4(count, 0, 0, 0));
   }
   lights.tables = std::move(direct.table);
   source_features_ = {};
   if (direct.has_surfaces) source_features_ |= layout::FEATURE_EMITTERS;
   // A light that is switched on later needs no other kernel.
   if (direct.may_choose_lights) source_features_ |= layout::FEATURE_CHOSEN_LIGHTS;
+}
+
+void DeviceScene::find_emissive(const EmitterGeometry& geometry) {
+  emissive_ = find_emissive_surfaces(geometry, emitter_ranges_, materials_, {textures_, emission_maps_});
 }
 
 void DeviceScene::find_emissive_again() {
@@ -344,8 +346,7 @@ void DeviceScene::find_emissive_again() {
   if (!uvs.empty()) {
     shading_->read(std::as_writable_bytes(std::span(uvs)), uint64_t{constants_.first_texture.x} * sizeof(vec4));
   }
-  emissive_surfaces_ = find_emissive_surfaces({primitives, surfaces, nodes, uvs}, emitter_ranges_, materials_,
-                                              {textures_, emission_maps_});
+  find_emissive({primitives, surfaces, nodes, uvs});
 }
 
 std::span<const uint32_t> DeviceScene::source_numbers(Integrator integrator) const {

@@ -58,6 +58,8 @@ class DeviceScene {
   std::span<const uint32_t> source_numbers(Integrator integrator) const;
   /// Returns the features that the sources of Integrator::kDirect need, without those of lights and sky.
   FeatureMask source_features() const { return source_features_; }
+  /// Returns whether instances have too many emissive triangles to be sources (EmissiveSurfaces).
+  bool leaves_out_emitters() const { return emissive_.leaves_out_instances; }
   uint32_t stack_size() const { return stack_size_; }
   /// Returns a number that changes whenever kernels must be bound to the scene again: because a buffer is another one,
   /// the stack has grown, or there are more or fewer sources of light.
@@ -119,9 +121,11 @@ class DeviceScene {
   PackedMaterials pack_materials(std::span<const Material> materials) const;
   /// Replaces the sources of Integrator::kDirect that are no lights.
   void put_direct_sources(Tail& tail, const Environment& environment);
-  /// Finds the emissive surfaces of the current materials again, in the geometry on the device.
+  /// Finds the emissive surfaces of the current materials.
+  void find_emissive(const EmitterGeometry& geometry);
+  /// Does the same in the geometry on the device.
   void find_emissive_again();
-  /// Finds the sources of Integrator::kDirect again after the geometry has moved.
+  /// Replaces the sources of Integrator::kDirect after emissive surfaces or the bounds of the scene have moved.
   void move_sources();
   std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
   /// Copies the changed parts of the tail to the device, or the whole tail to a larger buffer if needed. If this buffer
@@ -154,7 +158,7 @@ class DeviceScene {
   EmissionMaps emission_maps_;
   /// The number of vertices with texture coordinates.
   size_t uv_count_ = 0;
-  std::vector<EmissiveSurface> emissive_surfaces_;
+  EmissiveSurfaces emissive_;
   FeatureMask source_features_;
   SceneConstants constants_;
   uint32_t stack_size_;

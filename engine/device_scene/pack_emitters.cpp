@@ -107,7 +107,8 @@ class EmissiveFinder {
         add(i, part, geometry.primitives[i].c.y, areas[part], material_of(i));
       }
     }
-    if (!has_too_many_emitters(geometry, ranges, materials)) {
+    leaves_out_instances_ = count_of_instances() > kMostInstancedEmitters;
+    if (!leaves_out_instances_) {
       for (uint32_t i = 0; i < ranges.instance_count; ++i) add_instance(ranges.first_instance + INSTANCE_RECORDS * i);
     }
     // The tree determines the order of primitives, and it may refer to a primitive several times.
@@ -122,7 +123,7 @@ class EmissiveFinder {
       surface.object = static_cast<uint32_t>(next - ranges.first_order.begin()) - 1;
     }
   }
-  std::vector<EmissiveSurface> take() { return std::move(found_); }
+  EmissiveSurfaces take() { return {std::move(found_), leaves_out_instances_}; }
 
  private:
   uint32_t material_of(uint32_t primitive) const {
@@ -154,14 +155,44 @@ class EmissiveFinder {
     return textures_.maps[texture.image]->mean_on(places, texture);
   }
 
+  /// Returns the index of the mesh of the instance with this record.
+  size_t mesh_of(uint32_t record) const {
+    const uint32_t root = geometry_.nodes[record].children.y;
+    const auto mesh = std::ranges::lower_bound(ranges_.meshes, root, {}, &MeshRange::root);
+    return static_cast<size_t>(mesh - ranges_.meshes.begin());
+  }
+
+  /// Returns the number of emissive triangles of all instances.
+  uint64_t count_of_instances() const {
+    // For each mesh, the number of triangles that emit light by their own materials.
+    std::vector<uint64_t> own_counts(ranges_.meshes.size(), 0);
+    for (size_t i = 0; i < ranges_.meshes.size(); ++i) {
+      for (uint32_t k = ranges_.meshes[i].first; k < ranges_.meshes[i].end; ++k) {
+        own_counts[i] += emits_[material_of(k)] ? 1 : 0;
+      }
+    }
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < ranges_.instance_count; ++i) {
+      const uint32_t record = ranges_.first_instance + INSTANCE_RECORDS * i;
+      const uint32_t material = geometry_.nodes[record + 1].frame.w;
+      const size_t mesh = mesh_of(record);
+      if (material == NO_INSTANCE_MATERIAL) {
+        count += own_counts[mesh];
+      } else if (emits_[material]) {
+        count += ranges_.meshes[mesh].end - ranges_.meshes[mesh].first;
+      }
+    }
+    return count;
+  }
+
   void add_instance(uint32_t record) {
     const Node& map = geometry_.nodes[record];
     const Node& look = geometry_.nodes[record + 1];
     const uint32_t material = look.frame.w;
     if (material != NO_INSTANCE_MATERIAL && !emits_[material]) return;
     const std::array<dvec3, 3> rows = {vector_of(look.frame), vector_of(look.lo), vector_of(look.hi)};
-    const auto mesh = std::ranges::lower_bound(ranges_.meshes, map.children.y, {}, &MeshRange::root);
-    for (uint32_t i = mesh->first; i < mesh->end; ++i) {
+    const MeshRange& mesh = ranges_.meshes[mesh_of(record)];
+    for (uint32_t i = mesh.first; i < mesh.end; ++i) {
       const uint32_t used = material == NO_INSTANCE_MATERIAL ? material_of(i) : material;
       if (!emits_[used]) continue;
       std::array<dvec3, 3> corners = corners_of_record(geometry_.primitives[i]);
@@ -179,6 +210,7 @@ class EmissiveFinder {
   const EmissionTextures& textures_;
   std::vector<bool> emits_;
   std::vector<EmissiveSurface> found_;
+  bool leaves_out_instances_ = false;
 };
 
 /// An element of a table before it is packed.
@@ -239,37 +271,8 @@ EmitterRanges::EmitterRanges(const PackedScene& packed)
       instance_count(static_cast<uint32_t>(packed.instance_count)),
       first_order(packed.numbers.first_order) {}
 
-bool has_too_many_emitters(const EmitterGeometry& geometry, const EmitterRanges& ranges,
-                           std::span<const Material> materials) {
-  if (std::ranges::none_of(materials, emits_light)) return false;
-  std::vector<bool> emits;
-  for (const Material& material : materials) emits.push_back(emits_light(material));
-  const auto material_of = [&](uint32_t primitive) {
-    return geometry.surfaces[primitive].corners_material.w & SURFACE_MATERIAL_MASK;
-  };
-  // For each mesh, the number of triangles that emit light by their own materials.
-  std::vector<uint64_t> own_counts(ranges.meshes.size(), 0);
-  for (size_t i = 0; i < ranges.meshes.size(); ++i) {
-    for (uint32_t k = ranges.meshes[i].first; k < ranges.meshes[i].end; ++k)
-      own_counts[i] += emits[material_of(k)] ? 1 : 0;
-  }
-  uint64_t count = 0;
-  for (uint32_t i = 0; i < ranges.instance_count; ++i) {
-    const uint32_t record = ranges.first_instance + INSTANCE_RECORDS * i;
-    const uint32_t material = geometry.nodes[record + 1].frame.w;
-    const auto mesh = std::ranges::lower_bound(ranges.meshes, geometry.nodes[record].children.y, {}, &MeshRange::root);
-    if (material == NO_INSTANCE_MATERIAL) {
-      count += own_counts[static_cast<size_t>(mesh - ranges.meshes.begin())];
-    } else if (emits[material]) {
-      count += mesh->end - mesh->first;
-    }
-  }
-  return count > kMostInstancedEmitters;
-}
-
-std::vector<EmissiveSurface> find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,
-                                                    std::span<const Material> materials,
-                                                    const EmissionTextures& textures) {
+EmissiveSurfaces find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,
+                                        std::span<const Material> materials, const EmissionTextures& textures) {
   if (std::ranges::none_of(materials, emits_light)) return {};
   return EmissiveFinder(geometry, ranges, materials, textures).take();
 }
@@ -327,8 +330,8 @@ DirectSources pack_direct_sources(std::span<const Light> lights, std::span<const
     const Material& material = materials[surface.material];
     const double flux = emits_light(material) ? flux_of(surface, material) : 0.0;
     if (!(flux > 0.0)) continue;
-    elements.push_back({flux, uvec4(surface.primitive, surface.part, surface.order + 1,
-                                    std::bit_cast<uint32_t>(static_cast<float>(surface.area)))});
+    elements.push_back(
+        {flux, uvec4(surface.primitive, surface.part, 0, std::bit_cast<uint32_t>(static_cast<float>(surface.area)))});
     if (ends.empty() || surface.object != object) ends.emplace_back();
     object = surface.object;
     ends.back() = elements.size();

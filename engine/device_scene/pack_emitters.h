@@ -73,14 +73,15 @@ struct EmitterRanges {
 
 /// The largest number of emissive triangles of instances that are sources. Each takes about 100 bytes.
 inline constexpr uint64_t kMostInstancedEmitters = uint64_t{1} << 22;
-/// Returns whether instances have more emissive triangles than that. They then light nothing.
-bool has_too_many_emitters(const EmitterGeometry& geometry, const EmitterRanges& ranges,
-                           std::span<const Material> materials);
 
-/// Returns all primitives whose materials emit light, sorted by order. The result does not depend on the tree.
-std::vector<EmissiveSurface> find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,
-                                                    std::span<const Material> materials,
-                                                    const EmissionTextures& textures);
+/// The primitives whose materials emit light, sorted by order. They do not depend on the tree.
+struct EmissiveSurfaces {
+  std::vector<EmissiveSurface> surfaces;
+  /// True if instances have more than kMostInstancedEmitters emissive triangles. None of these is in `surfaces`.
+  bool leaves_out_instances = false;
+};
+EmissiveSurfaces find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,
+                                        std::span<const Material> materials, const EmissionTextures& textures);
 
 /// The largest number of sources that are asked one by one with Integrator::kDirect. If there are more, each sample
 /// asks one of them.

@@ -123,7 +123,7 @@ class UpperLevel {
 
   void place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const;
   void collect_own(const TwoLevels& input);
-  /// Returns the index of an object's instance; instance_count() if it has none.
+  /// Returns the index of an object's instance; instance_count() for an object without an instance.
   size_t find(uint32_t object) const;
 
   std::vector<SharedMesh> meshes_;

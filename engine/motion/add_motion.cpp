@@ -52,7 +52,7 @@ class Raster {
   dmat3 film_from_world_;
 };
 
-/// Returns the movement between two places. It is 0 if there is none that fp32 can represent.
+/// Returns the movement between two places. It is 0 if a place is missing or if fp32 cannot represent it.
 vec2 difference_of(const std::optional<dvec2>& from, const std::optional<dvec2>& to) {
   if (!from || !to) return vec2(0.0F);
   const vec2 difference(*to - *from);

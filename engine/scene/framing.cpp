@@ -83,12 +83,6 @@ dvec3 turn_around(const dvec3& v, const dvec3& axis, double degrees) {
   return turn.y * v + turn.x * glm::cross(axis, v) + (1.0 - turn.y) * glm::dot(axis, v) * axis + 0.0;
 }
 
-dvec3 normalize_up(const vec3& up) {
-  const double length = glm::length(dvec3(up));
-  if (length > 0.0 && std::isfinite(length)) return dvec3(up) / length;
-  throw UsageError({"framing.up", "the scene's up direction is zero or not finite", "framing", "give a direction"});
-}
-
 void check_aspect_ratio(float aspect_ratio) {
   if (aspect_ratio > 0.0F && std::isfinite(aspect_ratio)) return;
   throw UsageError({"framing.aspect", "the aspect ratio is not positive and finite", "framing",
@@ -285,6 +279,12 @@ Framing assumed_framing(const Scene& scene, const MainPart& part, const dmat3& t
 }
 
 }  // namespace
+
+dvec3 normalize_up(const vec3& up) {
+  const double length = glm::length(dvec3(up));
+  if (length > 0.0 && std::isfinite(length)) return dvec3(up) / length;
+  throw UsageError({"framing.up", "the scene's up direction is zero or not finite", "framing", "give a direction"});
+}
 
 std::span<const std::string_view> framing_names() {
   using std::string_view_literals::operator""sv;

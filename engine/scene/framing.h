@@ -19,6 +19,9 @@ Bounds frame_of(const Scene& scene);
 /// from all positions around the axis `up` through the middle of frame_of(scene). Throws the same errors.
 Camera fit_turning_camera(const Scene& scene, const Camera& camera, const vec3& up, float aspect_ratio, float fit);
 
+/// Returns an upward direction as a unit vector. Throws UsageError if it is zero or not finite.
+dvec3 normalize_up(const vec3& up);
+
 /// Returns the middle of a box that is not empty, without the rounding of Bounds::center().
 inline dvec3 middle_of(const Bounds& bounds) {
   return 0.5 * (dvec3(bounds.lo) + dvec3(bounds.hi));

@@ -29,7 +29,7 @@ inline bool is_in_range(const Bounds& box, const dmat4& world_from_object) {
 }
 
 /// Returns the problem of the transform of an object: numbers that are not finite, a last row that is not 0 0 0 1, or a
-/// singular linear part; nullopt if there is none. The problem has no place.
+/// singular linear part. Returns nullopt for a valid transform. The problem has no place.
 std::optional<Problem> find_transform_problem(const dmat4& world_from_object);
 
 /// Returns whether fp32 can represent a size of a shape in the world; false for NaN.

@@ -224,8 +224,8 @@ class Caster:
         time, animation, loop: the pose, like the arguments of Scene.at; None leaves the pose as it is. transforms: new
         transforms (4, 4) by the objects' numbers, like those of Scene.add_instances. All other objects stay, and moved
         objects do not move with poses. Instances (docs/instances.md) move in milliseconds; to move other objects, the
-        tree is built again. Hits have the same bits as those of a new Caster of the moved scene. `scene` stays the scene
-        of the constructor. Raises UsageError and InputError for invalid arguments, and then changes nothing."""
+        tree is built again. Hits have the same bits as those of a new Caster of the moved scene. `scene` stays that of
+        the constructor. Raises UsageError and InputError for invalid arguments, and then changes nothing."""
         moved = {} if transforms is None else self._scene.native_transforms(transforms)
         posed = None if time is None else self._scene.at(time, animation, loop=loop)
         with self._lock:

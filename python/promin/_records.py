@@ -309,7 +309,7 @@ class Environment:
     shows_sky: bool = False
     """True if the camera sees the sky in place of the background."""
     up: Vec3 = (0.0, 1.0, 0.0)
-    """The direction of the world that the sky's +Y has, a unit vector. The studio's light and a ground stand on it too."""
+    """The direction of the world that the sky's +Y has, a unit vector. The studio's light and a ground take it too."""
     rotation: float = 0.0
     """Rotation of the sky about `up`, in radians."""
     intensity: float = 1.0

@@ -181,8 +181,8 @@ uint ask_ray(uint number, Path path) {
   return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
 }
 
-// With FEATURE_SCATTERING: requests the ray in which the point scatters the path. If there is none, does the same as
-// ask_mirror.
+// With FEATURE_SCATTERING: requests the ray in which the point scatters the path. If the path ends here, does the same
+// as ask_mirror.
 uint ask_scattered(uint number, inout Path path, ShadingPoint point, bool touches) {
   bool goes_on =
       leads_on(point, bounces_of(path)) && scatter(path, point, turn / turns_of_bounce() + 1u, touches);

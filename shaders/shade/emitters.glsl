@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The promin developers
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces that emit light as sources, and the choice of one of many sources (docs/model.md, "Surfaces that emit
-// light"). A source of kind LIGHT_EMITTERS has a table of elements: triangles, faces of shapes, or lights. A sample chooses one
-// of them with a known chance. Surfaces need FEATURE_EMITTERS, lights FEATURE_CHOSEN_LIGHTS.
+// light"). A source of kind LIGHT_EMITTERS has a table of elements: triangles, faces of shapes, or lights. A sample
+// chooses one of them with a known chance. Surfaces need FEATURE_EMITTERS, lights FEATURE_CHOSEN_LIGHTS.
 
 // Returns a word of the tables, which follow the records of the sources.
 uvec4 load_emitter_words(uint texel) {
@@ -153,7 +153,8 @@ vec2 weights_in_direction(SeenTriangle seen, vec3 direction) {
   precise float t = -seen.height / (abs(along) > SMALLEST_NORMAL ? along : SMALLEST_NORMAL);
   precise vec3 from_a = t * direction - seen.a;
   precise float square = max(dot3(seen.normal, seen.normal), SMALLEST_NORMAL);
-  precise vec2 weights = vec2(dot3(cross3(from_a, seen.edge2), seen.normal), dot3(cross3(seen.edge1, from_a), seen.normal)) / square;
+  precise vec2 weights =
+      vec2(dot3(cross3(from_a, seen.edge2), seen.normal), dot3(cross3(seen.edge1, from_a), seen.normal)) / square;
   return weights;
 }
 
@@ -394,8 +395,8 @@ Primitive triangle_of_emitter(Primitive p, uint part, out vec3 origin, out float
   return p;
 }
 
-// Returns a point of an emissive surface as a source of light at `position`, where the geometric normal is `facing`. The
-// powers of the source are set to the radiance of the surface. The shadow ray ends just before the surface.
+// Returns a point of an emissive surface as a source of light at `position`, where the geometric normal is `facing`.
+// Sets the powers of the source to the radiance of the surface. The shadow ray ends just before the surface.
 LightSample sample_emitter(Emitter emitter, vec2 u, vec3 position, vec3 facing, inout LightRecord light) {
   Primitive p = load_primitive_of(emitter.index, emitter.part);
   SurfaceRecord surface = load_surface_of(emitter.index, emitter.part);

@@ -78,8 +78,9 @@ uint joint_index(uint number) {
 }
 
 // Returns the point of the chosen pair as fractions of 2^32. sample_pair_point() rounds it to odd multiples of 2^-24 in
-// each coordinate. The first 2^m points of a pair are a (0, m, 2)-net. All pairs have Sobol's first two dimensions, in an order of their own. The order of the first pair
-// with FEATURE_LISTED_SAMPLES is the one that suits the positions in the pixel, which have the same dimensions.
+// each coordinate. The first 2^m points of a pair are a (0, m, 2)-net. All pairs have Sobol's first two dimensions, in
+// an order of their own. The order of the first pair with FEATURE_LISTED_SAMPLES is the one that suits the positions in
+// the pixel, which have the same dimensions.
 uvec2 sample_pair_bits() {
   uint seed = mix_bits(sample_key + 3u * sample_pair);
   uvec2 seeds = uvec2(mix_bits(seed + 1u), mix_bits(seed + 2u));

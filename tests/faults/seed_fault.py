@@ -129,12 +129,16 @@ FAULTS = {
     "sky_horizon_hard": {"shade/sky_light.glsl": [(r"SHARE_OF_WIDEST \* widest", "0.0"), (r"USUAL_SQUARE\)", "1e-9)")]},
     # These are faults of scattered rays (tests/gpu/scattering_test.cpp).
     "scattering_density_off": {"picture/scatter.glsl": [(r"= sum / width;", "= 1.02 * sum / width;")]},
-    "scattering_cosine_left_out": {"shade/sky_light.glsl": [(r"sqrt\(1\.0 - disc\.z\) \* normal", "(1.0 - disc.z) * normal")]},
+    "scattering_cosine_left_out": {
+        "shade/sky_light.glsl": [(r"sqrt\(1\.0 - disc\.z\) \* normal", "(1.0 - disc.z) * normal")]
+    },
     "scattering_unshuffled": {"picture/scatter.glsl": [(r"FIRST_DIRECTION_PAIR \+ step", "FIRST_DIRECTION_PAIR")]},
     "facets_unmasked": {"picture/scatter.glsl": [(r"l \* \(v \+ v_length\) / both", "1.0")]},
     "roughness_unbounded": {"picture/scatter.glsl": [(r"is_diffused \? ROUGHNESS_AFTER_DIFFUSION : 0\.0", "0.0")]},
     # These are faults of emissive surfaces as sources (tests/gpu/emitters_test.cpp).
-    "lamp_angle_off": {"shade/emitters.glsl": [(r"\? seen\.solid_angle : 6\.28318531", "? 1.02 * seen.solid_angle : 6.4")]},
+    "lamp_angle_off": {
+        "shade/emitters.glsl": [(r"\? seen\.solid_angle : 6\.28318531", "? 1.02 * seen.solid_angle : 6.4")]
+    },
     "lamp_area_off": {"shade/emitters.glsl": [(r"0\.5 \* abs\(seen\.height\)", "0.51 * abs(seen.height)")]},
     "lamp_chance_off": {"shade/emitters.glsl": [(r"/ emitter\.chance;", "/ (1.02 * emitter.chance);")]},
     "lamp_ball_off": {"shade/emitters.glsl": [(r"6\.28318531 \* cap;", "6.4 * cap;")]},

@@ -8,11 +8,9 @@
 #include <numbers>
 
 #include "device_scene/pack_emitters.h"
-#include "gpu/device_fixture.h"
 #include "gpu/faulty_shaders.h"
+#include "gpu/lit_scenes.h"
 #include "gpu/test_scenes.h"
-#include "gpu/ways_of_tracing.h"
-#include "oracle/compare_picture.h"
 #include "oracle/emitters.h"
 #include "trace/render/renderer_impl.h"
 
@@ -141,16 +139,11 @@ double irradiance_of(std::vector<dvec3> corners, const dvec3& at) {
   return std::abs(0.5 * sum);
 }
 
-class EmittersTest : public test::DeviceTest {
+class EmittersTest : public test::SampledLightTest {
  protected:
-  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
-    return make_renderer(device(), scene, options);
-  }
   static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
     // Densities that are off by 2 % change few pixels of smooth surfaces.
-    oracle::PictureReport report = compare_picture(scene, truth, image, {}, {.color_mean = 2e-6L});
-    std::printf("%s\n", report.summary(scene).c_str());
-    return report;
+    return report_of(scene, truth, image, {.color_mean = 2e-6L});
   }
   /// Compares the first sample of each pixel, for several seeds.
   static void expect_samples(const world::Scene& scene, View view) {
@@ -159,13 +152,6 @@ class EmittersTest : public test::DeviceTest {
       view.seed = seed;
       EXPECT_TRUE(compare(scene, oracle::render(scene, view), renderer.render(view).image).passes()) << seed;
     }
-  }
-  /// Returns the mean over a picture.
-  static double mean_of(const world::Scene& scene, const View& view) {
-    const Image image = renderer_of(scene).render(view).image;
-    double sum = 0.0;
-    for (const vec3& pixel : image.pixels) sum += static_cast<double>(pixel.x);
-    return sum / static_cast<double>(image.pixels.size());
   }
 };
 
@@ -269,7 +255,7 @@ TEST_F(EmittersTest, TrianglesHaveTheirClosedForm) {
     const world::Scene scene = make_lit_floor(make_triangle(a, b, c), make_glow(vec3(2.0F), true));
     for (const vec3& at : {vec3(0.0F), vec3(0.6F, 0.0F, 0.3F)}) {
       const double expected = 2.0 / std::numbers::pi * irradiance_of({dvec3(a), dvec3(b), dvec3(c)}, dvec3(at));
-      EXPECT_NEAR(mean_of(scene, make_point_view(at, 0.005F)) / expected, 1.0, 0.004) << a.y << " " << at.x;
+      EXPECT_NEAR(mean_of(scene, make_point_view(at, 0.005F)).x / expected, 1.0, 0.004) << a.y << " " << at.x;
     }
   }
 }
@@ -289,12 +275,12 @@ TEST_F(EmittersTest, LampsLightLikeLightsOfTheirShape) {
   as_light.lights = {rect};
   for (const vec3& at : {vec3(0.0F), vec3(0.9F, 0.0F, 0.4F), vec3(-2.0F, 0.0F, 1.5F)}) {
     const View view = make_point_view(at);
-    EXPECT_NEAR(mean_of(as_mesh, view) / mean_of(as_light, view), 1.0, 0.004) << at.x;
+    EXPECT_NEAR(mean_of(as_mesh, view).x / mean_of(as_light, view).x, 1.0, 0.004) << at.x;
   }
   const world::Scene ball = make_lit_floor(world::Sphere{vec3(0.2F, 1.5F, -0.3F), 0.9F}, make_glow(vec3(3.0F)));
   for (const vec3& at : {vec3(0.2F, 0.0F, -0.3F), vec3(1.0F, 0.0F, 0.4F)}) {
     const double d = static_cast<double>(glm::distance(at, vec3(0.2F, 1.5F, -0.3F)));
-    EXPECT_NEAR(mean_of(ball, make_point_view(at)) / (3.0 * 0.81 / (d * d) * 1.5 / d), 1.0, 0.004) << at.x;
+    EXPECT_NEAR(mean_of(ball, make_point_view(at)).x / (3.0 * 0.81 / (d * d) * 1.5 / d), 1.0, 0.004) << at.x;
   }
 }
 
@@ -317,9 +303,9 @@ TEST_F(EmittersTest, BallsOfTrianglesLightLikeSpheres) {
     }
   }
   const View view = make_point_view(vec3(0.6F, 0.0F, 0.1F));
-  const double as_mesh = mean_of(make_lit_floor(mesh, make_glow(vec3(3.0F))), view);
+  const double as_mesh = mean_of(make_lit_floor(mesh, make_glow(vec3(3.0F))), view).x;
   const double as_sphere =
-      mean_of(make_lit_floor(world::Sphere{vec3(0.2F, 1.5F, -0.3F), 0.5F}, make_glow(vec3(3.0F))), view);
+      mean_of(make_lit_floor(world::Sphere{vec3(0.2F, 1.5F, -0.3F), 0.5F}, make_glow(vec3(3.0F))), view).x;
   EXPECT_NEAR(as_mesh / as_sphere, 1.0, 0.02);
 }
 
@@ -348,10 +334,10 @@ TEST_F(EmittersTest, FurnacesHaveOneBounce) {
   view.camera.up = vec3(0, 1, 0);
   view.camera.yfov = 1.5F;
   view.samples_per_pixel = 256;
-  EXPECT_NEAR(mean_of(scene, view), 1.5, 0.003);
+  EXPECT_NEAR(mean_of(scene, view).x, 1.5, 0.003);
   // A sphere shines to its inside, as the camera sees it.
   scene.objects = {{"sphere", world::Sphere{vec3(0.0F), 1.0F}, 0}};
-  EXPECT_NEAR(mean_of(scene, view), 1.5, 0.003);
+  EXPECT_NEAR(mean_of(scene, view).x, 1.5, 0.003);
 }
 
 // The densities of the oracle, and so those of the device, integrate to 1: the mean of 1 / density is the solid angle.
@@ -389,18 +375,7 @@ TEST_F(EmittersTest, EveryWayOfTracingHasTheSameBits) {
   const world::Scene scene = make_glossy_lamps();
   View view = make_lamp_view();
   view.samples_per_pixel = 3;
-  const Image expected = renderer_of(scene).render(view).image;
-  for (const TunedRendererOptions& way : test::ways_of_tracing()) {
-    EXPECT_TRUE(test::has_same_bits(renderer_of(scene, way).render(view).image, expected));
-  }
-  View crop = view;
-  crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
-  const Image part = renderer_of(scene).render(crop).image;
-  for (uint32_t y = 0; y < part.size.y; ++y) {
-    for (uint32_t x = 0; x < part.size.x; ++x) {
-      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * view.size.x + x + 13]);
-    }
-  }
+  expect_same_bits(scene, view);
 }
 
 // Lights, materials and environments can change: the picture is that of a new renderer.
@@ -455,12 +430,12 @@ TEST_F(EmittersTest, ExtremeLampsGiveFinitePictures) {
   view.camera.eye = vec3(2.0F, 0.3F, 2.0F);
   view.camera.look = vec3(0, -1, 0);
   view.camera.up = vec3(0, 0, -1);
-  EXPECT_EQ(mean_of(scene, view), 0.0);
+  EXPECT_EQ(mean_of(scene, view).x, 0.0);
   // Two lamps in one place are one lamp, as the camera sees it.
   scene = make_lit_floor(make_sheet(vec3(0, 1, 0), vec3(0, 0, 0.5F), vec3(0.5F, 0, 0)), glow);
-  const double one = mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F)));
+  const double one = mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F))).x;
   scene.objects.push_back(scene.objects[1]);
-  EXPECT_NEAR(mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F))) / one, 2.0, 0.01);
+  EXPECT_NEAR(mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F))).x / one, 2.0, 0.01);
 }
 
 TEST_F(EmittersTest, NumbersAreSharedByWeight) {

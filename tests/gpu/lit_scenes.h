@@ -2,11 +2,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "promin/renderer.h"
-#include "scene/world_scene.h"
+#include <gtest/gtest.h>
 
-/// Scenes and views that tests of sampled light share.
+#include <cstdio>
+
+#include "gpu/device_fixture.h"
+#include "gpu/test_scenes.h"
+#include "gpu/ways_of_tracing.h"
+#include "oracle/compare_picture.h"
+#include "scene/world_scene.h"
+#include "trace/render/renderer_impl.h"
+
+/// A fixture, scenes and views that tests of sampled light share.
 namespace promin::test {
+
+/// Renders pictures of sampled light on the shared device.
+class SampledLightTest : public DeviceTest {
+ protected:
+  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
+    return make_renderer(device(), scene, options);
+  }
+  static dvec3 mean_of(const world::Scene& scene, const View& view) {
+    const Image image = renderer_of(scene).render(view).image;
+    dvec3 sum(0.0);
+    for (const vec3& pixel : image.pixels) sum += dvec3(pixel);
+    return sum / static_cast<double>(image.pixels.size());
+  }
+  static oracle::PictureReport report_of(const world::Scene& scene, const oracle::Picture& truth, const Image& image,
+                                         const oracle::PictureBounds& bounds) {
+    oracle::PictureReport report = compare_picture(scene, truth, image, {}, bounds);
+    std::printf("%s\n", report.summary(scene).c_str());
+    return report;
+  }
+  /// Expects that each way of tracing, and a crop, give the bits of the picture. Returns the picture.
+  static Image expect_same_bits(const world::Scene& scene, const View& view) {
+    const Image expected = renderer_of(scene).render(view).image;
+    for (const TunedRendererOptions& way : ways_of_tracing()) {
+      EXPECT_TRUE(has_same_bits(renderer_of(scene, way).render(view).image, expected));
+    }
+    View crop = view;
+    crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
+    const Image part = renderer_of(scene).render(crop).image;
+    for (uint32_t y = 0; y < part.size.y; ++y) {
+      for (uint32_t x = 0; x < part.size.x; ++x) {
+        EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * view.size.x + x + 13]);
+      }
+    }
+    return expected;
+  }
+};
 
 inline Material make_clay(const vec3& color) {
   Phong phong;

@@ -7,12 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "gpu/device_fixture.h"
 #include "gpu/faulty_shaders.h"
 #include "gpu/lit_scenes.h"
 #include "gpu/test_scenes.h"
-#include "gpu/ways_of_tracing.h"
-#include "oracle/compare_picture.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin {
@@ -71,28 +68,17 @@ Material make_lambert(float albedo) {
   return material;
 }
 
-class ScatteringTest : public test::DeviceTest {
+class ScatteringTest : public test::SampledLightTest {
  protected:
-  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
-    return make_renderer(device(), scene, options);
-  }
   static oracle::PictureReport compare(const world::Scene& scene, const View& view, const Image& image) {
     // The oracle is unsure about more pixels, because faces of glass multiply the errors of directions.
     const oracle::PictureBounds bounds{.color_mean = 2e-5L, .unsure_share = 0.01};
-    oracle::PictureReport report = compare_picture(scene, oracle::render(scene, view), image, {}, bounds);
-    std::printf("%s\n", report.summary(scene).c_str());
-    return report;
+    return report_of(scene, oracle::render(scene, view), image, bounds);
   }
   /// Compares the first sample of each pixel.
   static void expect_samples(const world::Scene& scene, View view) {
     view.seed = 7;
     EXPECT_TRUE(compare(scene, view, renderer_of(scene).render(view).image).passes());
-  }
-  static dvec3 mean_of(const world::Scene& scene, const View& view) {
-    const Image image = renderer_of(scene).render(view).image;
-    dvec3 sum(0.0);
-    for (const vec3& pixel : image.pixels) sum += dvec3(pixel);
-    return sum / static_cast<double>(image.pixels.size());
   }
 };
 
@@ -116,8 +102,8 @@ TEST_F(ScatteringTest, EachSampleWithAGlowingBallIsTheOracles) {
   Material lamp = make_lambert(0.5F);
   lamp.emissive = vec3(4.0F, 3.0F, 2.0F);
   scene.materials.push_back(lamp);
-  scene.objects.push_back({"lamp", world::Sphere{vec3(0.2F, 1.4F, 0.4F), 0.25F},
-                           static_cast<uint32_t>(scene.materials.size() - 1)});
+  scene.objects.push_back(
+      {"lamp", world::Sphere{vec3(0.2F, 1.4F, 0.4F), 0.25F}, static_cast<uint32_t>(scene.materials.size() - 1)});
   expect_samples(scene, make_path_view());
 }
 
@@ -237,18 +223,7 @@ TEST_F(ScatteringTest, EveryWayOfTracingHasTheSameBits) {
   const world::Scene scene = make_plain_room();
   View view = make_path_view();
   view.samples_per_pixel = 3;
-  const Image expected = renderer_of(scene).render(view).image;
-  for (const TunedRendererOptions& way : test::ways_of_tracing()) {
-    EXPECT_TRUE(test::has_same_bits(renderer_of(scene, way).render(view).image, expected));
-  }
-  View crop = view;
-  crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
-  const Image part = renderer_of(scene).render(crop).image;
-  for (uint32_t y = 0; y < part.size.y; ++y) {
-    for (uint32_t x = 0; x < part.size.x; ++x) {
-      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * view.size.x + x + 13]);
-    }
-  }
+  expect_same_bits(scene, view);
 }
 
 }  // namespace

@@ -9,12 +9,9 @@
 
 #include "device_scene/sampling.h"
 #include "device_scene/scrambled_points.h"
-#include "gpu/device_fixture.h"
 #include "gpu/faulty_shaders.h"
 #include "gpu/lit_scenes.h"
 #include "gpu/test_scenes.h"
-#include "gpu/ways_of_tracing.h"
-#include "oracle/compare_picture.h"
 #include "oracle/sky_light.h"
 #include "trace/render/renderer_impl.h"
 
@@ -33,27 +30,16 @@ Panorama make_sunny_panorama(float sun) {
   return {image};
 }
 
-class SkyLightTest : public test::DeviceTest {
+class SkyLightTest : public test::SampledLightTest {
  protected:
-  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
-    return make_renderer(device(), scene, options);
-  }
   static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
     // Densities that are off by 2 % change few pixels of smooth surfaces.
-    oracle::PictureReport report = compare_picture(scene, truth, image, {}, {.color_mean = 2e-5L});
-    std::printf("%s\n", report.summary(scene).c_str());
-    return report;
+    return report_of(scene, truth, image, {.color_mean = 2e-5L});
   }
   /// Compares the first sample of each pixel.
   static void expect_samples(const world::Scene& scene, View view) {
     view.seed = 7;
     EXPECT_TRUE(compare(scene, oracle::render(scene, view), renderer_of(scene).render(view).image).passes());
-  }
-  static dvec3 mean_of(const world::Scene& scene, const View& view) {
-    const Image image = renderer_of(scene).render(view).image;
-    dvec3 sum(0.0);
-    for (const vec3& pixel : image.pixels) sum += dvec3(pixel);
-    return sum / static_cast<double>(image.pixels.size());
   }
 };
 
@@ -251,18 +237,7 @@ TEST_F(SkyLightTest, EveryWayOfTracingHasTheSameBits) {
   scene.environment.sky = Studio{};
   View view = test::make_direct_view();
   view.samples_per_pixel = 3;
-  const Image expected = renderer_of(scene).render(view).image;
-  for (const TunedRendererOptions& way : test::ways_of_tracing()) {
-    EXPECT_TRUE(test::has_same_bits(renderer_of(scene, way).render(view).image, expected));
-  }
-  View crop = view;
-  crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
-  const Image part = renderer_of(scene).render(crop).image;
-  for (uint32_t y = 0; y < part.size.y; ++y) {
-    for (uint32_t x = 0; x < part.size.x; ++x) {
-      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * view.size.x + x + 13]);
-    }
-  }
+  expect_same_bits(scene, view);
 }
 
 // A renderer switches between both integrators, and lights and environments may change in between.

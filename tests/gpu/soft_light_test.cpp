@@ -9,11 +9,9 @@
 
 #include "device_scene/sampling.h"
 #include "device_scene/scrambled_points.h"
-#include "gpu/device_fixture.h"
 #include "gpu/faulty_shaders.h"
+#include "gpu/lit_scenes.h"
 #include "gpu/test_scenes.h"
-#include "gpu/ways_of_tracing.h"
-#include "oracle/compare_picture.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin {
@@ -89,16 +87,11 @@ View make_soft_view(uvec2 size = kSoftSize) {
   return view;
 }
 
-class SoftLightTest : public test::DeviceTest {
+class SoftLightTest : public test::SampledLightTest {
  protected:
-  static Renderer renderer_of(const world::Scene& scene, const TunedRendererOptions& options = {}) {
-    return make_renderer(device(), scene, options);
-  }
   static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
     // Densities that are off by 2 % change few pixels of smooth surfaces.
-    oracle::PictureReport report = compare_picture(scene, truth, image, {}, {.color_mean = 1e-6L});
-    std::printf("%s\n", report.summary(scene).c_str());
-    return report;
+    return report_of(scene, truth, image, {.color_mean = 1e-6L});
   }
   /// Compares the first sample of each pixel, for several seeds.
   static void expect_samples(const world::Scene& scene, View view) {
@@ -107,13 +100,6 @@ class SoftLightTest : public test::DeviceTest {
       view.seed = seed;
       EXPECT_TRUE(compare(scene, oracle::render(scene, view), renderer.render(view).image).passes()) << seed;
     }
-  }
-  /// Returns the mean over a picture of a white floor, seen from above, whose pixels all see a lit point.
-  static double mean_of(const world::Scene& scene, const View& view) {
-    const Image image = renderer_of(scene).render(view).image;
-    double sum = 0.0;
-    for (const vec3& pixel : image.pixels) sum += static_cast<double>(pixel.x);
-    return sum / static_cast<double>(image.pixels.size());
   }
 };
 
@@ -168,7 +154,7 @@ TEST_F(SoftLightTest, MirrorsOfLampsHaveTheLampsRadiance) {
   view.max_depth = 0;
   view.samples_per_pixel = 256;
   // Light of radiance L from the whole lobe is reflected as L by a white metal.
-  EXPECT_NEAR(mean_of(scene, view) / (3.0 / (std::numbers::pi * 0.25)), 1.0, 0.01);
+  EXPECT_NEAR(mean_of(scene, view).x / (3.0 / (std::numbers::pi * 0.25)), 1.0, 0.01);
 }
 
 // Each sample of a pixel has another number. The mean of several samples is right only if all are.
@@ -258,10 +244,10 @@ TEST_F(SoftLightTest, WholeLightsHaveTheirPower) {
   classic.attenuation = Attenuation::kNone;
   for (const Light& light : {make_ball(vec3(0.2F, 1.5F, -0.3F), 1.0F, 2.0F), spot, sun, classic}) {
     scene.lights = {light};
-    const double soft = mean_of(scene, view);
+    const double soft = mean_of(scene, view).x;
     scene.lights[0].radius = 0.0F;
     scene.lights[0].angle = 0.0F;
-    const double hard = mean_of(scene, view);
+    const double hard = mean_of(scene, view).x;
     EXPECT_NEAR(soft / hard, 1.0, 0.001) << static_cast<int>(light.kind);
   }
 }
@@ -284,10 +270,10 @@ TEST_F(SoftLightTest, CutBallsHaveTheirClosedForm) {
     const double s = std::asin(0.5 / distance);
     const double expected = radiance * (s - std::sin(s) * std::cos(s));
     // A pixel of the white Phong floor has the radiance E.
-    EXPECT_NEAR(mean_of(scene, view) / expected, 1.0, 0.01) << distance;
+    EXPECT_NEAR(mean_of(scene, view).x / expected, 1.0, 0.01) << distance;
   }
   view.camera.eye = vec3(0.1F, 1.0F, 0.0F);
-  EXPECT_NEAR(mean_of(scene, view) / (std::numbers::pi * radiance), 1.0, 0.01) << "inside";
+  EXPECT_NEAR(mean_of(scene, view).x / (std::numbers::pi * radiance), 1.0, 0.01) << "inside";
 }
 
 // E = L / 2 sum of angle_i cos_i over the edges (Lambert's formula for polygons), and E = pi L r^2 / (r^2 + h^2) on the
@@ -319,7 +305,7 @@ TEST_F(SoftLightTest, FlatLightsHaveTheirClosedForm) {
         const dvec3 b = glm::normalize(corners[(i + 1) % 4]);
         sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(b, a)).y;
       }
-      EXPECT_NEAR(mean_of(scene, view) / std::abs(0.5 * 2.0 * sum), 1.0, 0.003) << size.x << " " << at.x;
+      EXPECT_NEAR(mean_of(scene, view).x / std::abs(0.5 * 2.0 * sum), 1.0, 0.003) << size.x << " " << at.x;
     }
   }
   light.kind = LightKind::kDisk;
@@ -328,10 +314,10 @@ TEST_F(SoftLightTest, FlatLightsHaveTheirClosedForm) {
     light.size = vec2(static_cast<float>(2.0 * radius));
     scene.lights = {light};
     const double expected = std::numbers::pi * 2.0 * radius * radius / (radius * radius + 0.36);
-    EXPECT_NEAR(mean_of(scene, view) / expected, 1.0, 0.003) << radius;
+    EXPECT_NEAR(mean_of(scene, view).x / expected, 1.0, 0.003) << radius;
   }
   scene.lights[0].direction = vec3(0, 1, 0);
-  EXPECT_EQ(mean_of(scene, view), 0.0);
+  EXPECT_EQ(mean_of(scene, view).x, 0.0);
 }
 
 // Half of a sun's disc is visible below a straight edge that points at its middle.
@@ -354,7 +340,7 @@ TEST_F(SoftLightTest, EdgesShowTheirShareOfTheSun) {
     // The eye is below the roof. `offset` is in radii of the disc.
     view.camera.eye = vec3(static_cast<float>(offset * std::tan(half_angle)), 0.5F, 0.0F);
     const double covered = (std::acos(offset) - offset * std::sqrt(1.0 - offset * offset)) / std::numbers::pi;
-    EXPECT_NEAR(mean_of(scene, view), 1.0 - covered, 0.006) << offset;
+    EXPECT_NEAR(mean_of(scene, view).x, 1.0 - covered, 0.006) << offset;
   }
 }
 
@@ -379,18 +365,7 @@ TEST_F(SoftLightTest, EveryWayOfTracingHasTheSameBits) {
   view.samples_per_pixel = 3;
   view.camera.aperture_radius = 0.1F;
   view.camera.focus_distance = 3.0F;
-  const Image expected = renderer_of(scene).render(view).image;
-  for (const TunedRendererOptions& way : test::ways_of_tracing()) {
-    EXPECT_TRUE(test::has_same_bits(renderer_of(scene, way).render(view).image, expected));
-  }
-  View crop = view;
-  crop.crop = PixelWindow{uvec2(13, 7), uvec2(29, 22)};
-  const Image part = renderer_of(scene).render(crop).image;
-  for (uint32_t y = 0; y < part.size.y; ++y) {
-    for (uint32_t x = 0; x < part.size.x; ++x) {
-      EXPECT_EQ(part.pixels[y * part.size.x + x], expected.pixels[(y + 7) * kSoftSize.x + x + 13]);
-    }
-  }
+  const Image expected = expect_same_bits(scene, view);
   view.seed = 1;
   EXPECT_FALSE(test::has_same_bits(renderer_of(scene).render(view).image, expected));
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Transform = std::pair<uint32_t, dmat4>;
 
-/// Returns the problem of a transform; nullopt if there is none.
+/// Returns the problem of a transform; nullopt for a valid one.
 std::optional<Problem> find_problem(const Transform& transform, const std::string& where,
                                     const PrimitiveNumbers& numbers, const UpperLevel* level) {
   const auto& [object, matrix] = transform;

@@ -60,8 +60,8 @@ class SceneOnDevice {
   void take(const world::Scene& scene, PackedScene& packed, SetupStats& stats);
   /// Sets the pose if only instances have moved. Returns false if anything else differs.
   bool move_only(const world::Scene& posed);
-  /// Returns whether images have the same levels.
-  bool has_images_of(const world::Scene& posed, const PackedScene& packed) const;
+  /// Returns whether images have the same levels. `mask_cutoffs` is the result of find_mask_cutoffs().
+  bool has_images_of(const world::Scene& posed, const std::vector<float>& mask_cutoffs) const;
 
   FeatureMask more_features_;
   uint64_t trees_built_ = 0;

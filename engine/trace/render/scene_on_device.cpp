@@ -39,8 +39,7 @@ void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene,
   stats.upload_ms = uploading.ms();
   stats.warnings = packed.warnings;
   if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
-  if (has_too_many_emitters({packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, {}},
-                            EmitterRanges(packed), scene.materials)) {
+  if (device_scene_->leaves_out_emitters()) {
     stats.warnings.push_back(
         {"scene.emitters.many",
          "instances have more than " + std::to_string(kMostInstancedEmitters) + " triangles that emit light",
@@ -69,13 +68,12 @@ void SceneOnDevice::take(const world::Scene& scene, PackedScene& packed, SetupSt
   copied_materials_ = std::move(packed.copies.materials);
 }
 
-bool SceneOnDevice::has_images_of(const world::Scene& posed, const PackedScene& packed) const {
-  return posed.images == images_ && posed.textures == textures_ && packed.mask_cutoffs == mask_cutoffs_;
+bool SceneOnDevice::has_images_of(const world::Scene& posed, const std::vector<float>& mask_cutoffs) const {
+  return posed.images == images_ && posed.textures == textures_ && mask_cutoffs == mask_cutoffs_;
 }
 
 bool SceneOnDevice::move_only(const world::Scene& posed) {
-  const bool may_move = copied_materials_.empty() && posed.images == images_ && posed.textures == textures_ &&
-                        find_mask_cutoffs(posed) == mask_cutoffs_;
+  const bool may_move = copied_materials_.empty() && has_images_of(posed, find_mask_cutoffs(posed));
   return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_);
 }
 
@@ -87,7 +85,7 @@ void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& pose
     if (options.repack) packed = options.repack(std::move(packed));
     packed.stack_size = std::max(packed.stack_size, device_scene_->stack_size());
     const Stopwatch uploading;
-    if (has_images_of(posed, packed) && device_scene_->has_space_for(packed)) {
+    if (has_images_of(posed, packed.mask_cutoffs) && device_scene_->has_space_for(packed)) {
       device_scene_->set_geometry(packed, std::make_shared<const GlassSolids>(posed));
       stats.upload_ms = uploading.ms();
     } else {

@@ -11,6 +11,7 @@
 
 #include "image/color_words.h"
 #include "promin/error.h"
+#include "scene/framing.h"
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/ground.h"
 
@@ -96,7 +97,7 @@ std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& opti
   const bool has_camera = options.given_camera || options.camera || pose.eye;
   const bool is_framed = pose.from || pose.fit || options.frames_scene || scene.cameras.empty();
   if (!pose.up || has_camera || !is_framed) return {};
-  return vec3(glm::normalize(*pose.up));
+  return vec3(normalize_up(vec3(*pose.up)));
 }
 
 AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings,

@@ -37,7 +37,8 @@ RenderMode mode_of(const ViewOptions& options);
 void put_lens(const ViewOptions& options, Camera& camera);
 
 /// Returns the upward direction of the scene, a unit vector, if the options give it (PoseOptions::up) for a camera that
-/// frames the scene. Otherwise it is empty, because `up` then belongs to the picture.
+/// frames the scene. Otherwise it is empty, because `up` then belongs to the picture. Throws UsageError if the
+/// direction is zero or not finite.
 std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& options);
 
 /// Sets the scene's environment, lights and background from the options. If `up` is given, the light and the ground
