@@ -7,11 +7,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
 
+#include "core/parse_number.h"
 #include "core/suggest.h"
 #include "options/typed_words.h"
 #include "promin/error.h"
@@ -40,14 +40,6 @@ std::string path_of(const CLI::App& app) {
 /// Returns the name of an option for messages: the last name of "-s,--spp".
 std::string display_name(const std::string& names) {
   return names.substr(names.rfind(',') + 1);
-}
-
-/// Reads a number from a whole word. Returns false if characters are left over.
-template <typename Number>
-bool parse_number(const std::string& word, Number& number) {
-  const char* end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data(), end, number);
-  return error == std::errc() && rest == end;
 }
 
 const CLI::App& deepest_command(const CLI::App& program) {
@@ -177,8 +169,7 @@ std::vector<const char*> fill_up_alternatives(const std::vector<std::string>& wo
 }  // namespace
 
 bool is_number(const std::string& word) {
-  double number = 0.0;
-  return parse_number(word, number);
+  return to_number<double>(word).has_value();
 }
 
 std::vector<std::string> split_list(const std::string& list) {
@@ -210,18 +201,18 @@ std::string OptionValues::quote(size_t i) const {
 }
 
 uint32_t OptionValues::whole(size_t i, uint32_t min, uint32_t max) const {
-  uint32_t number = 0;
-  if (!parse_number(words_[i], number) || number < min || number > max) {
+  const std::optional<uint32_t> number = to_number<uint32_t>(words_[i]);
+  if (!number || *number < min || *number > max) {
     refuse_option(i);
     refuse(fmt::format("{} takes a whole number from {} to {}, not {}", option_, min, max, quote(i)));
   }
-  return number;
+  return *number;
 }
 
 double OptionValues::real(size_t i, double min, double max, std::span<const std::string_view> others) const {
-  double number = 0.0;
+  const std::optional<double> number = to_number<double>(words_[i]);
   // The condition is written so that a NaN is refused.
-  if (!parse_number(words_[i], number) || !(number >= min && number <= max)) {
+  if (!number || !(*number >= min && *number <= max)) {
     refuse_option(i);
     const std::string range = fmt::format("a number from {:g} to {:g}", min, max);
     std::vector<std::string_view> choices = {range};
@@ -229,7 +220,7 @@ double OptionValues::real(size_t i, double min, double max, std::span<const std:
     refuse(fmt::format("{} takes {}, not {}", option_, list_choices(choices), quote(i)),
            nearest_name(words_[i], others));
   }
-  return number;
+  return *number;
 }
 
 std::optional<double> OptionValues::fraction() const {

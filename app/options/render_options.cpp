@@ -8,12 +8,12 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <type_traits>
 
 #include "core/count_of.h"
+#include "core/parse_number.h"
 #include "core/suggest.h"
 #include "image/picture_endings.h"
 #include "options/arguments.h"
@@ -105,14 +105,12 @@ FrameRange read_frames(const OptionValues& words) {
 std::vector<uint32_t> read_numbers(const OptionValues& words) {
   std::vector<uint32_t> numbers;
   for (const std::string& number : split_list(words.text())) {
-    uint32_t value = 0;
-    const char* end = number.data() + number.size();
-    const auto parsed = std::from_chars(number.data(), end, value);
-    if (parsed.ec != std::errc() || parsed.ptr != end) {
+    const std::optional<uint32_t> value = to_number<uint32_t>(number);
+    if (!value) {
       words.refuse(
           fmt::format("--lights-off takes numbers of 0 or more, separated by commas, not \"{}\"", words.text()));
     }
-    numbers.push_back(value);
+    numbers.push_back(*value);
   }
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());

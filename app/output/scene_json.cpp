@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <type_traits>
@@ -12,6 +11,7 @@
 
 #include "core/hash.h"
 #include "core/json_text.h"
+#include "core/parse_number.h"
 #include "output/work_names.h"
 #include "promin/motion.h"
 #include "scene/members.h"
@@ -41,10 +41,7 @@ Json json_value(Number value) {
   if constexpr (std::is_integral_v<Number>) return value;
   if (!std::isfinite(value)) return nullptr;
   // The shortest decimal text of an fp32 number is used, because the number converted to double has many more digits.
-  const std::string digits = fmt::format("{}", value);
-  double decimal = 0.0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), decimal);
-  return decimal;
+  return to_number<double>(fmt::format("{}", value)).value_or(0.0);
 }
 
 template <int N, typename Number>

@@ -11,12 +11,12 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <mutex>
 #include <set>
 
+#include "core/parse_number.h"
 #include "core/stand_in.h"
 #include "promin/error.h"
 
@@ -301,10 +301,9 @@ void clear_leftovers(const fs::path& folder) {
     const std::string name = entry.path().stem().string();
     const size_t mark = name.rfind(kMark);
     if (mark == std::string::npos) continue;
-    pid_t pid = 0;
-    const char* end = name.data() + name.size();
-    const auto [rest, problem] = std::from_chars(name.data() + mark + kMark.size(), end, pid);
-    if (problem != std::errc() || pid <= 0 || std::string_view(rest, end) != owner) continue;
+    std::string_view rest = std::string_view(name).substr(mark + kMark.size());
+    const pid_t pid = take_number<pid_t>(rest).value_or(0);
+    if (pid <= 0 || rest != owner) continue;
     const bool is_alive = pid == getpid() ? live_files().has(entry.path()) : kill(pid, 0) == 0 || errno != ESRCH;
     if (!is_alive) fs::remove(entry.path(), error);
   }

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include "core/address_space.h"
 #include "core/parallel.h"
+#include "core/parse_number.h"
 #include "device/buffer.h"
 #include "device/instance.h"
 #include "promin/device.h"
@@ -179,16 +179,13 @@ size_t select_device(const std::vector<DeviceInfo>& infos, const std::optional<s
                        "there is no usable Vulkan device (" + infos[0].name + ": " + infos[0].obstacles[0] + ")", "",
                        "install a driver such as mesa-vulkan-drivers"});
   }
-  size_t number = 0;
-  const char* end = selection->data() + selection->size();
-  const auto parsed = std::from_chars(selection->data(), end, number);
-  const bool is_number = !selection->empty() && parsed.ec == std::errc() && parsed.ptr == end;
+  const std::optional<size_t> number = to_number<size_t>(*selection);
   for (size_t i = 0; i < infos.size(); ++i) {
     // An empty text is contained in every name, so it is not a selection.
     const bool is_part =
         !selection->empty() && lower_case(infos[i].name).find(lower_case(*selection)) != std::string::npos;
     const bool is_uuid = lower_case(*selection) == std::string(kByUuid) + infos[i].uuid;
-    const bool matches = is_number ? i == number : is_part || is_uuid;
+    const bool matches = number ? i == *number : is_part || is_uuid;
     if (!matches) continue;
     if (!infos[i].obstacles.empty()) {
       throw DeviceError({"device.unusable",

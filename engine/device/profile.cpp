@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string_view>
+
+#include "core/parse_number.h"
 
 namespace promin::gpu {
 namespace {
@@ -62,12 +63,9 @@ void suit_newer_lavapipe(DeviceProfile& profile, const DeviceTraits& traits) {
 /// is 1 whatever its version.
 uint32_t mesa_version(std::string_view driver_info) {
   constexpr std::string_view kName = "Mesa ";
-  uint32_t version = 0;
-  if (driver_info.starts_with(kName)) {
-    driver_info.remove_prefix(kName.size());
-    std::from_chars(driver_info.data(), driver_info.data() + driver_info.size(), version);
-  }
-  return version;
+  if (!driver_info.starts_with(kName)) return 0;
+  driver_info.remove_prefix(kName.size());
+  return take_number<uint32_t>(driver_info).value_or(0);
 }
 
 /// Changes of the profile for a driver, from a version of Mesa on.

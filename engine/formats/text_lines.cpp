@@ -9,6 +9,8 @@
 #include <cstring>
 #include <limits>
 
+#include "core/parse_number.h"
+
 namespace promin {
 namespace {
 
@@ -34,10 +36,7 @@ std::string_view take_part(std::string_view& line) {
 template <class Number>
 std::optional<Number> parse_whole(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  Number number{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return number;
+  return to_number<Number>(word);
 }
 
 }  // namespace

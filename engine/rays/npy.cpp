@@ -7,7 +7,6 @@
 #include <bit>
 #include <cassert>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -16,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/parse_number.h"
 #include "promin/error.h"
 
 namespace promin {
@@ -76,13 +76,10 @@ std::optional<uint64_t> parse_shape(std::string_view text) {
   for (const char c : text) {
     if (c != ' ') tight += c;
   }
-  uint64_t count = 0;
-  const char* end = tight.data() + tight.size();
   if (tight.empty() || tight[0] != '(') return std::nullopt;
-  const auto [rest, error] = std::from_chars(tight.data() + 1, end, count);
-  const std::string_view tail(rest, static_cast<size_t>(end - rest));
-  if (error != std::errc() || (tail != ",8)" && tail != ",8,)")) return std::nullopt;
-  return count;
+  std::string_view tail = std::string_view(tight).substr(1);
+  const std::optional<uint64_t> count = take_number<uint64_t>(tail);
+  return tail == ",8)" || tail == ",8,)" ? count : std::nullopt;
 }
 
 /// Returns a text of the file for a message, without characters that move a terminal's cursor and not longer than a

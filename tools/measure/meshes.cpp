@@ -3,10 +3,10 @@
 #include "measure/meshes.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <random>
 
+#include "core/parse_number.h"
 #include "promin/error.h"
 #include "promin/load_scene.h"
 
@@ -97,10 +97,8 @@ world::Scene open_scene(const std::string& word) {
   const size_t colon = word.find(':');
   const std::string kind = word.substr(0, colon);
   if (colon == std::string::npos || (kind != "wavy" && kind != "needles")) return world::flatten(load_scene(word));
-  uint32_t count = 0;
-  const char* end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data() + colon + 1, end, count);
-  if (error != std::errc() || rest != end || count < 16 || count > 50'000'000) {
+  const uint32_t count = to_number<uint32_t>(std::string_view(word).substr(colon + 1)).value_or(0);
+  if (count < 16 || count > 50'000'000) {
     throw UsageError({"usage.option.value", "this is no number of triangles from 16 to 50000000", word,
                       "write " + kind + ":100000"});
   }

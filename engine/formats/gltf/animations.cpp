@@ -3,7 +3,6 @@
 #include "formats/gltf/animations.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "core/count_of.h"
+#include "core/parse_number.h"
 #include "core/utf8.h"
 #include "formats/gltf/accessors.h"
 #include "formats/gltf/buffers.h"
@@ -126,15 +126,6 @@ struct Target {
   uint32_t element = 0;
 };
 
-/// Reads a number at the begin of a text and removes it.
-std::optional<uint32_t> take_number(std::string_view& text) {
-  uint32_t number = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (parsed.ec != std::errc()) return std::nullopt;
-  text.remove_prefix(static_cast<size_t>(parsed.ptr - text.data()));
-  return number;
-}
-
 /// Reads the animations of one document.
 class AnimationReader {
  public:
@@ -197,13 +188,15 @@ class AnimationReader {
     for (const Pointer& pointer : kPointers) {
       if (!text.starts_with(pointer.array)) continue;
       std::string_view rest = std::string_view(text).substr(pointer.array.size());
-      const std::optional<uint32_t> index = take_number(rest);
+      const std::optional<uint32_t> index = take_number<uint32_t>(rest);
       if (!index || !rest.starts_with('/')) continue;
       rest.remove_prefix(1);
       if (!rest.starts_with(pointer.member)) continue;
       rest.remove_prefix(pointer.member.size());
       Target target{pointer.property, {*index}};
-      if (pointer.property == AnimatedProperty::kWeight) target.element = take_number(rest).value_or(kNoIndex);
+      if (pointer.property == AnimatedProperty::kWeight) {
+        target.element = take_number<uint32_t>(rest).value_or(kNoIndex);
+      }
       if (rest.empty()) return check_pointer(std::move(target), pointer.array, text, place);
     }
     if (std::optional<Target> target = find_texture(text)) {
@@ -217,7 +210,7 @@ class AnimationReader {
   /// Returns the part of a texture's transform that a pointer names.
   static std::optional<Target> find_texture(std::string_view text) {
     if (!drop_begin(text, kMaterials)) return std::nullopt;
-    const std::optional<uint32_t> index = take_number(text);
+    const std::optional<uint32_t> index = take_number<uint32_t>(text);
     if (!index || !drop_begin(text, "/")) return std::nullopt;
     for (uint32_t slot = 0; slot < std::size(kSlots); ++slot) {
       std::string_view rest = text;

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
 #include "core/divide_up.h"
+#include "core/parse_number.h"
 #include "promin/error.h"
 #include "trace/film/refinement.h"
 #include "work/pictures/frame_plan.h"
@@ -137,8 +137,8 @@ std::vector<fs::path> number_pictures(const jobs::Job& job, const std::vector<fs
   for (const std::vector<size_t>& pieces : choose_pictures(job, frames)) {
     const std::string frame = frame_prefix_of(job.manifest().pieces[pieces.front()]);
     if (frame.empty()) return files;
-    uint32_t number = 0;
-    std::from_chars(frame.data() + kOfFrame.size(), frame.data() + frame.size(), number);
+    std::string_view digits = std::string_view(frame).substr(kOfFrame.size());
+    const uint32_t number = take_number<uint32_t>(digits).value_or(0);
     const bool is_first = std::exchange(is_before_first, false);
     for (const fs::path& file : files) {
       fs::path of_frame = number_file(file, number);

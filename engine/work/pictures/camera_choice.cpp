@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "core/parse_number.h"
 #include "promin/error.h"
 #include "promin/scene.h"
 #include "scene/framing.h"
@@ -36,14 +36,12 @@ const Camera& find_camera(const Scene& scene, const std::string& selection) {
   for (const Camera& camera : scene.cameras) {
     if (camera.name == selection) return camera;
   }
-  size_t index = 0;
-  const char* end = selection.data() + selection.size();
-  const auto [rest, error] = std::from_chars(selection.data(), end, index);
-  if (error != std::errc() || rest != end || index >= scene.cameras.size()) {
+  const std::optional<size_t> index = to_number<size_t>(selection);
+  if (!index || *index >= scene.cameras.size()) {
     throw UsageError({"camera.unknown", "the scene has no camera \"" + selection + "\"", scene.file.string(),
                       "choose one of: " + list_cameras(scene)});
   }
-  return scene.cameras[index];
+  return scene.cameras[*index];
 }
 
 /// Returns the default up direction: +Y. If +Y is the direction of view, it is the direction that puts the front of the

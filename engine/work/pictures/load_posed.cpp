@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "core/parse_number.h"
 #include "formats/load_report.h"
 #include "promin/error.h"
 
@@ -31,10 +31,8 @@ uint32_t find_animation(const Scene& scene, const std::string& selection) {
   for (uint32_t i = 0; i < animations.size(); ++i) {
     if (animations[i].name == selection) return i;
   }
-  uint32_t index = 0;
-  const char* end = selection.data() + selection.size();
-  const auto [rest, error] = std::from_chars(selection.data(), end, index);
-  if (error == std::errc() && rest == end && index < animations.size()) return index;
+  const std::optional<uint32_t> index = to_number<uint32_t>(selection);
+  if (index && *index < animations.size()) return *index;
   throw UsageError({"animation.unknown", "the scene has no animation \"" + selection + "\"", scene.file.string(),
                     "choose one of: " + list_animations(animations)});
 }

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <vector>
 
+#include "core/parse_number.h"
 #include "core/suggest.h"
 #include "image/color_words.h"
 #include "promin/image.h"
@@ -39,16 +39,8 @@ struct Part {
     const std::string place = text == whole ? "" : fmt::format(" in \"{}\"", whole);
     throw WrongValue{fmt::format("takes {}, not \"{}\"{}", takes, text, place), ""};
   }
-  /// Returns the number, if the part is one and nothing else.
-  template <typename Number>
-  std::optional<Number> number() const {
-    Number value{};
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && rest == end ? std::optional(value) : std::nullopt;
-  }
   double real(double min, double max) const {
-    const std::optional<double> value = number<double>();
+    const std::optional<double> value = to_number<double>(text);
     // The comparison is written so that a NaN is refused.
     if (!value || !(*value >= min && *value <= max)) refuse(fmt::format("a number from {:g} to {:g}", min, max));
     return *value;
@@ -58,7 +50,7 @@ struct Part {
 /// Returns a side of a picture; 0 if the part is empty.
 uint32_t read_side(const Part& part) {
   if (part.text.empty()) return 0;
-  const std::optional<uint32_t> side = part.number<uint32_t>();
+  const std::optional<uint32_t> side = to_number<uint32_t>(part.text);
   if (!side || *side < 1 || *side > kMaxSide) part.refuse(fmt::format("a whole number from 1 to {}", kMaxSide));
   return *side;
 }
