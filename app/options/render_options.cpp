@@ -217,7 +217,7 @@ void add_view_options(OptionTable& table, ViewOptions& view) {
             "Method that computes light. whitted: the light of the environment reaches every point, and surfaces that "
             "emit light do not light others. direct: they light others, and objects also block the light of the "
             "environment, which gives soft shadows and takes more samples. path: surfaces also scatter light to other "
-            "surfaces, up to --max-depth times [whitted]",
+            "surfaces, up to --max-depth times [whitted; direct with --light soft, and if surfaces emit much light]",
             [&](const OptionValues& w) { view.integrator = w.name<Integrator>(integrator_names()); });
   table.add("--lights-off", "INDICES", "Indices of lights to switch off, counted from 0 and separated by commas",
             [&](const OptionValues& w) { view.lights_off = read_numbers(w); });

@@ -19,6 +19,7 @@
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/camera_path.h"
 #include "work/pictures/tracing_run.h"
+#include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
 #include "work/spec/check_spec.h"
 
@@ -109,6 +110,7 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
     view_options.given_camera = opened.replay->camera(0);
   }
   opened.view = make_view(*scene, view_options, console);
+  opened.usual_integrator = usual_integrator(*scene, view_options.look.light);
   if (!options.replay) warn_of_empty_pictures(*scene, {&opened.view.camera, 1}, opened.view.size, console);
   const LookOptions& look = options.view.look;
   const AssumedLight assumed = light_up(*scene, look, opened.environment, upward_direction(*scene, view_options));

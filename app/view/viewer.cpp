@@ -152,6 +152,8 @@ void Viewer::update_opening() {
 
 void Viewer::show_scene(OpenedScene opened) {
   const bool is_first = !opened_.scene;
+  // The integrator suits the file, unless the user has chosen another one in the panel.
+  const bool has_chosen_integrator = !is_first && switches_.integrator != opened_.view.mode.integrator;
   opened_ = std::move(opened);
   const View& view = opened_.view;
   clock_ = AnimationClock(*opened_.scene, opened_.motion);
@@ -162,10 +164,10 @@ void Viewer::show_scene(OpenedScene opened) {
   has_replay_started_ = false;
   bookmarks_.clear();
   switches_.max_depth = view.max_depth;
+  if (!has_chosen_integrator) switches_.integrator = view.mode.integrator;
   if (is_first) {
     switches_.has_shadows = view.mode.has_shadows;
     switches_.debug_view = view.mode.debug_view;
-    switches_.integrator = view.mode.integrator;
     window_.resize(view.size);
   } else {
     switches_.scene.lights_off.clear();

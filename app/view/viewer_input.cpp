@@ -212,6 +212,7 @@ DescribedScene Viewer::described_scene(const View& view) const {
   described.has_shadows = mode_.has_shadows;
   described.lights_off = on.lights_off;
   described.look = look;
+  described.usual_integrator = opened_.usual_integrator;
   described.environment = start_.environment;
   described.environment.light_rotation_deg = surroundings.light_rotation_deg;
   described.variant = opened_.load.material_variant;

@@ -171,7 +171,7 @@ struct Material {
   std::string name;
   /// The model and its parameters.
   std::variant<Phong, MetallicRoughness, Unlit> model;
-  /// Light that the surface emits, linear RGB, finite and not negative. This light does not light other surfaces.
+  /// Emitted light, linear RGB, finite and not negative. It lights others with Integrator::kDirect and kPath.
   vec3 emissive{0.0F};
   /// Texture whose values multiply `emissive`; unlit materials ignore it.
   TextureSlot emissive_texture = {};

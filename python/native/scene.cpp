@@ -28,6 +28,7 @@
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/load_posed.h"
 #include "work/pictures/moving_scene.h"
+#include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
 #include "work/spec/check_spec.h"
 #include "work/spec/environment_choice.h"
@@ -251,6 +252,12 @@ void bind_scene(nb::module_& module) {
       .def(
           "display",
           [](const Scene& s, const std::string& choice) { return write(display_of(s, read_choice(choice))); },
+          nb::arg("choice"))
+      .def(
+          "usual_integrator",
+          [](const Scene& s, const std::string& choice) {
+            return names_of(Integrator())[static_cast<size_t>(work::usual_integrator(s, read_choice(choice)))];
+          },
           nb::arg("choice"));
 }
 

@@ -182,6 +182,7 @@ class Renderer:
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
         self._light = str(light)
+        self._usual_integrator = self._scene.native().usual_integrator(self._light)
         # The light stands on the view's `up`, unless a Camera replaces the scene's framing.
         self._view = of_view(view)
         framing = {} if isinstance(self._view.camera, Camera) else pose_of(self._view)
@@ -477,8 +478,8 @@ class Renderer:
         return scene.native().choose_camera(camera_spec(View(camera=next_camera)), given, record["size"], _ASPECT_RATIO)
 
     def _with_integrator(self, view: View) -> View:
-        """Returns the view with an integrator: its own, or the one that suits the light."""
-        return replace(view, integrator="direct") if view.integrator is None and self._light == "soft" else view
+        """Returns the view with an integrator: its own, or the one that suits the light of the scene."""
+        return view if view.integrator is not None else replace(view, integrator=self._usual_integrator)
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """Returns the AOVs of these names. Positions are in world coordinates."""

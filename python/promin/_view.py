@@ -86,8 +86,8 @@ class View:
     """True if lights cast shadows."""
     integrator: str | None = None
     """The method that computes light: "whitted", or "direct", with which objects also block the light of the
-    environment, or "path", with which surfaces also scatter light to other surfaces. None: "direct" with soft light,
-    otherwise "whitted"."""
+    environment, or "path", with which surfaces also scatter light to other surfaces. None: "direct" with soft light
+    and for scenes whose surfaces emit much light (docs/usage.md, "--integrator"), otherwise "whitted"."""
 
     # The following fields change the camera, as the options of `promin render` with the same names do.
 

@@ -210,6 +210,20 @@ def test_soft_light_has_soft_shadows_and_a_ground(box: promin.Scene) -> None:
     assert occlusion.shape == (18, 24) and occlusion.max() == 1
 
 
+def test_surfaces_that_emit_much_light_light_others() -> None:
+    def lit_by(radiance: float) -> promin.Renderer:
+        scene = promin.Scene()
+        scene.add_triangles([[-2, 0, -2], [0, 0, 4], [2, 0, -2]], [[0, 1, 2]])
+        lamp = scene.add_material(promin.MetallicRoughness(emissive=(radiance,) * 3))
+        scene.add_triangles([[-1, 1, -1], [0, 1, 1], [1, 1, -1]], [[0, 1, 2]], material=lamp)
+        return promin.Renderer(scene, light="none", view=promin.View(size=(24, 18), spp=4, up=(0, 0, 1)))
+
+    bright, dim = lit_by(9.0), lit_by(1.0)
+    assert (bright.render().rgb == bright.render(integrator="direct").rgb).all()
+    assert (bright.render().rgb != bright.render(integrator="whitted").rgb).any()
+    assert (dim.render().rgb == dim.render(integrator="whitted").rgb).all()
+
+
 def test_a_centre_moves_camera_light_and_positions() -> None:
     frames = []
     for offset in (0.0, 1e6):

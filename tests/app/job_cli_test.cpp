@@ -20,6 +20,7 @@ using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr const char* kPath = R"({"format": "promin camera path", "version": 1, "frames": [
   {"time_s": 0.0, "eye": [0, 0, 4], "look": [0, 0, -1], "up": [0, 1, 0], "fov_deg": 45},
@@ -65,6 +66,32 @@ TEST_F(JobCliTest, PiecesTellOfUnlitSurfaces) {
   EXPECT_EQ(read("cut.exr") == read("whole.exr"), true);
   EXPECT_EQ(read("again.exr") == read("whole.exr"), true);
   EXPECT_EQ(read("again.png") == read("whole.png"), true);
+}
+
+// A floor under a lamp that is bright enough is rendered with the integrator direct, also in jobs and for --explain.
+TEST_F(JobCliTest, FilesThatGlowLightThemselves) {
+  write("glow.mtl", "newmtl floor\nKd 0.8 0.8 0.8\nnewmtl lamp\nKd 0 0 0\nKe 12 9 6\n");
+  write("glow.obj",
+        "mtllib glow.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -.5 1 -.5\nv .5 1 -.5\nv .5 1 .5\nv -.5 1 .5\n"
+        "usemtl floor\nf 4 3 2 1\nusemtl lamp\nf 5 6 7 8\n");
+  const auto render_glow = [&](OptionValues more) {
+    more.insert(more.begin(), {"render", "glow.obj", "--size", "24", "18", "--light", "none"});
+    const ProcessResult result = run(more);
+    expect_done(result);
+    return result;
+  };
+  const std::string note = "light from emissive surfaces (--integrator direct)";
+  EXPECT_THAT(render_glow({"-o", "whole.exr"}).err, HasSubstr(note));
+  EXPECT_THAT(render_glow({"-o", "direct.exr", "--integrator", "direct"}).err, Not(HasSubstr(note)));
+  EXPECT_EQ(read("direct.exr") == read("whole.exr"), true);
+  render_glow({"-o", "cut.exr", "--job", "job", "--pieces", "3"});
+  EXPECT_EQ(read("cut.exr") == read("whole.exr"), true);
+  render_glow({"-o", "old.exr", "--integrator", "whitted"});
+  EXPECT_EQ(read("old.exr") == read("whole.exr"), false);
+  EXPECT_THAT(read("old.exr"), HasSubstr("promin:integrator")) << "it is not the usual one";
+  EXPECT_THAT(run({"render", "glow.obj", "--size", "24", "18", "--explain", "12", "9"}).out,
+              HasSubstr("emissive surface"));
+  EXPECT_THAT(run({"info", "glow.obj", "--json"}).out, HasSubstr(note));
 }
 
 TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {

@@ -74,6 +74,15 @@ TEST(DescribeCommand, NamesHowTheSceneIsLitAndShown) {
               testing::HasSubstr(" --background environment --texture-memory 64 --eye"));
 }
 
+TEST(DescribeCommand, NamesTheIntegratorIfItIsNotTheUsualOne) {
+  View view;
+  EXPECT_THAT(describe_command({.file = "s"}, view), testing::Not(testing::HasSubstr("--integrator")));
+  EXPECT_THAT(describe_command({.file = "s", .usual_integrator = Integrator::kDirect}, view),
+              testing::HasSubstr(" --integrator whitted"));
+  view.mode.integrator = Integrator::kDirect;
+  EXPECT_THAT(describe_command({.file = "s"}, view), testing::HasSubstr(" --integrator direct"));
+}
+
 TEST(DescribeCommand, NamesTheErrorThatAPictureHas) {
   View view;
   view.error_target = ErrorTarget{.error = 0.125F / 1.41421356F, .min_samples = 4, .max_samples = 64};

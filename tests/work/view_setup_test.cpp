@@ -265,11 +265,11 @@ TEST(LightUpTest, SoftLightHasAGroundAndTheIntegratorDirect) {
   EXPECT_FALSE(is_of_ground(dark.objects.back())) << "no light makes no shadow";
 
   ViewOptions options;
-  EXPECT_EQ(mode_of(options).integrator, Integrator::kWhitted);
+  EXPECT_EQ(mode_of(dark, options).integrator, Integrator::kWhitted);
   options.look.light = LightChoice::kSoft;
-  EXPECT_EQ(mode_of(options).integrator, Integrator::kDirect);
+  EXPECT_EQ(mode_of(dark, options).integrator, Integrator::kDirect);
   options.integrator = Integrator::kWhitted;
-  EXPECT_EQ(mode_of(options).integrator, Integrator::kWhitted);
+  EXPECT_EQ(mode_of(dark, options).integrator, Integrator::kWhitted);
 }
 
 TEST(LightUpTest, LightAndGroundStandOnTheScenesUp) {

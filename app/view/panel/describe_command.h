@@ -22,6 +22,8 @@ struct DescribedScene {
   bool has_shadows = true;
   std::vector<uint32_t> lights_off = {};
   LookOptions look = {};
+  /// The integrator of a command that names none.
+  Integrator usual_integrator = Integrator::kWhitted;
   EnvironmentOptions environment = {};
   std::string variant = {};
   std::filesystem::path root = {};

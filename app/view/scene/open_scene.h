@@ -29,6 +29,8 @@ struct OpenedScene {
   /// The files from which the scene was read.
   std::vector<SourceFile> sources;
   View view;
+  /// The integrator of a picture whose options name none.
+  Integrator usual_integrator = Integrator::kWhitted;
   /// The flight to play.
   std::optional<PathPictures> replay;
   RunStats stats;

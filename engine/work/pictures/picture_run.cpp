@@ -11,6 +11,7 @@
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/ground.h"
 #include "work/pictures/load_posed.h"
+#include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
 
 namespace promin::work {
@@ -79,6 +80,8 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   view.given_camera = run.frames.front().camera;
   view.shows_all_sides = options.turntable.has_value();
   stats.view = make_view(scene, view, console);
+  stats.usual_integrator = usual_integrator(scene, view.look.light);
+  run.options.view.integrator = stats.view->mode.integrator;
   if (options.turntable) turn_frames(run.frames, *options.turntable, scene, view, stats.view->camera);
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
@@ -128,7 +131,8 @@ TunedRendererOptions make_renderer_options(const RenderSpec& options, uint64_t e
   if (options.has_all_features) result.more_features = all_features();
   // A run with a time limit begins with a picture of one sample per pixel.
   result.has_error_target = options.error.target && !options.error.time_limit_s;
-  result.mode = mode_of(options.view);
+  result.mode = {options.view.debug_view, !options.view.has_no_shadows,
+                 options.view.integrator.value_or(Integrator::kWhitted)};
   result.has_lens = options.view.aperture_radius.value_or(0.0) > 0.0;
   result.aovs = options.aovs;
   // The average exposure only uses pixels with a hit, so it needs this AOV.

@@ -31,6 +31,8 @@ struct RunStats {
   size_t light_count = 0;
   /// The view; only set for pictures.
   std::optional<View> view;
+  /// The integrator of a picture whose options name none.
+  Integrator usual_integrator = Integrator::kWhitted;
   /// The display transform for 8-bit files.
   DisplayTransform display;
   SetupStats setup;

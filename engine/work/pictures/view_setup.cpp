@@ -14,6 +14,7 @@
 #include "scene/framing.h"
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/ground.h"
+#include "work/pictures/usual_integrator.h"
 
 namespace promin::work {
 namespace {
@@ -60,9 +61,9 @@ std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera) {
   return sides == uvec2(0) ? usual : complete_size(sides, usual);
 }
 
-RenderMode mode_of(const ViewOptions& options) {
-  const Integrator usual = options.look.light == LightChoice::kSoft ? Integrator::kDirect : Integrator::kWhitted;
-  return {options.debug_view, !options.has_no_shadows, options.integrator.value_or(usual)};
+RenderMode mode_of(const Scene& scene, const ViewOptions& options) {
+  const Integrator integrator = options.integrator ? *options.integrator : usual_integrator(scene, options.look.light);
+  return {options.debug_view, !options.has_no_shadows, integrator};
 }
 
 void put_lens(const ViewOptions& options, Camera& camera) {
@@ -87,7 +88,7 @@ View make_view(const Scene& scene, const ViewOptions& options, const Messages& c
   view.filter = options.filter;
 #define PROMIN_VIEW_NUMBER(NAME, TYPE, MIN, MAX, USUAL, PLACEHOLDER, HELP) view.NAME = options.NAME.value_or(USUAL);
 #include "work/spec/view_numbers.def"
-  view.mode = mode_of(options);
+  view.mode = mode_of(scene, options);
   view.depth_kind = options.depth_kind;
   return view;
 }
@@ -172,6 +173,9 @@ std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions&
   if (scene.cameras.size() > 1 && is_file_camera_unchanged(scene, options))
     parts.push_back(fmt::format("the first of the file's {} cameras", scene.cameras.size()));
   if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
+  if (!options.integrator && look.light != LightChoice::kSoft && lights_itself(scene)) {
+    parts.emplace_back("light from emissive surfaces (--integrator direct)");
+  }
   if (light.has_background) parts.emplace_back("a grey background");
   if (display && !look.exposure_ev && !look.averages_exposure && display->exposure_ev != 0.0F) {
     parts.push_back(fmt::format("an exposure of {:+g} EV", display->exposure_ev));

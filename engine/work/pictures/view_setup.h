@@ -30,8 +30,8 @@ std::optional<uvec2> size_for(const uvec2& sides, const Camera& camera);
 /// picture.
 View make_view(const Scene& scene, const ViewOptions& options, const Messages& console);
 
-/// Returns the mode of the options' pictures.
-RenderMode mode_of(const ViewOptions& options);
+/// Returns the mode of the options' pictures of this scene.
+RenderMode mode_of(const Scene& scene, const ViewOptions& options);
 
 /// Gives a camera the lens of the options.
 void put_lens(const ViewOptions& options, Camera& camera);
