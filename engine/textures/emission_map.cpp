@@ -29,6 +29,14 @@ int wrap_square(int i, int count, TextureWrap mode) {
   return rest < count ? rest : period - 1 - rest;
 }
 
+/// Returns the distance by which an interval of texels is moved so that it begins in the first period of the image, or
+/// next to the image if that does not repeat. The interval shows the same texels there.
+double way_to_image(double lo, double hi, uint32_t size, TextureWrap mode) {
+  if (mode == TextureWrap::kClampToEdge) return lo > size ? size - lo : std::max(-1.0 - hi, 0.0);
+  const double period = mode == TextureWrap::kMirroredRepeat ? 2.0 * size : size;
+  return -period * std::floor(lo / period);
+}
+
 double cross_of(const dvec2& a, const dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
@@ -89,10 +97,16 @@ vec3 EmissionMap::mean_on(const std::array<dvec2, 3>& corners, const Texture& te
   // The corners and their box in texels. Interpolation reaches one texel further.
   std::array<dvec2, 3> places = corners;
   for (dvec2& place : places) place *= dvec2(size_);
-  const dvec2 lo = glm::min(glm::min(places[0], places[1]), places[2]) - 1.0;
-  const dvec2 hi = glm::max(glm::max(places[0], places[1]), places[2]) + 1.0;
+  dvec2 lo = glm::min(glm::min(places[0], places[1]), places[2]) - 1.0;
+  dvec2 hi = glm::max(glm::max(places[0], places[1]), places[2]) + 1.0;
   const Level& whole = levels_.back();
   if (!(hi.x - lo.x < size_.x && hi.y - lo.y < size_.y)) return whole.means[0];
+  // The period of an image is no multiple of the squares' side, so its squares are those of the plane only in the first
+  // period. The triangle is moved there.
+  const dvec2 way(way_to_image(lo.x, hi.x, size_.x, texture.wrap_u), way_to_image(lo.y, hi.y, size_.y, texture.wrap_v));
+  for (dvec2& place : places) place += way;
+  lo += way;
+  hi += way;
   size_t number = 0;
   double side = side_;
   glm::ivec2 first;
@@ -103,7 +117,6 @@ vec3 EmissionMap::mean_on(const std::array<dvec2, 3>& corners, const Texture& te
     if (number + 1 == levels_.size()) return whole.means[0];
     if (std::max(last.x - first.x, last.y - first.y) < kMostAcross) break;
   }
-  // The period of an image is no multiple of the squares' side. The box is moved near the image first.
   const Level& level = levels_[number];
   dvec3 inside(0.0);
   dvec3 all(0.0);

@@ -438,6 +438,199 @@ TEST_F(EmittersTest, ExtremeLampsGiveFinitePictures) {
   EXPECT_NEAR(mean_of(scene, make_point_view(vec3(0.3F, 0.0F, 0.2F))).x / one, 2.0, 0.01);
 }
 
+/// A sheet that faces down, 0.8 above the floor, with texture coordinates from 0 to 1 in x and z.
+Mesh make_shown_sheet() {
+  Mesh sheet = make_sheet(vec3(0.0F, 0.8F, 0.0F), vec3(0.6F, 0.0F, 0.0F), vec3(0.0F, 0.0F, 0.5F));
+  sheet.uvs = {vec4(0.0F), vec4(1, 0, 0, 0), vec4(1, 1, 0, 0), vec4(0, 1, 0, 0)};
+  return sheet;
+}
+
+/// Returns the radiance of a white floor under the part of this sheet between two texture coordinates, whose radiance
+/// is 1. `scale` is the sheet's size relative to the lit point.
+double light_of_part(const dvec2& lo, const dvec2& hi, const dvec3& at, double scale = 1.0) {
+  const auto corner = [&](double u, double v) {
+    return at + scale * (dvec3(0.6 * (2.0 * u - 1.0), 0.8, 0.5 * (2.0 * v - 1.0)) - at);
+  };
+  return irradiance_of({corner(lo.x, lo.y), corner(hi.x, lo.y), corner(hi.x, hi.y), corner(lo.x, hi.y)}, at) /
+         std::numbers::pi;
+}
+
+/// Adds a texture of 2 by 2 texels, which are shown as squares of one colour. Returns its number.
+uint32_t add_texels(world::Scene& scene, const std::vector<uint32_t>& texels) {
+  Scene textured;
+  textured.images = scene.images;
+  textured.textures = scene.textures;
+  const uint32_t number = test::add_texture(textured, uvec2(2), texels, ImageUse::kColor);
+  scene.images = textured.images;
+  scene.textures = textured.textures;
+  return number;
+}
+
+constexpr uint32_t kBlackTexel = 0xFF000000;
+constexpr uint32_t kRedTexel = 0xFF0000FF;
+constexpr uint32_t kGreenTexel = 0xFF00FF00;
+constexpr uint32_t kWhiteTexel = 0xFFFFFFFF;
+
+void expect_near_by_channel(const dvec3& mean, const dvec3& expected, const char* what, double share = 0.005) {
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(mean[channel], expected[channel], share * expected[channel]) << what << " " << channel;
+  }
+}
+
+// The quarters of a sheet have their own colours: each lights a floor by Lambert's formula. A copy, and an instance
+// that is turned, stretched and mirrored, give the same light.
+TEST_F(EmittersTest, TexturesOfEmissionHaveTheirClosedForm) {
+  const dvec3 at(0.3, 0.0, 0.2);
+  const double red = light_of_part(dvec2(0.0), dvec2(0.5), at);
+  const double green = light_of_part(dvec2(0.5, 0.0), dvec2(1.0, 0.5), at);
+  const double white = light_of_part(dvec2(0.5), dvec2(1.0), at);
+  world::Scene scene = make_lit_floor(make_shown_sheet(), make_glow(vec3(2.0F)));
+  scene.materials[1].emissive_texture.texture = add_texels(scene, {kRedTexel, kGreenTexel, kBlackTexel, kWhiteTexel});
+  const View view = make_point_view(vec3(at));
+  const dvec3 expected = 2.0 * dvec3(red + white, green + white, white);
+  expect_near_by_channel(mean_of(scene, view), expected, "copy");
+  dmat4 map(dmat3(dvec3(0.0, 2.0, 0.5), dvec3(0.7, 0.0, 0.1), dvec3(0.0, -0.4, 1.5)));
+  map[3] = dvec4(0.1, 0.7, -0.2, 1.0);
+  for (const double side : {1.0, -1.0}) {
+    map[1] *= side;
+    world::Scene instanced = scene;
+    instanced.objects[1].shape = world::NotDrawn{};
+    instanced.meshes = {world::place(make_shown_sheet(), glm::inverse(map))};
+    instanced.instances = {{1, 0, glm::dmat4x3(map)}};
+    expect_near_by_channel(mean_of(instanced, view), expected, "instance");
+  }
+  // A triangle that shows black texels alone is not chosen, and a black lamp lights nothing.
+  scene.materials[1].emissive_texture.texture = add_texels(scene, {kBlackTexel, kBlackTexel, kBlackTexel, kBlackTexel});
+  EXPECT_EQ(mean_of(scene, view), dvec3(0.0));
+  auto& uvs = std::get<Mesh>(scene.objects[1].shape).uvs;
+  scene.materials[1].emissive_texture.texture = add_texels(scene, {kWhiteTexel, kBlackTexel, kBlackTexel, kBlackTexel});
+  expect_near_by_channel(mean_of(scene, view), dvec3(2.0 * red), "one texel", 0.01);
+  for (vec4& uv : uvs) uv += vec4(-7.0F, 12.0F, 0.0F, 0.0F);
+  expect_near_by_channel(mean_of(scene, view), dvec3(2.0 * red), "repeated", 0.01);
+}
+
+// Holes of masks emit nothing. A blending lamp emits by its alpha, and light from behind passes through the rest of it.
+TEST_F(EmittersTest, MasksAndBlendsHaveTheirClosedForm) {
+  const dvec3 at(0.3, 0.0, 0.2);
+  const dvec2 middle_top(0.5, 1.0);
+  const double left = light_of_part(dvec2(0.0), middle_top, at);
+  const double right = light_of_part(dvec2(0.5, 0.0), dvec2(1.0), at);
+  world::Scene scene = make_lit_floor(make_shown_sheet(), make_glow(vec3(2.0F, 0.0F, 0.0F)));
+  const uint32_t half = add_texels(scene, {0x00FFFFFF, 0xFFFFFFFF, 0x00FFFFFF, 0xFFFFFFFF});
+  Material& masked = scene.materials[1];
+  masked.alpha_mode = AlphaMode::kMask;
+  std::get<MetallicRoughness>(masked.model).base_color_texture.texture = half;
+  // Green and blue sheets that cover the same directions are behind it.
+  const auto add_behind = [&](double scale, const Material& material) {
+    Mesh sheet = make_shown_sheet();
+    for (vec3& place : sheet.positions) place = vec3(at + scale * (dvec3(place) - at));
+    scene.materials.push_back(material);
+    scene.objects.push_back({"behind", sheet, static_cast<uint32_t>(scene.materials.size() - 1)});
+  };
+  Material blending = make_glow(vec3(0.0F, 3.0F, 0.0F));
+  blending.alpha_mode = AlphaMode::kBlend;
+  blending.alpha = 0.25F;
+  add_behind(1.5, blending);
+  add_behind(2.0, make_glow(vec3(0.0F, 0.0F, 4.0F)));
+  const dvec3 expected(2.0 * right, 0.25 * 3.0 * left, 0.75 * 4.0 * left);
+  expect_near_by_channel(mean_of(scene, make_point_view(vec3(at))), expected, "alpha");
+}
+
+// Light passes straight through a thin pane of glass, which tints it.
+TEST_F(EmittersTest, GlassInFrontOfALampTintsItsLight) {
+  const dvec3 at(0.3, 0.0, 0.2);
+  world::Scene scene = make_lit_floor(make_shown_sheet(), make_glow(vec3(2.0F)));
+  Material glass = make_diffuse(vec3(0.5F, 0.25F, 1.0F));
+  std::get<MetallicRoughness>(glass.model).transmission = 1.0F;
+  glass.is_double_sided = true;
+  scene.materials.push_back(glass);
+  scene.objects.push_back({"pane", make_sheet(vec3(0, 0.4F, 0), vec3(2, 0, 0), vec3(0, 0.1F, 2)), 2});
+  const double light = 2.0 * light_of_part(dvec2(0.0), dvec2(1.0), at);
+  expect_near_by_channel(mean_of(scene, make_point_view(vec3(at))), light * dvec3(0.5, 0.25, 1.0), "glass");
+}
+
+// Each sample agrees for lamps with textures, holes, alpha and coats behind panes of glass. An object has one triangle,
+// because the oracle does not know the mean of a texture, which decides between triangles.
+TEST_F(EmittersTest, EachSampleOfTexturedLampsBehindGlassIsTheOracles) {
+  world::Scene scene = make_glossy_lamps();
+  Mesh ceiling = make_triangle(vec3(-1.2F, 1.7F, -0.5F), vec3(0.9F, 1.8F, -0.4F), vec3(-0.3F, 1.6F, 0.9F));
+  ceiling.uvs = {vec4(0.0F), vec4(1.7F, 0, 0, 0), vec4(0.3F, 2.4F, 0, 0)};
+  std::swap(ceiling.triangles[0].y, ceiling.triangles[0].z);
+  scene.objects[2].shape = ceiling;
+  scene.materials[2].emissive_texture.texture = add_texels(scene, {kRedTexel, 0xFF80C0FF, kBlackTexel, kWhiteTexel});
+  scene.materials[2].alpha_mode = AlphaMode::kMask;
+  std::get<MetallicRoughness>(scene.materials[2].model).base_color_texture.texture =
+      add_texels(scene, {0xFFFFFFFF, 0x00FFFFFF, 0xFFFFFFFF, 0xFFFFFFFF});
+  scene.materials[3].alpha_mode = AlphaMode::kBlend;
+  scene.materials[3].alpha = 0.6F;
+  Material glass = make_diffuse(vec3(0.6F, 0.8F, 0.9F));
+  auto& model = std::get<MetallicRoughness>(glass.model);
+  model.transmission = 0.8F;
+  model.specular = 1.0F;
+  model.roughness = 0.0F;
+  glass.is_double_sided = true;
+  scene.materials.push_back(glass);
+  scene.objects.push_back({"pane", make_sheet(vec3(0.2F, 1.1F, 0.3F), vec3(0.7F, 0, 0), vec3(0, 0.2F, 0.7F)),
+                           static_cast<uint32_t>(scene.materials.size() - 1)});
+  expect_samples(scene, make_lamp_view());
+}
+
+// Each closed shape is a furnace: a point of its inside has e + r e.
+TEST_F(EmittersTest, ShapesShineToTheirInsides) {
+  world::Scene scene;
+  Material material = make_diffuse(vec3(0.5F));
+  material.emissive = vec3(1.0F);
+  scene.materials = {material};
+  world::Cylinder cylinder;
+  cylinder.center = vec3(4, 0, 0);
+  cylinder.axis = glm::normalize(vec3(0.3F, 1.0F, 0.2F));
+  cylinder.half_height = 1.2F;
+  cylinder.radius = 0.9F;
+  world::Cone cone;
+  cone.center = vec3(8, 0, 0);
+  cone.axis = vec3(0, 1, 0);
+  cone.half_height = 1.0F;
+  cone.radius_bottom = 1.3F;
+  cone.radius_top = 0.7F;
+  world::Capsule capsule;
+  capsule.center = vec3(12, 0, 0);
+  capsule.axis = glm::normalize(vec3(1.0F, 0.2F, 0.0F));
+  capsule.half_height = 0.8F;
+  capsule.radius_bottom = 1.1F;
+  capsule.radius_top = 0.8F;
+  scene.objects = {{"sphere", world::Sphere{vec3(0.0F), 1.0F}, 0},
+                   {"cylinder", cylinder, 0},
+                   {"cone", cone, 0},
+                   {"capsule", capsule, 0},
+                   {"box", world::Box{vec3(16, 0, 0), vec3(1.0F, 0.8F, 1.2F), vec3(0.1F, 0.2F, 0.05F)}, 0}};
+  View view = make_lamp_view(uvec2(16));
+  view.camera.look = vec3(0, 0, -1);
+  view.camera.up = vec3(0, 1, 0);
+  view.camera.yfov = 2.0F;
+  view.samples_per_pixel = 1024;
+  Renderer renderer = renderer_of(scene);
+  for (const float x : {0.0F, 4.0F, 8.0F, 12.0F, 16.0F}) {
+    view.camera.eye = vec3(x + 0.1F, 0.15F, 0.2F);
+    dvec3 sum(0.0);
+    for (const vec3& pixel : renderer.render(view).image.pixels) sum += dvec3(pixel);
+    EXPECT_NEAR(sum.x / 256.0, 1.5, 0.007) << x;
+  }
+}
+
+// A lamp that is inside out shines away from the floor, unless it has two sides. Its light is proportional to its
+// radiance, however large that is.
+TEST_F(EmittersTest, SidesAndRadianceHaveTheirClosedForm) {
+  const dvec3 at(0.3, 0.0, 0.2);
+  const View view = make_point_view(vec3(at));
+  world::Scene scene = make_lit_floor(make_shown_sheet(), make_glow(vec3(1.0F, 1e14F, 1e-14F)));
+  const double light = light_of_part(dvec2(0.0), dvec2(1.0), at);
+  expect_near_by_channel(mean_of(scene, view), light * dvec3(1.0, 1e14, 1e-14), "front");
+  for (uvec3& corners : std::get<Mesh>(scene.objects[1].shape).triangles) std::swap(corners.y, corners.z);
+  EXPECT_EQ(mean_of(scene, view), dvec3(0.0));
+  scene.materials[1].is_double_sided = true;
+  expect_near_by_channel(mean_of(scene, view), light * dvec3(1.0, 1e14, 1e-14), "two sides");
+}
+
 TEST_F(EmittersTest, NumbersAreSharedByWeight) {
   const std::vector<double> weights = {1.0, 0.0, 3.0, 1e-30};
   const std::vector<uint64_t> begins = share_numbers(weights);
