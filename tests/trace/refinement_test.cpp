@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -466,11 +467,64 @@ TEST(RefinementTest, NoiseAroundAPixelCountsIfSamplesChoosePoints) {
   view.error_target = ErrorTarget{.error = 1.0F / 16.0F, .min_samples = 8, .max_samples = 128};
   std::array<uint64_t, 2> samples{};
   for (const bool samples_points : {false, true}) {
-    Refinement refinement(view, {uvec2(0), view.size}, false, samples_points);
+    Refinement refinement(view, {uvec2(0), view.size}, false, {.any = samples_points});
     run(refinement, noise, 5000);
     samples[samples_points ? 1 : 0] = refinement.sample_count();
   }
   EXPECT_GT(samples[1], samples[0]);
+}
+
+/// Returns 1 for the given share of all places, and 0 for the others.
+Scene make_rare_light(double share) {
+  return [share](const dvec2& p) {
+    uint64_t bits = std::bit_cast<uint64_t>(p.x) * 0x9E3779B97F4A7C15U + std::bit_cast<uint64_t>(p.y);
+    for (int i = 0; i < 3; ++i) bits = (bits ^ (bits >> 31)) * 0xBF58476D1CE4E5B9U;
+    return vec3(static_cast<double>(bits >> 11) * 0x1p-53 < share ? 1.0F : 0.0F);
+  };
+}
+
+// Pixels whose first samples miss rare light do not stop earlier than the pixels around them, so that a picture is not
+// too dark. With the rule of whitted pictures it is.
+TEST(RefinementTest, RareLightIsNotLost) {
+  constexpr double kShare = 0.1;
+  const auto bias_of = [&](Integrator integrator, const SampledPoints& points) {
+    View view = make_refined_view(1.0F / 16.0F, 4);
+    view.mode.integrator = integrator;
+    Refinement refinement(view, {uvec2(0), view.size}, false, points);
+    run(refinement, make_rare_light(kShare), 1 << 16);
+    double sum = 0.0;
+    for (size_t i = 0; i < refinement.pixel_count(); ++i) sum += static_cast<double>(refinement.estimate(i).mean().x);
+    return sum / static_cast<double>(refinement.pixel_count()) / kShare - 1.0;
+  };
+  EXPECT_LT(bias_of(Integrator::kWhitted, {}), -0.1);
+  EXPECT_NEAR(bias_of(Integrator::kPath, {.any = true}), 0.0, 0.05);
+  EXPECT_NEAR(bias_of(Integrator::kDirect, {.any = true, .of_many_sources = true}), 0.0, 0.02);
+}
+
+TEST(RefinementTest, CropsOfSampledLightHaveThePixelsOfTheWhole) {
+  View view = make_refined_view(1.0F / 16.0F, 4);
+  view.size = uvec2(40, 24);
+  view.mode.integrator = Integrator::kPath;
+  const auto refine_part = [&](const PixelWindow& window) {
+    Refinement refinement(view, window, false, {.any = true});
+    run(refinement, make_rare_light(0.02), 5000);
+    return results_of(refinement);
+  };
+  const Refined whole = refine_part({uvec2(0), view.size});
+  EXPECT_GE(std::ranges::min(whole.counts), 16U);
+  for (const PixelWindow& window : {PixelWindow{uvec2(3, 2), uvec2(4, 3)}, PixelWindow{uvec2(1, 5), uvec2(39, 24)},
+                                    PixelWindow{uvec2(20, 0), uvec2(40, 1)}}) {
+    const Refined part = refine_part(window);
+    size_t i = 0;
+    for (uint32_t y = window.lo.y; y < window.hi.y; ++y) {
+      for (uint32_t x = window.lo.x; x < window.hi.x; ++x, ++i) {
+        const size_t of_whole = size_t{y} * view.size.x + x;
+        ASSERT_EQ(part.means[i], whole.means[of_whole]);
+        ASSERT_EQ(part.claims[i], whole.claims[of_whole]);
+        ASSERT_EQ(part.counts[i], whole.counts[of_whole]);
+      }
+    }
+  }
 }
 
 }  // namespace

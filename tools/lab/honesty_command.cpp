@@ -4,6 +4,7 @@
 // with that of equally exact pictures with the same number of samples in each pixel. Whole pictures are timed. The true
 // values are known for some windows of them, from many samples on a lattice, which the measured pictures do not use.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
@@ -34,6 +35,8 @@ struct HonestyOptions {
   uint32_t runs = 3;
   /// True if errors and claims are those of the shown picture.
   bool is_shown = false;
+  LightChoice light = LightChoice::kAuto;
+  Integrator integrator = Integrator::kWhitted;
 };
 
 /// The number of windows along each side of the picture, and the fraction of the side that they cover.
@@ -54,6 +57,8 @@ std::vector<PixelWindow> choose_windows(const uvec2& size) {
 /// Errors of the pixels whose true value is known.
 struct Errors {
   double rmse = 0.0;
+  /// The error of the mean of all pixels, relative to the mean.
+  double bias = 0.0;
   /// The error that 999 of 1000 pixels do not exceed. A pixel's error is that of its worst channel.
   double worst = 0.0;
 };
@@ -69,12 +74,13 @@ class HonestyBench {
   HonestyBench(const gpu::Device& device, const std::string& file, const HonestyOptions& options)
       : options_(options), windows_(choose_windows(options.size)), name_(std::filesystem::path(file).stem()) {
     Scene scene = load_scene(file);
-    light_scene(scene, LightChoice::kAuto);
+    light_scene(scene, options.light);
     const float aspect_ratio = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
     view_.camera = scene.cameras.empty() ? frame_scene(scene, aspect_ratio) : scene.cameras.front();
     view_.size = options.size;
     if (options.is_shown) display_ = display_of(scene);
     view_.max_depth = default_max_depth(scene);
+    view_.mode.integrator = options.integrator;
     renderer_.emplace(device, scene, RendererOptions{.with_aovs = true});
     plain_renderer_.emplace(device, scene);
   }
@@ -87,7 +93,7 @@ class HonestyBench {
       views.back().samples_per_pixel = samples;
     }
     const size_t uniform_count = views.size();
-    for (const float error : {1.0F / 16.0F, 1.0F / 64.0F, 1.0F / 128.0F}) {
+    for (const float error : {1.0F / 16.0F, 1.0F / 32.0F, 1.0F / 64.0F, 1.0F / 128.0F}) {
       views.push_back(view_);
       views.back().error_target =
           ErrorTarget{.error = error, .min_samples = usual_min_samples(error), .display = display_};
@@ -126,6 +132,8 @@ class HonestyBench {
   void find_truth() {
     View fine = view_;
     fine.samples_per_pixel = options_.truth_samples;
+    // Points of lights are those of another seed, so that the truth does not share its error with the pictures.
+    if (view_.mode.integrator != Integrator::kWhitted) fine.seed = view_.seed + 1;
     for (const PixelWindow& window : windows_) {
       fine.crop = window;
       truth_.push_back(plain_renderer_->render(fine).image);
@@ -137,12 +145,18 @@ class HonestyBench {
 
   Errors errors_of(const Image& image) const {
     double sum2 = 0.0;
+    double mean = 0.0;
+    double true_mean = 0.0;
     std::vector<double> worst;
     for (size_t w = 0; w < windows_.size(); ++w) {
       for (uint32_t y = 0; y < truth_[w].size.y; ++y) {
         for (uint32_t x = 0; x < truth_[w].size.x; ++x) {
           const vec3& written = image.at(windows_[w].lo.x + x, windows_[w].lo.y + y);
-          const dvec3 error = dvec3(shown(written)) - dvec3(shown(truth_[w].at(x, y)));
+          const dvec3 color(shown(written));
+          const dvec3 true_color(shown(truth_[w].at(x, y)));
+          const dvec3 error = color - true_color;
+          mean += color.x + color.y + color.z;
+          true_mean += true_color.x + true_color.y + true_color.z;
           sum2 += glm::dot(error, error);
           worst.push_back(std::max({std::abs(error.x), std::abs(error.y), std::abs(error.z)}));
         }
@@ -150,18 +164,25 @@ class HonestyBench {
     }
     const auto at = worst.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(worst.size()));
     std::nth_element(worst.begin(), at, worst.end());
-    return {std::sqrt(sum2 / (3.0 * static_cast<double>(worst.size()))), *at};
+    const double bias = true_mean == 0.0 ? 0.0 : mean / true_mean - 1.0;
+    return {std::sqrt(sum2 / (3.0 * static_cast<double>(worst.size()))), bias, *at};
   }
 
   /// Returns the fraction of the refined pixels whose error is within the claim.
   double honest_share(View view) {
+    std::vector<RenderResult> results;
+    uint32_t first_samples = view.error_target->max_samples;
+    for (const PixelWindow& window : windows_) {
+      view.crop = window;
+      results.push_back(renderer_->render(view));
+      first_samples = std::min(first_samples, std::ranges::min(results.back().aovs.samples));
+    }
     size_t refined = 0;
     size_t honest = 0;
     for (size_t w = 0; w < windows_.size(); ++w) {
-      view.crop = windows_[w];
-      const RenderResult result = renderer_->render(view);
+      const RenderResult& result = results[w];
       for (size_t i = 0; i < truth_[w].pixels.size(); ++i) {
-        if (result.aovs.samples[i] == view.error_target->min_samples) continue;
+        if (result.aovs.samples[i] == first_samples) continue;
         ++refined;
         const vec3& written = result.image.pixels[i];
         const vec3 claim = display_ ? shown_claim(result.aovs.error[i], written, *display_) : result.aovs.error[i];
@@ -190,8 +211,8 @@ class HonestyBench {
   }
 
   void tell(const std::string& what, double samples, const Point& point) const {
-    fmt::print("| {} | {} | {:.2f} | {:.0f} | {:.5f} | {:.4f} |", name_, what, samples, point.ms, point.errors.rmse,
-               point.errors.worst);
+    fmt::print("| {} | {} | {:.2f} | {:.0f} | {:.5f} | {:.4f} | {:+.2f} % |", name_, what, samples, point.ms,
+               point.errors.rmse, point.errors.worst, 100.0 * point.errors.bias);
     std::fflush(stdout);
   }
 
@@ -208,9 +229,8 @@ class HonestyBench {
 void measure_honesty(const HonestyOptions& options) {
   const gpu::DeviceHandle device = gpu::open_device();
   fmt::print(
-      "| scene | picture | samples a pixel | ms | RMSE | 99.9 % error | within the claim | time over uniform "
-      "sampling's "
-      "of equal RMSE | of equal 99.9 % error |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| scene | picture | samples a pixel | ms | RMSE | 99.9 % error | error of the mean | within the claim | time "
+      "over uniform sampling's of equal RMSE | of equal 99.9 % error |\n|---|---|---|---|---|---|---|---|---|---|\n");
   HonestyBench(*device, options.scene, options).run();
 }
 
@@ -233,6 +253,12 @@ app::Command add_honesty_command(CLI::App& program) {
             [=](const OptionValues& words) { options->most_samples = words.whole(0, 2, 1024); });
   table.add("--runs", "N", "Number of runs, whose median is reported, 1 to 99 [3]",
             [=](const OptionValues& words) { options->runs = words.whole(0, 1, 99); });
+  const std::span<const std::string_view> lights = light_choice_names();
+  table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")), "Light of scenes without light [auto]",
+            [=](const OptionValues& words) { options->light = words.name<LightChoice>(lights, 1); });
+  table.add("--integrator", fmt::format("{}", fmt::join(integrator_names(), "|")),
+            "Method that computes light [whitted]",
+            [=](const OptionValues& words) { options->integrator = words.name<Integrator>(integrator_names()); });
   table.add_flag("--shown", "Measure errors in the displayed picture (--error-in display) instead of linear light",
                  options->is_shown);
   return {&command, [options] { measure_honesty(*options); }};

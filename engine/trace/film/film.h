@@ -93,8 +93,11 @@ class Film {
   /// kernel.
   std::optional<gpu::KernelSource> side_kernel() const;
 
-  /// Returns whether samples choose points of lights or of the lens.
-  bool samples_points() const { return features_.has_any(layout::FEATURE_SAMPLED_LIGHT | layout::FEATURE_LENS); }
+  /// Returns what samples choose besides their places in the pixels.
+  SampledPoints sampled_points() const {
+    return {.any = features_.has_any(layout::FEATURE_SAMPLED_LIGHT | layout::FEATURE_LENS),
+            .of_many_sources = features_.has_any(layout::FEATURE_CHOSEN_LIGHTS)};
+  }
 
   /// Returns the layout of a pixel's records. Each record is a uvec4.
   const FilmRecords& records() const { return records_; }

@@ -46,10 +46,10 @@ ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, s
   return range;
 }
 
-vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index) {
+vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index, uint32_t reach) {
   const uvec2 place(index % size.x, index / size.x);
-  const uvec2 lo = glm::max(place, uvec2(1)) - 1U;
-  const uvec2 hi = glm::min(place + 2U, size);
+  const uvec2 lo = glm::max(place, uvec2(reach)) - reach;
+  const uvec2 hi = glm::min(place + reach + 1U, size);
   dvec3 sum(0.0);
   for (uint32_t y = lo.y; y < hi.y; ++y) {
     for (uint32_t x = lo.x; x < hi.x; ++x) sum += dvec3(values[static_cast<size_t>(y) * size.x + x]);

@@ -30,8 +30,9 @@ struct ColorRange {
 /// the pixel.
 ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, size_t index);
 
-/// Returns the mean of the values of a pixel and its neighbours, for the same arguments.
-vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index);
+/// Returns the mean of the values of a pixel and of the pixels at most `reach` columns and rows away, for the same
+/// arguments.
+vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index, uint32_t reach = 1);
 
 /// The mean of a pixel's samples, and an estimate of its error (docs/model.md, "Error of a pixel"). The samples are
 /// scrambled nets (ScrambledPoints), whose error decreases as N^(-3/4). Everything is computed on the host, so the

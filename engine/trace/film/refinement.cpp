@@ -21,6 +21,17 @@ constexpr uint32_t kPartSide = 256;
 constexpr float kFirstError = 0.125F;
 constexpr float kErrorStep = 1.41421356F;
 
+/// Pixels of scattered paths, and pixels whose samples choose one of many sources, take at least this number of samples
+/// first. Fewer samples often miss the light that matters, and pixels that miss it would stop early and be too dark.
+constexpr uint32_t kFirstNoisySamples = 16;
+
+/// The distance in pixels up to which the variances of first samples count with Integrator::kDirect and kPath. The more
+/// pixels decide together, the less a pixel's own samples decide when it stops, and the less its mean is biased.
+constexpr uint32_t kSpreadReach = 2;
+
+/// The square of 2.0 / 1.6: few samples choose the source whose light matters.
+constexpr float kSpreadOfManySources = 1.5625F;
+
 /// Estimated ratio of all samples to the first samples, used before anything is known.
 constexpr double kMoreThanFirst = 1.5;
 
@@ -43,8 +54,8 @@ size_t area_of(const PixelWindow& window) {
   return static_cast<size_t>(size.x) * size.y;
 }
 
-PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size) {
-  return {glm::max(window.lo, uvec2(1)) - 1U, glm::min(window.hi + 1U, size)};
+PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size, uint32_t reach) {
+  return {glm::max(window.lo, uvec2(reach)) - reach, glm::min(window.hi + reach, size)};
 }
 
 std::vector<PixelWindow> parts_to_refine(const PixelWindow& window) {
@@ -57,24 +68,35 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window) {
   return parts;
 }
 
-Refinement::Refinement(const View& view, const PixelWindow& window, bool has_unlit, bool samples_points)
+ClaimRule::ClaimRule(const View& view, const SampledPoints& points)
+    : first_samples(view.error_target->min_samples),
+      batch_error(view.mode.integrator == Integrator::kPath ? PixelEstimate::kBatchErrorOfPaths
+                                                            : PixelEstimate::kBatchError),
+      has_spread(points.any) {
+  if (!points.any || view.mode.integrator == Integrator::kWhitted) return;
+  reach = kSpreadReach;
+  const bool is_noisy = view.mode.integrator == Integrator::kPath || points.of_many_sources;
+  if (is_noisy) first_samples = std::max(first_samples, std::min(kFirstNoisySamples, view.error_target->max_samples));
+  if (points.of_many_sources) spread = kSpreadOfManySources;
+}
+
+Refinement::Refinement(const View& view, const PixelWindow& window, bool has_unlit, const SampledPoints& points)
     : target_(*view.error_target),
+      rule_(view, points),
       window_(window),
-      apron_(with_neighbors(window, view.size)),
+      apron_(with_neighbors(window, view.size, rule_.reach)),
       filter_(view),
       seed_(view.seed),
-      batch_error_(view.mode.integrator == Integrator::kPath ? PixelEstimate::kBatchErrorOfPaths
-                                                             : PixelEstimate::kBatchError),
       estimates_(area_of(apron_)),
       unlit_sums_(has_unlit ? area_of(apron_) : 0),
       shown_(has_unlit && target_.display ? area_of(apron_) : 0),
       first_ranges_(area_of(apron_)),
-      first_variances_(samples_points ? area_of(apron_) : 0),
+      first_variances_(rule_.has_spread ? area_of(apron_) : 0),
       claims_(area_of(window)),
       errors_(area_of(window)),
       pixels_(area_of(apron_)),
-      end_sample_(target_.min_samples),
-      total_(kMoreThanFirst * target_.min_samples * static_cast<double>(area_of(apron_))) {
+      end_sample_(rule_.first_samples),
+      total_(kMoreThanFirst * rule_.first_samples * static_cast<double>(area_of(apron_))) {
   std::iota(pixels_.begin(), pixels_.end(), 0U);
 }
 
@@ -166,10 +188,10 @@ void Refinement::judge_stage() {
       const PixelEstimate& estimate = estimates_[pixels_[i]];
       vec3 spread(0.0F);
       if (!first_variances_.empty()) {
-        const float share = static_cast<float>(target_.min_samples) / static_cast<float>(estimate.count());
-        spread = share * mean_around(first_variances_, size, pixels_[i]);
+        const float share = static_cast<float>(rule_.first_samples) / static_cast<float>(estimate.count());
+        spread = rule_.spread * share * mean_around(first_variances_, size, pixels_[i], rule_.reach);
       }
-      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]), spread, batch_error_);
+      claims_[*pixel] = estimate.claim(range_around(first_ranges_, size, pixels_[i]), spread, rule_.batch_error);
       errors_[*pixel] = judge_error(pixels_[i], claims_[*pixel]);
     }
   });
@@ -194,7 +216,7 @@ void Refinement::begin_stage_from(uint32_t sample) {
 void Refinement::aim(float error) {
   assert(pixels_.empty() && error <= target_.error);
   target_.error = error;
-  begin_stage_from(target_.min_samples);
+  begin_stage_from(rule_.first_samples);
 }
 
 double Refinement::foretell_samples(float error) const {

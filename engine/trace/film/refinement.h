@@ -41,12 +41,35 @@ float next_error(const ErrorTarget& target, float error);
 /// Returns the number of pixels of a window.
 size_t area_of(const PixelWindow& window);
 
-/// Returns a window extended by the adjacent pixels that are in a picture of this size.
-PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size);
+/// Returns a window extended by the pixels of a picture of this size that are at most `reach` pixels away.
+PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size, uint32_t reach = 1);
 
 /// Returns the parts in which a picture is refined one after the other, row by row. Refining each part separately gives
 /// the same result and needs the same work as refining the whole picture.
 std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
+
+/// The points that samples choose besides their places in the pixel. The rule of claims depends on them.
+struct SampledPoints {
+  /// True if samples choose points of lights or of the lens.
+  bool any = false;
+  /// True if each sample also chooses one of many sources of light.
+  bool of_many_sources = false;
+};
+
+/// The rule by which pixels stop and claims are computed (docs/model.md, "Error of a pixel").
+struct ClaimRule {
+  ClaimRule(const View& view, const SampledPoints& points);
+
+  /// The number of samples that each pixel takes first.
+  uint32_t first_samples;
+  /// Factor of the deviation of batches.
+  double batch_error;
+  /// True if the variances of the first samples of the pixels around count, up to this distance.
+  bool has_spread;
+  uint32_t reach = 1;
+  /// Factor of these variances.
+  float spread = 1.0F;
+};
 
 /// Refines a window of a picture until each of its pixels is within View::error_target or has the largest number of
 /// samples. It returns samples to trace, receives their results, and doubles the number of samples of pixels whose
@@ -56,9 +79,8 @@ std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
 class Refinement {
  public:
   /// The view must have an error target, and the window must not be empty. With `has_unlit`, take() also receives the
-  /// unlit surfaces of samples. With `samples_points`, samples also choose points of lights or of the lens, so claims
-  /// have one more term (docs/model.md, "Error of a pixel").
-  Refinement(const View& view, const PixelWindow& window, bool has_unlit = false, bool samples_points = false);
+  /// unlit surfaces of samples.
+  Refinement(const View& view, const PixelWindow& window, bool has_unlit = false, const SampledPoints& points = {});
 
   /// Returns the samples to trace next, at most about `most`. take() must receive their colours before the next call.
   /// Empty if the window has reached its error.
@@ -104,12 +126,12 @@ class Refinement {
   void begin_stage_from(uint32_t sample);
 
   ErrorTarget target_;
+  ClaimRule rule_;
   PixelWindow window_;
   /// The window and the pixels around it that are in the picture.
   PixelWindow apron_;
   FilterPlaces filter_;
   uint32_t seed_;
-  double batch_error_;
   /// The estimates, one for each pixel of the apron. Pixels outside the window have only their first samples.
   std::vector<PixelEstimate> estimates_;
   /// Sums for pictures with unlit surfaces, indexed by the pixels of the apron: sums of the samples' unlit colours and,

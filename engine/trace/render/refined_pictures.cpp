@@ -117,7 +117,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
   double told = 0.0;
   const auto pixels = static_cast<double>(result.image.pixels.size());
   for (const PixelWindow& part : parts_to_refine(picture_window(view))) {
-    Refinement refinement(view, part, tells_unlit(view.mode), film_->samples_points());
+    Refinement refinement(view, part, tells_unlit(view.mode), film_->sampled_points());
     RefinedAovs aovs = begin_refined_aovs(part, view);
     const auto part_pixels = static_cast<double>(refinement.pixel_count());
     refine(refinement, view, aovs, result, [&](double of_part) {
@@ -142,7 +142,7 @@ RenderResult PictureTracer::refine_within(const View& view, double seconds, cons
   step.error_target->error = first_error(*view.error_target);
   RenderResult result = begin_refined(step, progress);
   const PixelWindow window = picture_window(view);
-  Refinement refinement(step, window, tells_unlit(view.mode), film_->samples_points());
+  Refinement refinement(step, window, tells_unlit(view.mode), film_->sampled_points());
   RefinedAovs aovs = begin_refined_aovs(window, step);
   const Stopwatch tracing;
   float& error = step.error_target->error;
