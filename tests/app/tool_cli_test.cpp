@@ -59,6 +59,8 @@ TEST_F(ToolCliTest, WhatIsWrongIsToldInOneLineAndByTheExitCode) {
       {{"honesty"}, 2, "SCENE is required"},
       {{"honesty", "square.gltf", "--truth", "63"}, 2, "--truth takes a whole number"},
       {{"honesty", "square.gltf"}, 4, ";"},
+      {{"honesty", "square.gltf", "--size", "100", "75", "--integrator", "path", "--light", "none"}, 4, ";"},
+      {{"honesty", "square.gltf", "--integrator", "none"}, 2, "--integrator takes "},
       {{"growth", "--runs", "0"}, 2, "--runs takes a whole number"},
       {{"growth"}, 4, ";"},
       {{"robustness"}, 2, "SCENE is required"},

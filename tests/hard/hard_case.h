@@ -53,6 +53,7 @@ std::span<const HardCase> tree_cases();
 std::span<const HardCase> implicit_cases();
 std::span<const HardCase> glass_cases();
 std::span<const HardCase> instance_cases();
+std::span<const HardCase> light_cases();
 
 /// The errors of the answers to many rays, compared with the oracle, in units of u S (docs/glossary.md).
 struct Tally {

@@ -17,7 +17,7 @@ std::vector<HardCase> all_cases() {
   std::vector<HardCase> cases;
   for (const auto rows :
        {sphere_cases(), plane_cases(), solid_cases(), triangle_cases(), box_cases(), ray_cases(), secondary_cases(),
-        host_cases(), tree_cases(), implicit_cases(), glass_cases(), instance_cases()}) {
+        host_cases(), tree_cases(), implicit_cases(), glass_cases(), instance_cases(), light_cases()}) {
     cases.insert(cases.end(), rows.begin(), rows.end());
   }
   std::sort(cases.begin(), cases.end(), [](const HardCase& a, const HardCase& b) { return a.row < b.row; });

@@ -23,6 +23,7 @@
 #include "promin/renderer.h"
 #include "trace/film/pixel_estimate.h"
 #include "trace/film/refinement.h"
+#include "work/spec/value_words.h"
 
 namespace promin::lab {
 namespace {
@@ -244,9 +245,8 @@ app::Command add_honesty_command(CLI::App& program) {
   const auto options = std::make_shared<HonestyOptions>();
   app::OptionTable table(command);
   table.add_required("SCENE", "", "Scene to render", [=](const OptionValues& words) { options->scene = words.text(); });
-  table.add("--size", "W H", "Size of the pictures, 25 to 8192 [1280 720]", [=](const OptionValues& words) {
-    options->size = uvec2(words.whole(0, 25, 8192), words.whole(1, 25, 8192));
-  });
+  table.add("--size", "WxH", "Size of the pictures; sides of less than 25 become 25 [1280x720]",
+            [=](const OptionValues& words) { options->size = glm::max(words.read(work::read_size), uvec2(25)); });
   table.add("--truth", "N", "Samples per pixel of the reference picture, 64 to 65535 [1024]",
             [=](const OptionValues& words) { options->truth_samples = words.whole(0, 64, kMaxSamplesPerPixel); });
   table.add("--most", "N", "Largest number of samples per pixel of the uniform pictures, 2 to 1024 [128]",
