@@ -38,6 +38,7 @@ struct BvhOptions {
   LoadOptions load;
   MotionOptions motion;
   std::filesystem::path file;
+  Instancing instances = Instancing::kAuto;
   std::string builder{builder_names().front()};
   /// Number of threads; 0 uses one thread per core.
   unsigned thread_count = 0;
@@ -61,6 +62,7 @@ void add_common_rows(OptionTable& table, BvhOptions& options) {
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
   add_motion_options(table, options.motion);
+  add_instances_option(table, options.instances);
   table.add("--threads", "N", fmt::format("Number of threads, 1 to {} [one per core]", kMaxThreads),
             [&](const OptionValues& w) { options.thread_count = w.whole(0, 1, kMaxThreads); });
   table.add_flag("--quiet", "Print only errors", options.is_quiet);
@@ -87,22 +89,34 @@ void build(const BvhOptions& options) {
   const Console console(options.verbosity(), kProgram);
   const Scene scene = load(options, console);
 
-  PackedScene packed;
+  std::vector<GeometryTree> trees;
+  const Stopwatch building;
   {
     Progress progress(console.is_quiet(), kProgram);
-    packed = pack_scene(world::flatten(scene, world::Purpose::kHits), options.builder,
-                        {options.thread_count, progress.callback()});
+    trees = build_scene_trees(world::flatten(scene, world::Purpose::kHits, options.instances), options.builder,
+                              {options.thread_count, progress.callback()});
   }
-  const TreeView tree = packed.tree();
-  console.detail(fmt::format("built {} nodes, depth {}: {:.1f} ms", tree.stats.nodes, tree.stats.depth, packed.bvh_ms));
+  const double build_ms = building.ms();
+  std::vector<TreeView> views;
+  size_t references = 0;
+  size_t primitives = 0;
+  for (const GeometryTree& tree : trees) {
+    views.push_back(tree.view());
+    references += tree.references.size();
+    primitives += tree.primitive_count;
+    console.detail(fmt::format("built {} nodes, depth {}, SAH cost {:.4g}", tree.stats.nodes, tree.stats.depth,
+                               tree.stats.sah_cost));
+  }
 
   const DeferredSignals while_writing;
   const Stopwatch writing;
-  write_bvh_file(options.file, tree);
+  write_bvh_file(options.file, views);
   console.detail(fmt::format("wrote {}: {:.1f} ms", options.file.string(), writing.ms()));
   if (!console.is_quiet()) {
-    fmt::print("{} references to {} primitives by {}, SAH cost {:.4g}, in {:.1f} ms: {}\n", tree.references.size(),
-               tree.primitive_count, tree.stats.builder, tree.stats.sah_cost, packed.bvh_ms, options.file.string());
+    const std::string cost = trees.size() > 1 ? fmt::format("in {} trees", trees.size())
+                                              : fmt::format("SAH cost {:.4g}", trees.front().stats.sah_cost);
+    fmt::print("{} references to {} primitives by {}, {}, in {:.1f} ms: {}\n", references, primitives, options.builder,
+               cost, build_ms, options.file.string());
   }
 }
 
@@ -129,10 +143,7 @@ std::string describe_memory(const TreeView& tree) {
                      per_primitive(nodes + records), per_primitive(nodes), per_primitive(records));
 }
 
-void print_bvh_info(const std::filesystem::path& path) {
-  const BvhFile file(path);
-  const TreeView& tree = file.tree();
-  print_row("file", fmt::format("{}, {} bytes", path.string(), file.size_bytes()));
+void print_tree(const TreeView& tree) {
   print_row("builder", tree.stats.builder);
   print_row("primitives", std::to_string(tree.primitive_count));
   print_row("references",
@@ -144,18 +155,31 @@ void print_bvh_info(const std::filesystem::path& path) {
                                  tree.stats.nodes - tree.stats.leaves, tree.nodes.size(), layout::NODE_WIDTH));
   print_row("leaves", fmt::format("{} (by size: {})", tree.stats.leaves, describe_leaf_sizes(tree)));
   print_row("memory", describe_memory(tree));
-  print_row("scene hash", fmt::format("{:016x}", tree.geometry_hash));
+  print_row("geometry", fmt::format("{:016x}", tree.geometry_hash));
+}
+
+void print_bvh_info(const std::filesystem::path& path) {
+  const BvhFile file(path);
+  print_row("file", fmt::format("{}, {} bytes", path.string(), file.size_bytes()));
+  const size_t count = file.trees().size();
+  for (size_t i = 0; i < count; ++i) {
+    // The trees of meshes that instances share follow the tree of all other primitives.
+    if (count > 1) print_row("tree", i == 0 ? "of primitives without instances" : fmt::format("of mesh {}", i));
+    print_tree(file.trees()[i]);
+  }
 }
 
 void verify(const BvhOptions& options) {
   const Console console(options.verbosity(), kProgram);
   const Scene scene = load(options, console);
-  const PackedScene packed = pack_scene_with(options.file, world::flatten(scene, world::Purpose::kHits));
-  console.detail(fmt::format("read {}: {:.1f} ms", options.file.string(), packed.bvh_ms));
+  const Stopwatch reading;
+  const BvhFile file(options.file);
+  console.detail(fmt::format("read {}: {:.1f} ms", options.file.string(), reading.ms()));
   TreeFaults faults;
   {
     Progress progress(console.is_quiet(), kProgram);
-    faults = find_tree_faults(packed, {options.thread_count, progress.callback()});
+    faults = find_tree_faults(file, world::flatten(scene, world::Purpose::kHits, options.instances),
+                              {options.thread_count, progress.callback()});
   }
   if (faults.count > 0) {
     throw InputError({"bvh.tree.wrong",
@@ -163,8 +187,16 @@ void verify(const BvhOptions& options) {
                       options.file.string(), "build it again with promin-bvh build"});
   }
   if (console.is_quiet()) return;
-  fmt::print("{} nodes, {} references to {} primitives, no fault: {}\n", packed.tree().nodes.size(),
-             packed.references.size(), packed.bounded_count, options.file.string());
+  size_t nodes = 0;
+  size_t references = 0;
+  size_t primitives = 0;
+  for (const TreeView& tree : file.trees()) {
+    nodes += tree.nodes.size();
+    references += tree.references.size();
+    primitives += tree.primitive_count;
+  }
+  fmt::print("{} nodes, {} references to {} primitives, no fault: {}\n", nodes, references, primitives,
+             options.file.string());
 }
 
 }  // namespace

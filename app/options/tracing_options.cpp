@@ -33,6 +33,14 @@ void add_device_option(OptionTable& table, std::optional<std::string>& device) {
       });
 }
 
+void add_instances_option(OptionTable& table, Instancing& instances) {
+  table.add(
+      "--instances", fmt::format("{}", fmt::join(instancing_names(), "|")),
+      "Objects that share the triangles of their mesh: those that save much memory, no object, or all with meshes "
+      "[auto]",
+      [&](const OptionValues& w) { instances = w.name<Instancing>(instancing_names()); });
+}
+
 void add_tracing_options(OptionTable& table, TracingOptions& options) {
   add_device_option(table, options.device);
   table.add_flag("--no-cache", "Neither keep compiled kernels in ~/.cache/promin nor read them", options.has_no_cache);
@@ -44,11 +52,7 @@ void add_tracing_options(OptionTable& table, TracingOptions& options) {
             [&](const OptionValues& w) { options.builder = w.choice(builder_names()); });
   table.add("--bvh", "FILE.pbvh", "Read the BVH from a file that `promin-bvh build` wrote",
             [&](const OptionValues& w) { options.bvh = w.text(); });
-  table.add(
-      "--instances", fmt::format("{}", fmt::join(instancing_names(), "|")),
-      "Objects that share the triangles of their mesh: those that save much memory, no object, or all with meshes "
-      "[auto]",
-      [&](const OptionValues& w) { options.instances = w.name<Instancing>(instancing_names()); });
+  add_instances_option(table, options.instances);
   add_strict_option(table, options.load);
   add_root_option(table, options.load);
   add_motion_options(table, options.motion);

@@ -24,6 +24,8 @@ void add_scene_argument(OptionTable& table, TracingOptions& options);
 /// Adds the row of the device to open. An empty name is refused, because it is a part of every name.
 void add_device_option(OptionTable& table, std::optional<std::string>& device);
 
+/// Adds the row of --instances.
+void add_instances_option(OptionTable& table, Instancing& instances);
 void add_tracing_options(OptionTable& table, TracingOptions& options);
 /// Adds the rows for commands that report at their end what tracing cost.
 void add_measuring_options(OptionTable& table, TracingOptions& options);

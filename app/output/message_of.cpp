@@ -20,8 +20,7 @@ struct Wording {
 constexpr Wording kWordings[] = {{Setting::kDepth, "use a smaller depth", "lower --max-depth"},
                                  {Setting::kDevice, "another device", "another --device"},
                                  {Setting::kBuilder, "the builder", "--builder"},
-                                 {Setting::kTextureMemory, "the memory for textures", "--texture-memory"},
-                                 {Setting::kInstances, "draw no object as an instance", "use --instances none"}};
+                                 {Setting::kTextureMemory, "the memory for textures", "--texture-memory"}};
 
 std::string_view option_for(Setting setting) {
   switch (setting) {

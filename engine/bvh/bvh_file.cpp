@@ -31,12 +31,12 @@ constexpr std::array<char, 8> kMagic = {'\x89', 'P', 'B', 'V', 'H', '\r', '\n', 
 constexpr uint32_t kByteOrder = 0x01020304;
 constexpr uint32_t kVersion = 1;
 
-/// The head of the file; docs/bvh_file.md describes it.
+/// The head of a section; docs/bvh_file.md describes it.
 struct Header {
   std::array<char, 8> magic = kMagic;
   uint32_t byte_order = kByteOrder;
   uint32_t version = kVersion;
-  /// The checksum of the whole file, computed while this member is 0.
+  /// The checksum of the section, computed while this member is 0.
   uint64_t checksum = 0;
   uint64_t layout_hash = 0;
   uint64_t geometry_hash = 0;
@@ -55,6 +55,8 @@ struct Header {
   /// The kinds of primitive in the tree with numbers from kFirstKinds on, as bits 1 << KIND_*.
   uint32_t further_kinds = 0;
 };
+/// A section begins at a multiple of this.
+constexpr size_t kSectionAlignment = sizeof(Node);
 static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && std::is_trivially_copyable_v<Header>);
 
 /// The largest stack that the traversal of a tree of kMaxBvhDepth can need: an entry for each node above the deepest
@@ -101,7 +103,12 @@ uint64_t hash_layout(uint32_t further_kinds) {
   return hash.value();
 }
 
-uint64_t hash_file(Header header, std::span<const std::byte> nodes, std::span<const std::byte> references) {
+/// Returns the place at which the next section begins if one ends here.
+constexpr uint64_t aligned(uint64_t size) {
+  return (size + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+}
+
+uint64_t hash_section(Header header, std::span<const std::byte> nodes, std::span<const std::byte> references) {
   header.checksum = 0;
   Hash64 hash;
   hash.add(std::as_bytes(std::span(&header, 1)));
@@ -253,51 +260,45 @@ class TreeCheck {
   std::vector<bool> is_referred_to_;
 };
 
-}  // namespace
-
-BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
-  const std::span<const std::byte> bytes = mapped_.bytes();
+/// Reads and checks the section that begins at `at`. Sets `end` to its end.
+TreeView read_section(std::span<const std::byte> all, uint64_t at, const fs::path& file, uint64_t& end) {
+  const std::span<const std::byte> bytes = all.subspan(at);
   const Header header = read_header(bytes, file);
   const uint64_t node_bytes = uint64_t{header.node_count} * sizeof(Node);
   const uint64_t reference_bytes = uint64_t{header.reference_count} * sizeof(uint32_t);
-  const uint64_t size = sizeof(Header) + node_bytes + reference_bytes;
-  if (bytes.size() != size) {
-    refuse(
-        "bvh.file.short", file,
-        "the BVH file has " + std::to_string(bytes.size()) + " bytes, but its header declares " + std::to_string(size));
+  end = at + sizeof(Header) + node_bytes + reference_bytes;
+  if (all.size() != end && all.size() < aligned(end) + sizeof(Header)) {
+    refuse("bvh.file.short", file,
+           "the BVH file has " + std::to_string(all.size()) + " bytes, but its header declares " + std::to_string(end));
   }
   const auto nodes = bytes.subspan(sizeof(Header), node_bytes);
-  const auto references = bytes.subspan(sizeof(Header) + node_bytes);
-  if (hash_file(header, nodes, references) != header.checksum) {
+  const auto references = bytes.subspan(sizeof(Header) + node_bytes, reference_bytes);
+  if (hash_section(header, nodes, references) != header.checksum) {
     refuse("bvh.file.damaged", file, "the BVH file is damaged, because its checksum does not match its contents");
   }
-  // Both pointers are aligned: the mapping begins at a page, and the nodes begin 128 bytes later.
-  tree_.nodes = {reinterpret_cast<const Node*>(nodes.data()), header.node_count};
-  tree_.references = {reinterpret_cast<const uint32_t*>(references.data()), header.reference_count};
-  tree_.primitive_count = header.primitive_count;
-  tree_.stack_size = header.stack_size;
-  tree_.kinds = header.further_kinds;
-  tree_.geometry_hash = header.geometry_hash;
-  tree_.stats = {.builder = read_builder(header, file),
-                 .nodes = header.tree_nodes,
-                 .leaves = header.leaves,
-                 .depth = header.depth,
-                 .max_leaf_size = header.max_leaf_size,
-                 .sah_cost = header.sah_cost,
-                 .bytes = node_bytes};
+  TreeView tree;
+  // Both pointers are aligned: the mapping begins at a page, and the nodes begin 128 bytes after a multiple of 64.
+  tree.nodes = {reinterpret_cast<const Node*>(nodes.data()), header.node_count};
+  tree.references = {reinterpret_cast<const uint32_t*>(references.data()), header.reference_count};
+  tree.primitive_count = header.primitive_count;
+  tree.stack_size = header.stack_size;
+  tree.kinds = header.further_kinds;
+  tree.geometry_hash = header.geometry_hash;
+  tree.stats = {.builder = read_builder(header, file),
+                .nodes = header.tree_nodes,
+                .leaves = header.leaves,
+                .depth = header.depth,
+                .max_leaf_size = header.max_leaf_size,
+                .sah_cost = header.sah_cost,
+                .bytes = node_bytes};
   // This is checked before memory is allocated for the counts.
   if (header.primitive_count > header.reference_count)
     refuse("bvh.file.tree", file, "the BVH file has fewer references than primitives");
-  TreeCheck(tree_, file).run();
+  TreeCheck(tree, file).run();
+  return tree;
 }
 
-void BvhFile::check_scene(uint64_t geometry_hash, size_t bounded_count) const {
-  if (geometry_hash != tree_.geometry_hash || bounded_count != tree_.primitive_count) {
-    refuse("bvh.file.stale", file_, "the BVH file does not belong to this scene, because its geometry differs");
-  }
-}
-
-void write_bvh_file(const fs::path& file, const TreeView& tree) {
+Header make_header(const TreeView& tree) {
   Header header;
   header.further_kinds = tree.kinds & ~kFirstKindBits;
   header.layout_hash = hash_layout(header.further_kinds);
@@ -312,10 +313,49 @@ void write_bvh_file(const fs::path& file, const TreeView& tree) {
   header.depth = tree.stats.depth;
   header.max_leaf_size = tree.stats.max_leaf_size;
   tree.stats.builder.copy(header.builder.data(), header.builder.size() - 1);
-  const auto nodes = std::as_bytes(tree.nodes);
-  const auto references = std::as_bytes(tree.references);
-  header.checksum = hash_file(header, nodes, references);
-  write_file(file, {std::as_bytes(std::span(&header, 1)), nodes, references});
+  header.checksum = hash_section(header, std::as_bytes(tree.nodes), std::as_bytes(tree.references));
+  return header;
+}
+
+}  // namespace
+
+BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
+  const std::span<const std::byte> bytes = mapped_.bytes();
+  uint64_t end = 0;
+  trees_.push_back(read_section(bytes, 0, file, end));
+  while (end < bytes.size()) {
+    const uint64_t next = aligned(end);
+    const auto filling = bytes.subspan(end, next - end);
+    const bool is_filled = std::ranges::all_of(filling, [](std::byte byte) { return byte == std::byte{0}; });
+    if (!is_filled || std::memcmp(bytes.data() + next, kMagic.data(), kMagic.size()) != 0) {
+      refuse("bvh.file.damaged", file,
+             "the BVH file is damaged, because no tree begins at byte " + std::to_string(next));
+    }
+    trees_.push_back(read_section(bytes, next, file, end));
+  }
+  for (size_t i = 0; i < trees_.size(); ++i) places_.try_emplace(trees_[i].geometry_hash, i);
+}
+
+const TreeView& BvhFile::find(uint64_t geometry_hash, size_t bounded_count) const {
+  const auto found = places_.find(geometry_hash);
+  if (found != places_.end() && trees_[found->second].primitive_count == bounded_count) return trees_[found->second];
+  refuse("bvh.file.stale", file_, "the BVH file does not belong to this scene, because its geometry differs");
+}
+
+void write_bvh_file(const fs::path& file, std::span<const TreeView> trees) {
+  static constexpr std::array<std::byte, kSectionAlignment> kFilling{};
+  std::vector<Header> headers;
+  for (const TreeView& tree : trees) headers.push_back(make_header(tree));
+  std::vector<std::span<const std::byte>> parts;
+  size_t size = 0;
+  for (size_t i = 0; i < trees.size(); ++i) {
+    const auto nodes = std::as_bytes(trees[i].nodes);
+    const auto references = std::as_bytes(trees[i].references);
+    parts.push_back(std::span(kFilling).first(aligned(size) - size));
+    parts.insert(parts.end(), {std::as_bytes(std::span(&headers[i], 1)), nodes, references});
+    size = aligned(size) + sizeof(Header) + nodes.size() + references.size();
+  }
+  write_file(file, parts);
 }
 
 }  // namespace promin

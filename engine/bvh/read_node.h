@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "bvh/builder.h"
+#include "bvh/tree_view.h"
 #include "promin/math.h"
 #include "shared/layout.h"
 
@@ -43,5 +45,9 @@ Bounds primitive_bounds(const layout::Primitive& primitive);
 
 /// Returns the corners of a primitive of KIND_TRIANGLE.
 std::array<vec3, 3> triangle_corners(const layout::Primitive& primitive);
+
+/// Returns a binary tree with the leaves and the references of a packed tree. Its boxes are those of the packed nodes,
+/// rounded outwards, so they may be larger than those of the tree that was packed.
+Bvh unpack_tree(const TreeView& tree);
 
 }  // namespace promin

@@ -320,7 +320,7 @@ int write_at(int descriptor, uint64_t place, std::span<const std::byte> bytes) n
   return 0;
 }
 
-void write_file(const fs::path& file, std::initializer_list<std::span<const std::byte>> parts) {
+void write_file(const fs::path& file, const std::vector<std::span<const std::byte>>& parts) {
   AtomicFile output(file);
   std::ofstream stream(output.temporary(), std::ios::binary);
   for (const std::span<const std::byte> part : parts) {

@@ -97,7 +97,7 @@ void clear_leftovers(const std::filesystem::path& folder);
 int write_at(int descriptor, uint64_t place, std::span<const std::byte> bytes) noexcept;
 
 /// Writes a whole file atomically from parts, one after the other. Throws RunError.
-void write_file(const std::filesystem::path& file, std::initializer_list<std::span<const std::byte>> parts);
+void write_file(const std::filesystem::path& file, const std::vector<std::span<const std::byte>>& parts);
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace promin

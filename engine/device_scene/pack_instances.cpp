@@ -8,7 +8,6 @@
 #include <queue>
 #include <utility>
 
-#include "bvh/clip_triangle.h"
 #include "bvh/pack_tree.h"
 #include "bvh/read_node.h"
 #include "core/parallel.h"
@@ -118,32 +117,24 @@ uvec4 row_of(const glm::mat3& matrix, int row, uint32_t last) {
 
 }  // namespace
 
-PackedMesh pack_mesh(const world::Scene& scene, std::string_view builder, const BuildOptions& options) {
-  Collected collected = collect_primitives(scene);
+PackedMesh pack_mesh(Collected collected, GeometryTree tree) {
   PackedMesh mesh;
   mesh.number_count = collected.order;
   mesh.bounded_count = static_cast<uint32_t>(collected.bounded.size());
   mesh.degenerate_count = collected.degenerate_count;
   mesh.parts = std::move(collected.numbers.parts);
   mesh.vertices = std::move(collected.vertices);
-  const Bvh bvh = build_bvh(builder,
-                            {collected.boxes,
-                             [&](uint32_t primitive, const Bounds& window) {
-                               return clip_triangle(triangle_corners(collected.bounded[primitive]), window);
-                             }},
-                            options);
-  mesh.bvh = measure_bvh(builder, bvh);
-  PackedTree tree = pack_tree(bvh);
+  mesh.bvh = std::move(tree.stats);
   mesh.nodes = std::move(tree.nodes);
   mesh.stack_size = tree.stack_size;
-  mesh.primitives.resize(bvh.references.size());
-  mesh.surfaces.resize(bvh.references.size());
-  for (size_t i = 0; i < bvh.references.size(); ++i) {
-    mesh.primitives[i] = collected.bounded[bvh.references[i]];
-    mesh.surfaces[i] = collected.bounded_surfaces[bvh.references[i]];
+  mesh.primitives.resize(tree.references.size());
+  mesh.surfaces.resize(tree.references.size());
+  for (size_t i = 0; i < tree.references.size(); ++i) {
+    mesh.primitives[i] = collected.bounded[tree.references[i]];
+    mesh.surfaces[i] = collected.bounded_surfaces[tree.references[i]];
   }
   const size_t box_count = std::clamp<size_t>(collected.bounded.size() / kTrianglesPerBox, 1, kMostTopBoxes);
-  for (const uint32_t node : find_top(bvh, box_count)) mesh.top_boxes.push_back(bvh.nodes[node].bounds);
+  for (const uint32_t node : find_top(tree.binary, box_count)) mesh.top_boxes.push_back(tree.binary.nodes[node].bounds);
   for (const Bounds& box : collected.boxes) mesh.box.extend(box);
   return mesh;
 }

@@ -11,6 +11,7 @@
 #include "bvh/primitive_numbers.h"
 #include "core/unset_vector.h"
 #include "device_scene/collect_primitives.h"
+#include "device_scene/geometry_tree.h"
 #include "promin/math.h"
 #include "scene/world_scene.h"
 #include "shared/layout.h"
@@ -43,8 +44,8 @@ struct PackedMesh {
   BvhStats bvh;
 };
 
-/// Packs a mesh. `scene` has only this mesh, as its only object.
-PackedMesh pack_mesh(const world::Scene& scene, std::string_view builder, const BuildOptions& options);
+/// Packs a mesh that was collected alone, with its tree.
+PackedMesh pack_mesh(Collected collected, GeometryTree tree);
 
 /// The input of an UpperLevel.
 struct TwoLevels {

@@ -3,14 +3,11 @@
 #include "device_scene/pack_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <string>
 #include <system_error>
 
-#include "bvh/clip_triangle.h"
 #include "bvh/pack_tree.h"
-#include "bvh/read_node.h"
 #include "core/file.h"
 #include "core/file_lock.h"
 #include "core/hash.h"
@@ -41,45 +38,10 @@ constexpr uint32_t kSpareStack = 4;
 /// Time that a process waits for a shared tree that another process is building and that may hang.
 constexpr std::chrono::minutes kMostWait{10};
 
-/// Clips a primitive for builders that split primitives: triangles exactly, other shapes by their boxes.
-Bounds clip(const Primitive& p, const Bounds& window) {
-  if (p.c.z != KIND_TRIANGLE) return window;
-  return clip_triangle(triangle_corners(p), window);
-}
-
-/// Returns the tree's references, sorted by kind within each leaf, because traversal tests the primitives of a leaf
-/// kind by kind.
-UnsetVector<uint32_t> sort_leaves_by_kind(const Bvh& bvh, std::span<const Primitive> bounded) {
-  UnsetVector<uint32_t> references = bvh.references;
-  const auto is_before = [&](uint32_t a, uint32_t b) { return bounded[a].c.z < bounded[b].c.z; };
-  for_each_chunk(bvh.nodes.size(), kPackChunkSize, 0, [&](size_t begin, size_t end) {
-    for (const BvhNode& node : std::span(bvh.nodes).subspan(begin, end - begin)) {
-      if (node.count == 0) continue;
-      const auto first = references.begin() + node.first;
-      if (!std::is_sorted(first, first + node.count, is_before)) std::stable_sort(first, first + node.count, is_before);
-    }
-  });
-  return references;
-}
-
-/// Returns a hash of the geometry. It does not depend on the assignment of primitives to objects.
-uint64_t hash_geometry(std::span<const Primitive> bounded) {
-  Hash64 hash;
-  hash.add(bounded.size());
-  for (const Primitive& p : bounded) {
-    const std::array words = {p.a, p.b};
-    hash.add(std::as_bytes(std::span(words)));
-    hash.add(p.c.x | uint64_t{p.c.z} << 32);
-  }
-  return hash.value();
-}
-
-/// Sets the kinds of the primitives and the number of primitives that are not triangles.
-void count_kinds(PackedScene& packed, std::span<const Primitive> bounded) {
-  std::array<uint32_t, 32> counts{};  // One count for each bit of the kinds.
-  for (const Primitive& p : bounded) ++counts[p.c.z];
-  for (uint32_t kind = 0; kind < counts.size(); ++kind) packed.kinds |= uint32_t{counts[kind] > 0} << kind;
-  packed.solid_count = static_cast<uint32_t>(bounded.size()) - counts[KIND_TRIANGLE];
+/// Returns the number of primitives that are not triangles.
+uint32_t count_solids(const Collected& collected) {
+  const auto is_solid = [](const Primitive& p) { return p.c.z != KIND_TRIANGLE; };
+  return static_cast<uint32_t>(std::ranges::count_if(collected.bounded, is_solid));
 }
 
 /// Packs all parts of a scene except its tree and its images. The tree's references must exist.
@@ -109,113 +71,154 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.tree_bounds = center_and_radius(tree_bounds);
 }
 
-/// Builds a tree over the collected primitives.
-Bvh build_own_tree(const Collected& collected, std::string_view builder, const BuildOptions& options) {
-  return build_bvh(builder,
-                   {collected.boxes, [&](uint32_t primitive,
-                                         const Bounds& window) { return clip(collected.bounded[primitive], window); }},
-                   options);
+/// Throws RunError if there are more references or nodes than the layout can hold.
+void check_size(const TreeView& tree, const world::Scene& scene) {
+  check_at_most(CHILD_FIRST_MASK, tree.references.size(), scene, "the tree refers to", "parts of primitives",
+                ", or use the builder sah", Setting::kBuilder);
+  check_at_most(MAX_NODES, tree.nodes.size(), scene, "the scene's tree has", "nodes");
 }
 
 /// Builds the tree of the collected primitives.
 void build_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options) {
   const Stopwatch building;
-  const Bvh bvh = build_own_tree(collected, builder, options);
-  check_at_most(CHILD_FIRST_MASK, bvh.references.size(), scene, "the tree refers to", "parts of primitives",
-                ", or use the builder sah", Setting::kBuilder);
+  GeometryTree tree = build_geometry_tree(collected, builder, options);
   packed.bvh_ms = building.ms();
-  packed.bvh = measure_bvh(builder, bvh);
-  PackedTree tree = pack_tree(bvh);
-  check_at_most(MAX_NODES, tree.nodes.size(), scene, "the scene's tree has", "nodes");
-  packed.nodes = std::move(tree.nodes);
+  packed.is_tree_built = true;
+  check_size(tree.view(), scene);
+  packed.bvh = tree.stats;
   packed.stack_size = tree.stack_size;
-  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
-  packed.references = sort_leaves_by_kind(bvh, collected.bounded);
+  packed.nodes = std::move(tree.nodes);
+  packed.references = std::move(tree.references);
 }
 
 /// Uses the tree of a file. Throws InputError if the tree is damaged or belongs to another geometry.
 void read_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
-  const Stopwatch reading;
   const auto file = std::make_shared<const BvhFile>(bvh_file);
-  file->check_scene(packed.geometry_hash, packed.bounded_count);
-  packed.bvh_ms = reading.ms();
-  const TreeView& tree = file->tree();
+  const TreeView& tree = file->find(packed.geometry_hash, packed.bounded_count);
   packed.bvh = tree.stats;
   packed.stack_size = tree.stack_size;
   packed.references.assign(tree.references.begin(), tree.references.end());
+  packed.nodes_in_file = tree.nodes;
   packed.file = file;
 }
 
-/// Returns whether the file contains the scene's tree. If the file exists and has faults, they replace the warnings.
-bool find_shared_tree(PackedScene& packed, const std::filesystem::path& bvh_file) {
-  packed.warnings.clear();
+/// Calls `read` if the file exists. Returns whether it could be read. If the file has faults, they replace the
+/// warnings.
+template <typename Read>
+bool can_read(const std::filesystem::path& bvh_file, std::vector<Problem>& warnings, const Read& read) {
+  warnings.clear();
   std::error_code error;
   if (!std::filesystem::exists(bvh_file, error)) return false;
   try {
-    read_tree(packed, bvh_file);
+    read();
     return true;
   } catch (const InputError& refusal) {
     const Problem& problem = refusal.problems().front();
-    packed.warnings = {Problem{problem.code, problem.what, problem.where, "it is built again"}};
+    warnings = {Problem{problem.code, problem.what, problem.where, "it is built again"}};
     return false;
   }
 }
 
-/// Uses the tree of the file. If there is none, builds the tree and writes the file for other processes, which wait for
-/// it.
-void share_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
-                const BuildOptions& options, const std::filesystem::path& bvh_file) {
-  const Stopwatch sharing;
+/// Calls `read`, which reads the file. If the file does not exist or has faults, calls `build`, which returns trees,
+/// and writes them to the file for other processes, which wait for it.
+template <typename Read, typename Build>
+void share_trees(const std::filesystem::path& bvh_file, const BuildOptions& options, std::vector<Problem>& warnings,
+                 const Read& read, const Build& build) {
   // A file appears completely or not at all, so reading needs no lock.
-  if (find_shared_tree(packed, bvh_file)) return;
+  if (can_read(bvh_file, warnings, read)) return;
   const std::filesystem::path folder = bvh_file.parent_path();
   std::error_code error;
   std::filesystem::create_directory(folder, error);
   const FileLock lock(std::filesystem::path(bvh_file).replace_extension(".lock"), kMostWait, options.progress);
-  if (find_shared_tree(packed, bvh_file)) return;
+  if (can_read(bvh_file, warnings, read)) return;
   clear_leftovers(folder);
-  build_tree(packed, scene, collected, builder, options);
+  const std::vector<TreeView> trees = build();
   try {
-    write_bvh_file(bvh_file, packed.tree());
+    write_bvh_file(bvh_file, trees);
   } catch (const RunError& failure) {
-    packed.warnings.push_back(failure.problems().front());
+    warnings.push_back(failure.problems().front());
   }
-  packed.bvh_ms = sharing.ms();
 }
 
-/// Returns the meshes of a scene, each with its tree.
-std::vector<PackedMesh> pack_meshes(const world::Scene& scene, std::string_view builder, const BuildOptions& options) {
-  std::vector<PackedMesh> meshes;
-  for (const Mesh& mesh : scene.meshes) {
-    world::Scene alone;
-    alone.file = scene.file;
-    alone.objects.push_back({"", mesh});
-    meshes.push_back(pack_mesh(alone, builder, options));
+/// The geometries of a scene: its own primitives, which belong to no instance, and the meshes that instances share.
+struct Geometries {
+  Collected own;
+  DroppedCopies copies;
+  std::vector<Collected> meshes;
+  /// True if there are more primitives than numbers (PrimitiveNumbers::are_instances_whole).
+  bool are_instances_whole = false;
+
+  size_t bounded_count() const {
+    size_t count = own.bounded.size();
+    for (const Collected& mesh : meshes) count += mesh.bounded.size();
+    return count;
   }
-  return meshes;
-}
+};
 
 /// Returns the number of numbers that each object takes if it is an instance. If there are too many primitives for 32
 /// bits, an instance takes one number.
-std::vector<uint32_t> count_numbers(const world::Scene& scene, std::vector<PackedMesh>& meshes, bool& are_whole) {
+std::vector<uint32_t> count_numbers(const world::Scene& scene, Geometries& geometries) {
   constexpr uint64_t kMostNumbers = NO_ORDER;
   uint64_t total = 0;
   for (const world::Object& object : scene.objects) total += world::primitive_count(object.shape);
-  for (const world::Instance& instance : scene.instances) total += meshes[instance.mesh].number_count;
-  are_whole = total >= kMostNumbers;
-  if (are_whole) {
-    for (PackedMesh& mesh : meshes) {
-      mesh.number_count = 1;
-      mesh.parts.clear();
-      for (Primitive& primitive : mesh.primitives) primitive.c.y = 0;
+  for (const world::Instance& instance : scene.instances) total += geometries.meshes[instance.mesh].order;
+  geometries.are_instances_whole = total >= kMostNumbers;
+  if (geometries.are_instances_whole) {
+    for (Collected& mesh : geometries.meshes) {
+      mesh.order = 1;
+      mesh.numbers.parts.clear();
+      for (Primitive& primitive : mesh.bounded) primitive.c.y = 0;
     }
   }
   std::vector<uint32_t> numbers(scene.objects.size(), 0);
   for (const world::Instance& instance : scene.instances) {
-    numbers[instance.object] = meshes[instance.mesh].number_count;
+    numbers[instance.object] = geometries.meshes[instance.mesh].order;
   }
   return numbers;
+}
+
+Geometries collect_geometries(const world::Scene& scene) {
+  Geometries geometries;
+  for (const Mesh& mesh : scene.meshes) {
+    world::Scene alone;
+    alone.file = scene.file;
+    alone.objects.push_back({"", mesh});
+    geometries.meshes.push_back(collect_primitives(alone));
+  }
+  geometries.own = collect_primitives(scene, count_numbers(scene, geometries));
+  geometries.copies = drop_copies(scene, geometries.own);
+  return geometries;
+}
+
+/// Returns the trees of the own primitives and of the meshes, in this order. `make_tree` returns the tree of collected
+/// primitives.
+template <typename MakeTree>
+std::vector<GeometryTree> make_trees(const Geometries& geometries, const MakeTree& make_tree) {
+  std::vector<GeometryTree> trees;
+  trees.push_back(make_tree(geometries.own));
+  for (const Collected& mesh : geometries.meshes) trees.push_back(make_tree(mesh));
+  return trees;
+}
+
+std::vector<GeometryTree> build_trees(const Geometries& geometries, std::string_view builder,
+                                      const BuildOptions& options) {
+  return make_trees(geometries, [&](const Collected& collected) {
+    GeometryTree tree = build_geometry_tree(collected, builder, options);
+    tree.geometry_hash = hash_geometry(collected);
+    return tree;
+  });
+}
+
+std::vector<GeometryTree> read_trees(const Geometries& geometries, const std::filesystem::path& bvh_file) {
+  const BvhFile file(bvh_file);
+  return make_trees(geometries, [&](const Collected& collected) { return read_geometry_tree(collected, file); });
+}
+
+std::vector<TreeView> views_of(std::span<const GeometryTree> trees) {
+  std::vector<TreeView> views;
+  for (const GeometryTree& tree : trees) views.push_back(tree.view());
+  return views;
 }
 
 /// Adds the vertices of a mesh behind all others. Returns the index of the first one.
@@ -261,15 +264,13 @@ void insert_meshes(PackedScene& packed, std::vector<PackedMesh>& meshes, size_t 
 }
 
 /// Returns the statistics of a tree of two levels.
-BvhStats stats_of(std::string_view builder, const BvhStats& upper, const Bvh& own,
-                  const std::vector<PackedMesh>& meshes) {
+BvhStats stats_of(const BvhStats& upper, const BvhStats& own, const std::vector<PackedMesh>& meshes) {
   BvhStats stats = upper;
-  stats.builder = builder;
-  const BvhStats below = measure_bvh(builder, own);
-  stats.nodes += below.nodes;
-  stats.leaves += below.leaves;
-  stats.max_leaf_size = std::max(stats.max_leaf_size, below.max_leaf_size);
-  uint32_t depth = below.depth;
+  stats.builder = own.builder;
+  stats.nodes += own.nodes;
+  stats.leaves += own.leaves;
+  stats.max_leaf_size = std::max(stats.max_leaf_size, own.max_leaf_size);
+  uint32_t depth = own.depth;
   for (const PackedMesh& mesh : meshes) {
     stats.nodes += mesh.bvh.nodes;
     stats.leaves += mesh.bvh.leaves;
@@ -280,20 +281,21 @@ BvhStats stats_of(std::string_view builder, const BvhStats& upper, const Bvh& ow
   return stats;
 }
 
-/// Packs a scene with instances.
-PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, std::string_view builder,
+/// Packs a scene with instances and its trees (make_trees), without its images.
+PackedScene pack_two_levels(const world::Scene& scene, Geometries geometries, std::vector<GeometryTree> trees,
                             const BuildOptions& options) {
-  const Stopwatch building;
-  std::vector<PackedMesh> meshes = pack_meshes(scene, builder, options);
+  const Stopwatch packing;
+  std::vector<PackedMesh> meshes;
+  for (size_t i = 0; i < geometries.meshes.size(); ++i) {
+    meshes.push_back(pack_mesh(std::move(geometries.meshes[i]), std::move(trees[i + 1])));
+  }
+  Collected& collected = geometries.own;
+  GeometryTree& own = trees.front();
   PackedScene packed;
-  bool are_whole = false;
-  Collected collected = collect_primitives(scene, count_numbers(scene, meshes, are_whole));
-  packed.copies = drop_copies(scene, collected);
-  count_kinds(packed, collected.bounded);
-  packed.kinds |= 1U << KIND_TRIANGLE;
-  const Bvh own = build_own_tree(collected, builder, options);
-  packed.references = sort_leaves_by_kind(own, collected.bounded);
-  const size_t own_count = packed.references.size();
+  packed.copies = std::move(geometries.copies);
+  packed.solid_count = count_solids(collected);
+  packed.kinds = own.kinds | 1U << KIND_TRIANGLE;
+  const size_t own_count = own.references.size();
   size_t reference_count = own_count;
   packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
   for (const PackedMesh& mesh : meshes) {
@@ -305,16 +307,17 @@ PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, s
   Bounds own_bounds;
   for (const Bounds& box : collected.boxes) own_bounds.extend(box);
   const TwoLevels levels{
-      scene, own, own_bounds, static_cast<uint32_t>(own_count), meshes, collected.numbers.first_order};
+      scene, own.binary, own_bounds, static_cast<uint32_t>(own_count), meshes, collected.numbers.first_order};
   packed.upper = std::make_shared<UpperLevel>(levels, options);
   const UpperNodes upper = packed.upper->build(options);
   check_at_most(MAX_NODES, upper.first_record, scene, "the scene's tree has", "nodes");
   check_at_most(CHILD_INSTANCE_INDEX, upper.first_record + upper.records.size(), scene, "the scene's tree has",
                 "nodes and instances");
   packed.nodes = packed.upper->join(levels, upper);
-  packed.bvh_ms = building.ms();
-  packed.bvh = stats_of(builder, upper.stats, own, meshes);
+  packed.bvh_ms = packing.ms();
+  packed.bvh = stats_of(upper.stats, own.stats, meshes);
   packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
+  packed.references = std::move(own.references);
   packed.stack_size = upper.stack_size + kSpareStack;
   packed.instance_count = packed.upper->instance_count();
   packed.first_instance = upper.first_record;
@@ -325,9 +328,8 @@ PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, s
     first = end;
   }
   pack_contents(packed, scene, collected);
-  add_images(packed, scene, texture_bytes);
   packed.tree_bounds = center_and_radius(upper.bounds);
-  packed.numbers.are_instances_whole = are_whole;
+  packed.numbers.are_instances_whole = geometries.are_instances_whole;
   packed.numbers.mesh_of_object.assign(scene.objects.size(), PrimitiveNumbers::kNoMesh);
   for (const world::Instance& instance : scene.instances) {
     packed.numbers.mesh_of_object[instance.object] = instance.mesh;
@@ -340,29 +342,89 @@ PackedScene pack_two_levels(const world::Scene& scene, uint64_t texture_bytes, s
   return packed;
 }
 
-/// Packs a scene without its images, with the tree that `make_tree` makes.
+/// Packs a scene without instances and without its images, with the tree that `make_tree` makes.
 template <typename MakeTree>
-PackedScene pack_world(const world::Scene& scene, const MakeTree& make_tree) {
-  Collected collected = collect_primitives(scene);
+PackedScene pack_one_level(const world::Scene& scene, const MakeTree& make_tree) {
+  Geometries geometries = collect_geometries(scene);
+  const Collected& own = geometries.own;
   PackedScene packed;
-  packed.copies = drop_copies(scene, collected);
-  packed.bounded_count = static_cast<uint32_t>(collected.bounded.size());
-  count_kinds(packed, collected.bounded);
-  make_tree(packed, collected);
-  pack_contents(packed, scene, collected);
+  packed.copies = std::move(geometries.copies);
+  packed.bounded_count = static_cast<uint32_t>(own.bounded.size());
+  packed.kinds = kinds_of(own);
+  packed.solid_count = count_solids(own);
+  make_tree(packed, own);
+  pack_contents(packed, scene, geometries.own);
   return packed;
 }
 
-/// Packs a scene with the tree that `make_tree` makes, which may read the hash of the geometry.
-template <typename MakeTree>
-PackedScene pack_world(const world::Scene& scene, uint64_t texture_bytes, const MakeTree& make_tree) {
-  PackedScene packed = pack_world(scene, [&](PackedScene& next, const Collected& collected) {
-    next.geometry_hash = hash_geometry(collected.bounded);
-    make_tree(next, collected);
-  });
-  add_images(packed, scene, texture_bytes);
-  return packed;
-}
+/// The way to the trees of a scene: they are built, or read from a file, or shared with other processes.
+class TreeSource {
+ public:
+  /// The trees are built.
+  TreeSource(std::string_view builder, const BuildOptions& options) : builder_(builder), options_(options) {}
+  /// The trees are read.
+  explicit TreeSource(const std::filesystem::path& file) : file_(&file) {}
+  /// The trees are shared.
+  TreeSource(std::string_view builder, const BuildOptions& options, const std::filesystem::path& file)
+      : builder_(builder), options_(options), file_(&file), is_shared_(true) {}
+
+  PackedScene make_packed(const world::Scene& scene, uint64_t texture_bytes) const {
+    PackedScene packed = scene.instances.empty() ? pack_without_instances(scene) : pack_with_instances(scene);
+    add_images(packed, scene, texture_bytes);
+    return packed;
+  }
+
+ private:
+  PackedScene pack_without_instances(const world::Scene& scene) const {
+    return pack_one_level(scene, [&](PackedScene& packed, const Collected& own) {
+      packed.geometry_hash = hash_geometry(own);
+      packed.bvh_ms = get(
+          packed.bounded_count, packed.warnings, [&] { read_tree(packed, *file_); },
+          [&] {
+            build_tree(packed, scene, own, builder_, options_);
+            return std::vector<TreeView>{packed.tree()};
+          });
+    });
+  }
+
+  PackedScene pack_with_instances(const world::Scene& scene) const {
+    Geometries geometries = collect_geometries(scene);
+    std::vector<GeometryTree> trees;
+    std::vector<Problem> warnings;
+    bool is_built = false;
+    const double trees_ms = get(
+        geometries.bounded_count(), warnings, [&] { trees = read_trees(geometries, *file_); },
+        [&] {
+          trees = build_trees(geometries, builder_, options_);
+          is_built = true;
+          return views_of(trees);
+        });
+    PackedScene packed = pack_two_levels(scene, std::move(geometries), std::move(trees), options_);
+    packed.bvh_ms += trees_ms;
+    packed.is_tree_built = is_built;
+    packed.warnings = std::move(warnings);
+    return packed;
+  }
+
+  /// Calls `read` or `build`, or both. Returns the time in milliseconds.
+  template <typename Read, typename Build>
+  double get(size_t bounded_count, std::vector<Problem>& warnings, const Read& read, const Build& build) const {
+    const Stopwatch getting;
+    if (file_ == nullptr || (is_shared_ && bounded_count < kLeastShared)) {
+      build();
+    } else if (is_shared_) {
+      share_trees(*file_, options_, warnings, read, build);
+    } else {
+      read();
+    }
+    return getting.ms();
+  }
+
+  std::string_view builder_;
+  BuildOptions options_;
+  const std::filesystem::path* file_ = nullptr;
+  bool is_shared_ = false;
+};
 
 /// Returns whether a tree over the primitives is a tree over others with these kinds.
 bool has_kinds(const KeptTree& kept, std::span<const Primitive> bounded) {
@@ -418,8 +480,8 @@ void add_images(PackedScene& packed, const world::Scene& scene, uint64_t texture
 }
 
 TreeView PackedScene::tree() const {
-  if (file) return file->tree();
-  return {nodes, references, bounded_count, stack_size, kinds, geometry_hash, bvh};
+  const std::span<const Node> all = file ? nodes_in_file : std::span<const Node>(nodes);
+  return {all, references, bounded_count, stack_size, kinds, geometry_hash, bvh};
 }
 
 uint64_t PackedSurfaces::size_bytes() const {
@@ -434,21 +496,14 @@ uint64_t PackedScene::size_bytes() const {
   return tree().nodes.size_bytes() + std::as_bytes(std::span(primitives)).size() + surfaces.size_bytes();
 }
 
-TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options) {
-  return find_tree_faults(packed.tree(), packed.primitives, packed.numbers, options);
-}
-
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options,
                        uint64_t texture_bytes) {
-  if (!scene.instances.empty()) return pack_two_levels(scene, texture_bytes, builder, options);
-  return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
-    build_tree(packed, scene, collected, builder, options);
-  });
+  return TreeSource(builder, options).make_packed(scene, texture_bytes);
 }
 
 PackedScene pack_pose(const world::Scene& scene, std::string_view builder, TreeOfPose choice, KeptTree& kept,
                       const BuildOptions& options) {
-  return pack_world(scene, [&](PackedScene& packed, const Collected& collected) {
+  return pack_one_level(scene, [&](PackedScene& packed, const Collected& collected) {
     const Stopwatch fitting;
     if (choice == TreeOfPose::kRefitted && has_kinds(kept, collected.bounded)) {
       const double cost = refit_tree(kept.nodes, kept.references, collected.boxes);
@@ -458,7 +513,6 @@ PackedScene pack_pose(const world::Scene& scene, std::string_view builder, TreeO
         packed.stack_size = kept.stack_size;
         packed.bvh = kept.bvh;
         packed.bvh_ms = fitting.ms();
-        packed.is_tree_fitted = true;
         return;
       }
     }
@@ -500,21 +554,45 @@ uint64_t hash_instanced(const world::Scene& scene) {
 }
 
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {
-  if (!scene.instances.empty()) {
-    throw InputError({"bvh.instances", "the scene has instances, but a BVH file has the triangles of all objects",
-                      bvh_file.string(), "build the tree, or draw no object as an instance", Setting::kInstances});
-  }
-  return pack_world(scene, texture_bytes,
-                    [&](PackedScene& packed, const Collected& /*collected*/) { read_tree(packed, bvh_file); });
+  return TreeSource(bvh_file).make_packed(scene, texture_bytes);
 }
 
 PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
                                std::string_view builder, const BuildOptions& options, uint64_t texture_bytes) {
-  if (!scene.instances.empty()) return pack_two_levels(scene, texture_bytes, builder, options);
-  return pack_world(scene, texture_bytes, [&](PackedScene& packed, const Collected& collected) {
-    if (packed.bounded_count < kLeastShared) return build_tree(packed, scene, collected, builder, options);
-    share_tree(packed, scene, collected, builder, options, bvh_file);
-  });
+  return TreeSource(builder, options, bvh_file).make_packed(scene, texture_bytes);
+}
+
+std::vector<GeometryTree> build_scene_trees(const world::Scene& scene, std::string_view builder,
+                                            const BuildOptions& options) {
+  std::vector<GeometryTree> trees = build_trees(collect_geometries(scene), builder, options);
+  for (const GeometryTree& tree : trees) check_size(tree.view(), scene);
+  return trees;
+}
+
+TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options) {
+  return find_tree_faults(packed.tree(), packed.primitives, packed.numbers, options);
+}
+
+TreeFaults find_tree_faults(const BvhFile& file, const world::Scene& scene, const TreeFaultOptions& options) {
+  const Geometries geometries = collect_geometries(scene);
+  TreeFaults all;
+  const auto add_faults = [&](const Collected& collected, const auto& place) {
+    const TreeView& tree = file.find(hash_geometry(collected), collected.bounded.size());
+    UnsetVector<Primitive> primitives;
+    primitives.resize(tree.references.size());
+    for (size_t i = 0; i < primitives.size(); ++i) primitives[i] = collected.bounded[tree.references[i]];
+    const TreeFaults faults = find_tree_faults(tree, primitives, collected.numbers, options);
+    if (all.count == 0 && faults.count > 0) all.first = place() + faults.first;
+    all.count += faults.count;
+  };
+  add_faults(geometries.own, [] { return std::string(); });
+  for (uint32_t i = 0; i < geometries.meshes.size(); ++i) {
+    add_faults(geometries.meshes[i], [&] {
+      const auto instance = std::ranges::find(scene.instances, i, &world::Instance::mesh);
+      return "in the mesh of object " + std::to_string(instance->object) + ", ";
+    });
+  }
+  return all;
 }
 
 }  // namespace promin

@@ -17,6 +17,7 @@
 #include "core/unset_vector.h"
 #include "device_scene/collect_primitives.h"
 #include "device_scene/drop_copies.h"
+#include "device_scene/geometry_tree.h"
 #include "promin/error.h"
 #include "scene/world_scene.h"
 #include "shared/layout.h"
@@ -50,8 +51,10 @@ struct MeshRange {
 struct PackedScene {
   /// At least one node; empty if a file contains the nodes.
   UnsetVector<layout::Node> nodes;
-  /// The BVH file; null if the tree was built.
+  /// The BVH file with the nodes, and these nodes; null if the tree was built. A scene with instances copies its nodes
+  /// from the file.
   std::shared_ptr<const BvhFile> file;
+  std::span<const layout::Node> nodes_in_file;
   /// The references of the leaves; see TreeView::references.
   UnsetVector<uint32_t> references;
   /// The primitives of the tree in leaf order, then the unbounded primitives; at least one.
@@ -66,8 +69,8 @@ struct PackedScene {
   uint64_t shared_triangle_count = 0;
   /// The upper level of the tree, which is built again if instances move; null without instances.
   std::shared_ptr<UpperLevel> upper;
-  /// True if the tree is that of an earlier pose, fitted to this one (pack_pose).
-  bool is_tree_fitted = false;
+  /// True if the tree was built. It may also be read from a file, or be that of an earlier pose (pack_pose).
+  bool is_tree_built = false;
   /// The result of find_mask_cutoffs().
   std::vector<float> mask_cutoffs;
   /// The meshes that instances share, and the index of the first record of an instance in the nodes.
@@ -91,8 +94,8 @@ struct PackedScene {
   uint32_t kinds = 0;
   uint64_t geometry_hash = 0;
   BvhStats bvh;
-  /// Time of the builder, or time for reading and checking the file, in milliseconds. For a shared tree that this
-  /// process built, it includes waiting and writing.
+  /// Time for building and packing the tree, or for reading and checking the file, in milliseconds. For a shared tree
+  /// that this process built, it includes waiting and writing.
   double bvh_ms = 0.0;
   /// Problems with the file that pack_scene_sharing() used.
   std::vector<Problem> warnings;
@@ -117,8 +120,8 @@ vec4 center_and_radius(const Bounds& box);
 PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options = {},
                        uint64_t texture_bytes = kDefaultTextureBytes);
 
-/// Packs a checked scene's objects with the tree of a file. Throws InputError for a file that is damaged or belongs to
-/// another scene, and RunError like pack_scene().
+/// Packs a checked scene's objects with the trees of a file, which has a tree for each geometry. Throws InputError for
+/// a file that is damaged or belongs to another scene, and RunError like pack_scene().
 PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene,
                             uint64_t texture_bytes = kDefaultTextureBytes);
 
@@ -184,7 +187,14 @@ PackedScene pack_scene_by(const Options& options, const world::Scene& scene,
   return pack_scene_sharing(*options.shared_bvh, scene, options.builder, how, texture_bytes);
 }
 
-/// Calls find_tree_faults() for the scene's own tree.
+/// Returns the trees of a checked scene for a BVH file: that of the primitives that belong to no instance, then those
+/// of the meshes that instances share. Throws the same errors as pack_scene().
+std::vector<GeometryTree> build_scene_trees(const world::Scene& scene, std::string_view builder,
+                                            const BuildOptions& options);
+
+/// Calls find_tree_faults() for the tree of a scene without instances.
 TreeFaults find_tree_faults(const PackedScene& packed, const TreeFaultOptions& options = {});
+/// Calls find_tree_faults() for all trees of a scene. Throws InputError if the file lacks one of them.
+TreeFaults find_tree_faults(const BvhFile& file, const world::Scene& scene, const TreeFaultOptions& options = {});
 
 }  // namespace promin

@@ -32,8 +32,7 @@ struct CasterOptions {
   std::string builder = "sah";
   /// A BVH file to read the tree from. Without one the tree is built.
   std::optional<std::filesystem::path> bvh = std::nullopt;
-  /// The objects that share the triangles of their meshes. A BVH file has the triangles of all objects, so `bvh` needs
-  /// Instancing::kNone if the scene has instances.
+  /// The objects that share the triangles of their meshes. The trees of a BVH file belong to one choice.
   Instancing instances = Instancing::kAuto;
   /// Receives the progress of building the tree. If it returns false, the constructor throws Cancelled.
   ProgressCallback progress = {};

@@ -76,8 +76,7 @@ struct RendererOptions {
   std::string builder = "sah";
   /// A BVH file to read the tree from. Without one the tree is built.
   std::optional<std::filesystem::path> bvh = std::nullopt;
-  /// The objects that share the triangles of their meshes. A BVH file has the triangles of all objects, so `bvh` needs
-  /// Instancing::kNone if the scene has instances.
+  /// The objects that share the triangles of their meshes. The trees of a BVH file belong to one choice.
   Instancing instances = Instancing::kAuto;
   /// The mode of the first pictures. The constructor compiles the pipeline of this mode. Pipelines of other modes are
   /// compiled at their first use.

@@ -53,8 +53,8 @@ class Caster:
         """device: a Device, a part of a device's name, an index, or None for the default device. bvh: a file that
         `promin-bvh build` has written, from which the tree is read. builder: "sah", "median" or "spatial"; the hits do
         not depend on it. The objects of `instances` share the triangles of their mesh: "auto" are those that save
-        much memory, "all" those with a mesh, "none" no objects, as a bvh needs. Raises UsageError, InputError for an
-        invalid scene, DeviceError, RunError, Cancelled."""
+        much memory, "all" those with a mesh, "none" no objects. The file of `bvh` belongs to one choice. Raises
+        UsageError, InputError for an invalid scene, DeviceError, RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._options = (str(builder), None if bvh is None else os.fsdecode(bvh), str(instances))
         self._chosen = device

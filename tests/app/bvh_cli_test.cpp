@@ -94,7 +94,7 @@ TEST_F(BvhCliTest, BuildsTellsAndVerifies) {
     EXPECT_THAT(info.out, ContainsRegex("depth +1; the traversal stack takes 1\n"));
     EXPECT_THAT(info.out, ContainsRegex("leaves +1 \\(by size: 2: 1\\)"));
     EXPECT_THAT(info.out, ContainsRegex("memory +96.0 bytes per primitive on the device: 32.0 of nodes, 64.0 "));
-    EXPECT_THAT(info.out, ContainsRegex("scene hash +[0-9a-f]{16}\n"));
+    EXPECT_THAT(info.out, ContainsRegex("geometry +[0-9a-f]{16}\n"));
 
     const ProcessResult verified = run_bvh({"verify", "square.gltf", "a.pbvh"});
     EXPECT_EQ(verified.exit_code, 0) << verified.err;

@@ -54,6 +54,31 @@ TEST_F(CliTest, ExplainPrintsWhatThePixelIsMadeOf) {
   }
 }
 
+TEST_F(CliTest, ExplainNamesInstances) {
+  nlohmann::json gltf = json::parse(kSquareGltf);
+  gltf["nodes"][0] = {{"name", "left"}, {"mesh", 0}, {"translation", {-1, 0, 0}}, {"scale", {0.75, 0.75, 0.75}}};
+  gltf["nodes"].push_back({{"name", "right"}, {"mesh", 0}, {"translation", {1, 0, 0.5}}, {"scale", {-0.75, 0.75, 2}}});
+  gltf["scenes"][0]["nodes"].push_back(4);
+  write("pair.gltf", gltf.dump());
+  for (const auto& [x, object, name, z] : {std::tuple(20, 0, "left", 0.0), std::tuple(44, 1, "right", 0.5)}) {
+    const ProcessResult result = run({"render", "pair.gltf", "--size", "64", "36", "-s", "1", "--instances", "all",
+                                      "--explain", std::to_string(x), "18"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json ray = json::parse(result.out).at("samples")[0].at("rays")[0];
+    const json& hit = ray.at("hit");
+    EXPECT_EQ(hit.at("object"), object);
+    EXPECT_EQ(hit.at("object_name"), name);
+    EXPECT_EQ(hit.at("position")[2], z);
+    EXPECT_EQ(std::abs(hit.at("normal")[2].get<double>()), 1.0);
+    // The point lies on the ray.
+    const double t = hit.at("t").get<double>();
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double at = ray.at("origin")[axis].get<double>() + t * ray.at("direction")[axis].get<double>();
+      EXPECT_NEAR(hit.at("position")[axis].get<double>(), at, 1e-5);
+    }
+  }
+}
+
 TEST_F(CliTest, ExplainGoesAloneAndStaysInThePicture) {
   const std::pair<OptionValues, std::string> cases[] = {
       {{"--explain", "64", "0"}, "view.pixel.outside 64x36"},

@@ -316,7 +316,7 @@ TEST_F(BvhFileTest, RandomFaultsAreRefusedOrHarmless) {
     bytes = sealed(std::move(bytes));
     if (!refusal(bytes).empty()) continue;
     ++taken;
-    expect_traversable(BvhFile(file_).tree());
+    expect_traversable(BvhFile(file_).trees().front());
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(taken, 100U);
@@ -388,9 +388,10 @@ TEST_F(BvhFileTest, AWriteThatFailsLeavesTheOldFile) {
 
 TEST_F(BvhFileTest, AReplacedFileStaysAsItWas) {
   const BvhFile file(file_);
-  const Bytes before(std::as_bytes(file.tree().nodes).begin(), std::as_bytes(file.tree().nodes).end());
+  const Bytes before(std::as_bytes(file.trees().front().nodes).begin(),
+                     std::as_bytes(file.trees().front().nodes).end());
   write_bvh_file(file_, pack_scene(test::make_scene_of_everything(2), "sah").tree());
-  EXPECT_TRUE(has_same_bytes<std::byte>(std::as_bytes(file.tree().nodes), before));
+  EXPECT_TRUE(has_same_bytes<std::byte>(std::as_bytes(file.trees().front().nodes), before));
 }
 
 TEST(Hash64, EveryBitCounts) {

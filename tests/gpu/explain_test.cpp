@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <filesystem>
 
@@ -16,6 +17,7 @@
 #include "promin/renderer.h"
 #include "shared/layout.h"
 #include "support/thorough.h"
+#include "support/with_instances.h"
 #include "trace/render/caster_access.h"
 #include "trace/render/renderer_impl.h"
 
@@ -147,6 +149,31 @@ TEST_F(ExplainTest, EverythingAddsUpToThePicture) {
   View view = test::make_view(uvec2(150, 100));
   view.samples_per_pixel = 3;
   check(test::make_scene_of_everything(), view);
+}
+
+TEST_F(ExplainTest, InstancesAddUpToThePicture) {
+  const world::Scene scene = test::with_instances(test::make_scene_of_everything());
+  ASSERT_FALSE(scene.instances.empty());
+  const View view = test::make_view(uvec2(150, 100));
+  check(scene, view);
+  // The log names the object and the primitive of the instance, and the position in the world.
+  TunedRendererOptions options;
+  options.aovs.object = options.aovs.primitive = options.aovs.position = options.aovs.material = true;
+  Renderer renderer = make_renderer(device(), scene, options);
+  const Aovs aovs = renderer.render(view).aovs;
+  size_t seen = 0;
+  for (size_t i = 0; i < aovs.object.size() && seen < 12; i += 7) {
+    const auto is_seen = [&](const world::Instance& instance) { return instance.object == aovs.object[i]; };
+    if (std::ranges::none_of(scene.instances, is_seen)) continue;
+    const uvec2 pixel(i % view.size.x, i / view.size.x);
+    const ExplainedRay& ray = renderer.explain(view, pixel).samples[0].rays[0];
+    EXPECT_EQ(static_cast<uint32_t>(ray.hit.object), aovs.object[i]);
+    EXPECT_EQ(static_cast<uint32_t>(ray.hit.primitive), aovs.primitive[i]);
+    EXPECT_EQ(ray.material, aovs.material[i]);
+    EXPECT_EQ(bits_of(ray.position), bits_of(aovs.position[i]));
+    ++seen;
+  }
+  EXPECT_GT(seen, 5U);
 }
 
 // cast() returns the nearest surface even if it blends, so the test does not compare hits with cast().

@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <string>
@@ -19,6 +22,7 @@
 #include "measure/ray_sets.h"
 #include "promin/caster.h"
 #include "support/problems.h"
+#include "support/with_instances.h"
 #include "trace/render/caster_access.h"
 #include "trace/render/renderer_impl.h"
 
@@ -26,26 +30,6 @@ namespace promin::test {
 namespace {
 
 using measure::Random;
-
-/// Returns the same scene with every mesh as an instance. Each has another turn and scale, and every second one is
-/// mirrored.
-world::Scene with_instances(world::Scene scene) {
-  Random random(3);
-  for (uint32_t i = 0; i < scene.objects.size(); ++i) {
-    const auto* mesh = std::get_if<Mesh>(&scene.objects[i].shape);
-    if (mesh == nullptr || mesh->triangles.empty()) continue;
-    Bounds box;
-    for (const vec3& p : mesh->positions) box.extend(p);
-    dmat4 map = glm::mat4_cast(glm::angleAxis(random.uniform(-3.0, 3.0), random.direction()));
-    for (int axis = 0; axis < 3; ++axis) map[axis] *= random.uniform(0.5, 3.0);
-    if (i % 2 == 0) map[1] *= -1.0;
-    map[3] = dvec4(dvec3(box.center()), 1.0);
-    scene.meshes.push_back(world::place(*mesh, glm::inverse(map)));
-    scene.instances.push_back({i, static_cast<uint32_t>(scene.meshes.size() - 1), glm::dmat4x3(map)});
-    scene.objects[i].shape = world::NotDrawn{};
-  }
-  return scene;
-}
 
 class InstancesTest : public DeviceTest {
  protected:
@@ -149,6 +133,40 @@ TEST_F(InstancesTest, CrossingsAndAnyHits) {
   size_t counted = 0;
   for (const int32_t count : counts[1]) counted += static_cast<size_t>(count);
   EXPECT_EQ(listed, counted);
+}
+
+/// No bit of a hit depends on whether the trees of the meshes are built or read from a file, also after instances move.
+TEST_F(InstancesTest, HitsAreThoseOfAFile) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("promin_instances_" + std::to_string(getpid()) + ".pbvh");
+  const world::Scene scene = with_instances(make_scene_of_everything(60));
+  std::vector<TreeView> views;
+  const std::vector<GeometryTree> trees = build_scene_trees(scene, "spatial", {});
+  for (const GeometryTree& tree : trees) views.push_back(tree.view());
+  ASSERT_GT(views.size(), 1U);
+  write_bvh_file(file, views);
+  Caster of_built = make_caster(device(), scene);
+  Caster of_file = make_caster(device(), scene, {.builder = "", .bvh = file});
+  std::filesystem::remove(file);
+  const std::vector<Ray> rays = make_rays(20000);
+  std::vector<Hit> built(rays.size());
+  std::vector<Hit> read(rays.size());
+  const auto expect_same_hits = [&] {
+    of_built.cast(rays, built);
+    of_file.cast(rays, read);
+    EXPECT_EQ(std::memcmp(read.data(), built.data(), rays.size() * sizeof(Hit)), 0);
+  };
+  expect_same_hits();
+  const std::vector<Hit> before = built;
+  std::vector<std::pair<uint32_t, dmat4>> moved;
+  for (const world::Instance& instance : scene.instances) {
+    moved.emplace_back(instance.object, dmat4(instance.world_from_object));
+    moved.back().second[3].y += 0.25;
+  }
+  of_built.set_transforms(moved);
+  of_file.set_transforms(moved);
+  expect_same_hits();
+  EXPECT_NE(std::memcmp(before.data(), built.data(), rays.size() * sizeof(Hit)), 0);
 }
 
 /// Balls that share a mesh, among other objects. Half of them are mirrored.

@@ -362,11 +362,6 @@ std::vector<MessageCase> cases_of_trees() {
          std::get<Mesh>(other.geometries[0]).positions[0].x = 5;
          static_cast<void>(pack_scene_with("a.pbvh", world::flatten(other)));
        }},
-      {"bvh.instances",
-       [] {
-         const world::Scene scene = world::flatten(make_valid_scene(), world::Purpose::kHits, Instancing::kAll);
-         static_cast<void>(pack_scene_with("a.pbvh", scene));
-       }},
   };
 }
 

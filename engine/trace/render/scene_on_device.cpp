@@ -49,7 +49,7 @@ void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene,
 }
 
 void SceneOnDevice::take(const world::Scene& scene, PackedScene& packed, SetupStats& stats) {
-  if (packed.file == nullptr && !packed.is_tree_fitted) ++trees_built_;
+  if (packed.is_tree_built) ++trees_built_;
   stats.bvh = packed.bvh;
   stats.bvh_ms = packed.bvh_ms;
   stats.degenerate_triangles = packed.degenerate_count;
