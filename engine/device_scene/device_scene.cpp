@@ -41,10 +41,11 @@ Placed place(const Records& records, uint64_t offset) {
   return {std::as_bytes(std::span(records)), first * kStride, static_cast<uint32_t>(first)};
 }
 
-/// Returns whether both have the same host memory at the same place in the buffer. Packed data never changes, so the
-/// bytes are then equal.
+/// Returns whether both have the same bytes at the same place in the buffer.
 bool is_same(const Placed& a, const Placed& b) {
-  return a.bytes.data() == b.bytes.data() && a.bytes.size() == b.bytes.size() && a.offset == b.offset;
+  if (a.offset != b.offset || a.bytes.size() != b.bytes.size()) return false;
+  // Packed data never changes, so the same memory has the same bytes.
+  return a.bytes.data() == b.bytes.data() || std::ranges::equal(a.bytes, b.bytes);
 }
 
 void write(gpu::Buffer& buffer, const Placed& placed) {
@@ -192,37 +193,52 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
 }
 
 void DeviceScene::set_materials(std::span<const Material> materials) {
-  Tail tail = tail_;
-  tail.materials = std::make_shared<const PackedMaterials>(pack_materials(materials));
-  tail.lobe_tables = lobe_tables_for(materials);
-  bool is_new = false;
-  for (size_t i = 0; i < materials.size(); ++i) {
-    is_new = is_new || (emits_light(materials[i]) && !emits_light(materials_[i]));
-  }
-  const bool may_change = is_new || !emissive_.surfaces.empty();
-  materials_.assign(materials.begin(), materials.end());
-  if (is_new) find_emissive_again();
-  if (may_change) put_direct_sources(tail, environment_);
-  write_tail(std::move(tail));
+  replace({.materials = materials});
 }
 
 void DeviceScene::set_lights(std::span<const Light> lights) {
-  Tail tail = tail_;
-  tail.lights = pack_lights(lights);
-  lights_.assign(lights.begin(), lights.end());
-  put_direct_sources(tail, environment_);
-  write_tail(std::move(tail));
+  replace({.lights = lights});
 }
 
 void DeviceScene::set_environment(const Environment& environment) {
-  const bool is_new_sky = !are_skies_equal(environment, environment_);
-  if (is_new_sky || gives_light(environment) != gives_light(environment_)) {
-    Tail tail = tail_;
-    if (is_new_sky) tail.sky = std::make_shared<const PackedSky>(pack_sky(environment));
-    put_direct_sources(tail, environment);
-    write_tail(std::move(tail));
-  }
+  const bool has_other_sources =
+      !are_skies_equal(environment, environment_) || gives_light(environment) != gives_light(environment_);
+  if (has_other_sources) return replace({.environment = &environment});
   take_colors(environment);
+}
+
+DeviceScene::NewParts DeviceScene::parts_of(const ShadingParts& shading) {
+  return {.materials = shading.materials, .lights = shading.lights, .environment = &shading.environment};
+}
+
+void DeviceScene::replace(const NewParts& parts) {
+  Tail tail = tail_;
+  bool must_find = parts.have_instances_moved && std::ranges::any_of(materials_, emits_light);
+  if (parts.materials) {
+    const std::span<const Material> materials = *parts.materials;
+    tail.materials = std::make_shared<const PackedMaterials>(pack_materials(materials));
+    tail.lobe_tables = lobe_tables_for(materials);
+    bool is_new = false;
+    for (size_t i = 0; i < materials.size(); ++i) {
+      is_new = is_new || (emits_light(materials[i]) && !emits_light(materials_[i]));
+    }
+    materials_.assign(materials.begin(), materials.end());
+    must_find = must_find || is_new;
+  }
+  if (parts.geometry != nullptr) {
+    find_emissive(*parts.geometry);
+  } else if (must_find) {
+    find_emissive_again();
+  }
+  if (parts.lights) {
+    tail.lights = pack_lights(*parts.lights);
+    lights_.assign(parts.lights->begin(), parts.lights->end());
+  }
+  const Environment& environment = parts.environment == nullptr ? environment_ : *parts.environment;
+  if (!are_skies_equal(environment, environment_)) tail.sky = std::make_shared<const PackedSky>(pack_sky(environment));
+  put_direct_sources(tail, environment);
+  write_tail(std::move(tail));
+  if (parts.environment != nullptr) take_colors(environment);
 }
 
 void DeviceScene::reserve_nodes(uint64_t count, uint64_t kept) {
@@ -244,7 +260,7 @@ void DeviceScene::reserve_stack(uint32_t entries) {
 }
 
 void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper,
-                                  std::shared_ptr<const GlassSolids> glass_solids) {
+                                  std::shared_ptr<const GlassSolids> glass_solids, const ShadingParts* shading) {
   constexpr uint64_t kNodeBytes = sizeof(layout::Node);
   reserve_nodes(upper.first_record + upper.records.size(), level.first_node());
   reserve_stack(upper.stack_size);
@@ -255,8 +271,9 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   constants_.tree_bounds = center_and_radius(upper.bounds);
   constants_.glass_solids = std::move(glass_solids);
   emitter_ranges_.first_instance = upper.first_record;
-  if (std::ranges::any_of(materials_, emits_light)) find_emissive_again();
-  move_sources();
+  NewParts parts = shading == nullptr ? NewParts() : parts_of(*shading);
+  parts.have_instances_moved = true;
+  replace(parts);
 }
 
 bool DeviceScene::has_space_for(const PackedScene& packed) const {
@@ -265,7 +282,7 @@ bool DeviceScene::has_space_for(const PackedScene& packed) const {
          (packed.solid_count > packed.bounded_count / 2) == is_mostly_solids_;
 }
 
-void DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids) {
+void DeviceScene::set_geometry(const PackedScene& packed, const ShadingParts& shading) {
   const TreeView tree = packed.tree();
   reserve_nodes(tree.nodes.size(), 0);
   reserve_stack(packed.stack_size);
@@ -275,17 +292,12 @@ void DeviceScene::set_geometry(const PackedScene& packed, std::shared_ptr<const 
   for (const Placed& placed : head.parts()) write(*shading_, placed);
   uploads_.geometry += tree.nodes.size_bytes() + primitives_.size_bytes() + head.end();
   take_tree(packed);
-  constants_.glass_solids = std::move(glass_solids);
+  constants_.glass_solids = shading.glass_solids;
   emitter_ranges_ = EmitterRanges(packed);
-  find_emissive(geometry_of(packed));
-  move_sources();
-}
-
-void DeviceScene::move_sources() {
-  if (emissive_.surfaces.empty() && source_features_ == FeatureMask()) return;
-  Tail tail = tail_;
-  put_direct_sources(tail, environment_);
-  write_tail(std::move(tail));
+  const EmitterGeometry geometry = geometry_of(packed);
+  NewParts parts = parts_of(shading);
+  parts.geometry = &geometry;
+  replace(parts);
 }
 
 void DeviceScene::take_tree(const PackedScene& packed) {

@@ -26,7 +26,7 @@ struct ShadingParts {
   std::span<const Texture> textures;
   std::span<const Light> lights;
   Environment environment;
-  /// Solids of glass, which are never replaced; null if no view needs this data.
+  /// Solids of glass; null if no view needs this data.
   std::shared_ptr<const GlassSolids> glass_solids = nullptr;
 };
 
@@ -46,11 +46,12 @@ class DeviceScene {
   /// Returns whether set_geometry() can replace the geometry by that of another pose: there is space for as many
   /// primitives and vertices, and no instances.
   bool has_space_for(const PackedScene& packed) const;
-  /// Replaces the geometry, for which there is space. The images stay.
-  void set_geometry(const PackedScene& packed, std::shared_ptr<const GlassSolids> glass_solids);
-  /// Replaces the upper level after instances have moved.
+  /// Replaces the geometry, for which there is space, and the shading. Images and textures stay.
+  void set_geometry(const PackedScene& packed, const ShadingParts& shading);
+  /// Replaces the upper level after instances have moved, and the materials, lights and environment by those of
+  /// `shading`; null keeps them.
   void set_upper_level(const UpperLevel& level, const UpperNodes& upper,
-                       std::shared_ptr<const GlassSolids> glass_solids);
+                       std::shared_ptr<const GlassSolids> glass_solids, const ShadingParts* shading = nullptr);
 
   /// Returns the constants of pictures and casts that depend on the scene.
   const SceneConstants& constants() const { return constants_; }
@@ -125,8 +126,18 @@ class DeviceScene {
   void find_emissive(const EmitterGeometry& geometry);
   /// Does the same in the geometry on the device.
   void find_emissive_again();
-  /// Replaces the sources of Integrator::kDirect after emissive surfaces or the bounds of the scene have moved.
-  void move_sources();
+  /// The parts to replace; absent parts stay.
+  struct NewParts {
+    std::optional<std::span<const Material>> materials = std::nullopt;
+    std::optional<std::span<const Light>> lights = std::nullopt;
+    const Environment* environment = nullptr;
+    /// The geometry if it is another one.
+    const EmitterGeometry* geometry = nullptr;
+    bool have_instances_moved = false;
+  };
+  static NewParts parts_of(const ShadingParts& shading);
+  /// Replaces parts, finds the sources of light again, and writes the tail once.
+  void replace(const NewParts& parts);
   std::shared_ptr<const std::vector<uvec4>> lobe_tables_for(std::span<const Material> materials) const;
   /// Copies the changed parts of the tail to the device, or the whole tail to a larger buffer if needed. If this buffer
   /// cannot be created, nothing changes.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "gpu/device_fixture.h"
@@ -94,6 +95,34 @@ TEST_F(PosesTest, PicturesAreThoseOfANewRenderer) {
   }
   EXPECT_EQ(renderer.work_done().pipelines_compiled, before.pipelines_compiled);
   EXPECT_EQ(renderer.work_done().trees_built - before.trees_built, 5U) << "two poses have fitted trees";
+}
+
+/// A pose uploads only the shading that changes, and each part of it once.
+TEST_F(PosesTest, OnlyChangedShadingIsUploaded) {
+  TunedRendererOptions options;
+  options.with_aovs = options.aovs.cryptomatte = true;
+  options.more_features = features_of(make_scene_of_everything(50)) | layout::FEATURE_INSTANCES;
+  const Scene first = pose(0.0F);
+  Renderer renderer = make_renderer(device(), first, options);
+  const auto uploaded_by = [&](const Scene& posed) {
+    const uint64_t before = renderer.work_done().shading_bytes_uploaded;
+    renderer.set_pose(posed);
+    return renderer.work_done().shading_bytes_uploaded - before;
+  };
+  Scene next = pose(0.2F);
+  const std::vector<Material> materials = std::exchange(next.materials, first.materials);
+  const std::vector<Light> lights = std::exchange(next.lights, first.lights);
+  EXPECT_EQ(uploaded_by(next), 0U);
+  next.lights = lights;
+  const uint64_t of_lights = uploaded_by(next);
+  EXPECT_GT(of_lights, 0U);
+  // There may be a record of the environment.
+  EXPECT_LE(of_lights, 2 * sizeof(layout::LightRecord));
+  next.materials = materials;
+  EXPECT_EQ(uploaded_by(next), materials.size() * sizeof(layout::MaterialRecord));
+  next.materials = first.materials;
+  next.lights = first.lights;
+  EXPECT_EQ(uploaded_by(next), of_lights + materials.size() * sizeof(layout::MaterialRecord));
 }
 
 /// Steps show the tree, so the tree of each pose is built.

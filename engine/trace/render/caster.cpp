@@ -189,7 +189,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
 
   void set_pose(const world::Scene& posed) {
     const uint64_t version = scene->version();
-    if (!posed.instances.empty() && move_to_pose(posed, copies.empty(), instanced_hash, upper, *scene)) {
+    if (!posed.instances.empty() && move_to_pose(posed, copies.empty(), instanced_hash, upper, *scene, {})) {
       return take_move(version);
     }
     const FeatureMask features_before = features;
@@ -200,7 +200,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     const Stopwatch uploading;
     const bool has_space = scene->has_space_for(packed);
     if (has_space) {
-      scene->set_geometry(packed, nullptr);
+      scene->set_geometry(packed, {});
     } else {
       scene = upload_scene(device, packed);
     }

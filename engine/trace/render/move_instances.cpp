@@ -75,7 +75,7 @@ void check_same_scene(const Scene& posed, size_t objects, size_t materials) {
 }
 
 bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
-                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene) {
+                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene, const ShadingParts& shading) {
   const std::optional<uint64_t> before = std::exchange(hash, hash_instanced(posed));
   if (!may_move || level == nullptr || before != hash) return false;
   std::vector<Transform> transforms;
@@ -84,7 +84,7 @@ bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64
   }
   auto moved = std::make_shared<UpperLevel>(*level);
   moved->move(transforms);
-  scene.set_upper_level(*moved, moved->build(), std::make_shared<const GlassSolids>(posed));
+  scene.set_upper_level(*moved, moved->build(), shading.glass_solids, &shading);
   level = std::move(moved);
   return true;
 }

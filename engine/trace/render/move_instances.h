@@ -24,10 +24,10 @@ void check_same_scene(const Scene& posed, size_t objects, size_t materials);
 void move_instances(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const PrimitiveNumbers& numbers,
                     std::shared_ptr<const UpperLevel>& level, DeviceScene& scene);
 
-/// Gives all instances the transforms that they have in another pose of the scene, if the poses differ in nothing else
-/// and if `may_move`. `hash` is the hash_instanced() of the last pose, if it is known, and becomes that of this pose.
-/// Returns false if something else differs; then only the hash changes.
+/// Gives all instances the transforms that they have in another pose of the scene, and replaces its shading, if no
+/// other geometry differs and if `may_move`. `hash` is the hash_instanced() of the last pose, if it is known, and
+/// becomes that of this pose. Returns false if other geometry differs; then only the hash changes.
 bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
-                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene);
+                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene, const ShadingParts& shading);
 
 }  // namespace promin

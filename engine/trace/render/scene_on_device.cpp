@@ -17,6 +17,10 @@ PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options)
   return options.repack ? options.repack(std::move(packed)) : std::move(packed);
 }
 
+ShadingParts shading_of(const world::Scene& scene) {
+  return {scene.materials, scene.textures, scene.lights, scene.environment, std::make_shared<const GlassSolids>(scene)};
+}
+
 }  // namespace
 
 SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
@@ -25,6 +29,10 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
   PackedScene packed = pack(scene, options);
   upload(device, scene, packed, stats);
   take(scene, packed, stats);
+  take_shading(scene);
+}
+
+void SceneOnDevice::take_shading(const world::Scene& scene) {
   material_features_ = promin::material_features(scene.materials, shown_materials_);
   light_features_ = promin::light_features(scene.lights);
   environment_features_ = promin::environment_features(scene.environment);
@@ -33,9 +41,7 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
 void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed,
                            SetupStats& stats) {
   const Stopwatch uploading;
-  device_scene_ = upload_scene(
-      device, packed,
-      {scene.materials, scene.textures, scene.lights, scene.environment, std::make_shared<const GlassSolids>(scene)});
+  device_scene_ = upload_scene(device, packed, shading_of(scene));
   stats.upload_ms = uploading.ms();
   stats.warnings = packed.warnings;
   if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
@@ -74,7 +80,7 @@ bool SceneOnDevice::has_images_of(const world::Scene& posed, const std::vector<f
 
 bool SceneOnDevice::move_only(const world::Scene& posed) {
   const bool may_move = copied_materials_.empty() && has_images_of(posed, find_mask_cutoffs(posed));
-  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_);
+  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_, shading_of(posed));
 }
 
 void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
@@ -86,7 +92,7 @@ void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& pose
     packed.stack_size = std::max(packed.stack_size, device_scene_->stack_size());
     const Stopwatch uploading;
     if (has_images_of(posed, packed.mask_cutoffs) && device_scene_->has_space_for(packed)) {
-      device_scene_->set_geometry(packed, std::make_shared<const GlassSolids>(posed));
+      device_scene_->set_geometry(packed, shading_of(posed));
       stats.upload_ms = uploading.ms();
     } else {
       if (posed.instances.empty()) add_images(packed, posed, options.texture_bytes);
@@ -97,9 +103,7 @@ void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& pose
     }
     take(posed, packed, stats);
   }
-  set_materials(posed.materials);
-  set_lights(posed.lights);
-  set_environment(posed.environment);
+  take_shading(posed);
 }
 
 FeatureMask SceneOnDevice::features_with(FeatureMask lights, FeatureMask environment, const RenderMode& mode) const {
