@@ -15,6 +15,7 @@
 #include "gpu/test_scenes.h"
 #include "measure/meshes.h"
 #include "promin/caster.h"
+#include "promin/motion_vectors.h"
 #include "promin/renderer.h"
 #include "support/problems.h"
 #include "trace/render/renderer_impl.h"
@@ -180,6 +181,45 @@ TEST_F(PosesTest, InstancesMoveWithPoses) {
     Caster(device(), posed, {.instances = Instancing::kAll}).cast(rays, fresh_hits);
     EXPECT_EQ(std::memcmp(hits.data(), fresh_hits.data(), hits.size() * sizeof(Hit)), 0);
   }
+}
+
+/// The AOV of motion is the same for instances and for copies.
+TEST_F(PosesTest, InstancesHaveTheMotionOfCopies) {
+  const auto make = [&](double step) {
+    Scene scene = pose(0.1F);
+    std::vector<dmat4> maps;
+    for (int i = 0; i < 6; ++i) {
+      const dmat4 map = glm::translate(dmat4(1.0), dvec3(0.8 * i - 2.0, 0.5 + step * i, 0.3 * i));
+      maps.push_back(glm::scale(map, dvec3(0.4, i % 2 == 0 ? 0.4 : -0.4, 0.4)));
+    }
+    add_instances(scene, 0, maps);
+    return scene;
+  };
+  const Scene scene = make(0.0);
+  const Scene next = make(0.05);
+  View view = make_view({48, 32});
+  view.samples_per_pixel = 2;
+  Camera camera = view.camera;
+  camera.eye.x += 0.1F;
+  std::vector<Aovs> all;
+  for (const Instancing instancing : {Instancing::kAll, Instancing::kNone}) {
+    TunedRendererOptions options;
+    options.instances = instancing;
+    options.aovs.motion = options.aovs.cryptomatte = true;
+    options.more_features = features_of(make_scene_of_everything(50)) | layout::FEATURE_INSTANCES;
+    all.push_back(make_renderer(device(), scene, options).render(view).aovs);
+    add_motion(scene, view, next, camera, all.back());
+  }
+  size_t others = 0;
+  size_t moved = 0;
+  for (size_t i = 0; i < all[0].motion.size(); ++i) {
+    const bool is_same = all[0].object[i] == all[1].object[i] && all[0].primitive[i] == all[1].primitive[i] &&
+                         glm::distance(all[0].motion[i], all[1].motion[i]) < 1e-3F;
+    others += is_same ? 0 : 1;
+    moved += all[0].object[i] != Aovs::kNoId && all[0].object[i] > 3 && glm::length(all[0].motion[i]) > 0.5F ? 1 : 0;
+  }
+  EXPECT_LE(others, 6U);
+  EXPECT_GT(moved, 50U);
 }
 
 TEST_F(PosesTest, OtherScenesAreRefused) {
