@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "cli_fixture.h"
+#include "image/channel_file.h"
 #include "support/moving_gltf.h"
 
 namespace promin {
@@ -32,6 +37,21 @@ class BarFilmTest : public CliTest {
     more.insert(more.begin(), {"bar.gltf", "--frames", "0", "--fps", "1", "--size", "64x4", "--background", "black",
                                "--exposure", "0", "--tone-mapping", "none"});
     return render(more, output);
+  }
+
+  /// Returns the bits of a channel, row by row.
+  std::vector<uint32_t> read_channel(const std::string& file, const std::string& name) const {
+    ChannelFile channels(folder() / file);
+    const auto channel = std::ranges::find(channels.channels(), name, &FileChannel::name);
+    if (channel == channels.channels().end()) {
+      ADD_FAILURE() << "no channel " << name;
+      return {};
+    }
+    channels.read_rows(0, channels.row_count());
+    const uvec2 size = read_image(folder() / file).size;
+    std::vector<uint32_t> bits(size_t{size.x} * size.y);
+    for (size_t i = 0; i < bits.size(); ++i) bits[i] = channels.bits(*channel, i % size.x, i / size.x);
+    return bits;
   }
 };
 

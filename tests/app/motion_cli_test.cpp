@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "bar_film.h"
-#include "image/channel_file.h"
 
 namespace promin {
 namespace {
@@ -26,21 +25,11 @@ class MotionCliTest : public BarFilmTest {
   }
 
   std::vector<vec2> read_movements(const std::string& file) const {
-    ChannelFile channels(folder() / file);
     std::vector<vec2> all;
     for (int axis = 0; axis < 2; ++axis) {
-      const std::string name = axis == 0 ? "motion.X" : "motion.Y";
-      const auto channel = std::ranges::find(channels.channels(), name, &FileChannel::name);
-      if (channel == channels.channels().end()) {
-        ADD_FAILURE() << "no channel " << name;
-        return {};
-      }
-      channels.read_rows(0, channels.row_count());
-      const uvec2 size = read_image(folder() / file).size;
-      all.resize(size_t{size.x} * size.y);
-      for (size_t i = 0; i < all.size(); ++i) {
-        all[i][axis] = std::bit_cast<float>(channels.bits(*channel, i % size.x, i / size.x));
-      }
+      const std::vector<uint32_t> bits = read_channel(file, axis == 0 ? "motion.X" : "motion.Y");
+      all.resize(bits.size());
+      for (size_t i = 0; i < all.size(); ++i) all[i][axis] = std::bit_cast<float>(bits[i]);
     }
     return all;
   }

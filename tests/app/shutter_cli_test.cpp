@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <set>
 
 #include "bar_film.h"
 
@@ -55,6 +57,61 @@ TEST_F(ShutterCliTest, AllSamplesOfARestingSceneAreThePicture) {
   }
   const ProcessResult compared = run({"compare", "a.exr", "b.exr", "--fail", "0.000001"});
   EXPECT_EQ(compared.exit_code, 0) << compared.out;
+}
+
+TEST_F(ShutterCliTest, CryptomatteIsTheMeanOfAllSamples) {
+  const OptionValues words = {"--shutter", "0.5", "-s", "16", "--aov", "cryptomatte,object,ambient_occlusion"};
+  const Image blurred = film(words, "a.exr");
+  std::set<uint32_t> ids;
+  size_t partly = 0;
+  for (const char* kind : {"CryptoObject", "CryptoMaterial"}) {
+    const std::vector<uint32_t> id = read_channel("a.exr", std::string(kind) + "00.R");
+    const std::vector<uint32_t> share = read_channel("a.exr", std::string(kind) + "00.G");
+    ASSERT_EQ(share.size(), 64U * 4U);
+    for (size_t i = 0; i < share.size(); ++i) {
+      const auto covered = std::bit_cast<float>(share[i]);
+      // The bar is white in front of black.
+      EXPECT_EQ(covered, blurred.pixels[i].x) << kind << i;
+      if (covered > 0.0F) ids.insert(id[i]);
+      partly += covered > 0.0F && covered < 1.0F ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(ids.size(), 2U);
+  EXPECT_GT(partly, 2 * 4 * 10U);
+  OptionValues job = words;
+  job.insert(job.end(), {"--job", "job", "--tiles", "3", "2"});
+  film(job, "b.exr");
+  for (const char* name : {"CryptoObject00.R", "CryptoObject00.G", "CryptoMaterial00.G", "object", "AO"}) {
+    EXPECT_EQ(read_channel("b.exr", name), read_channel("a.exr", name)) << name;
+  }
+}
+
+/// The frame can be rendered again from the metadata of its picture.
+TEST_F(ShutterCliTest, MetadataOfAPictureNameItsMoments) {
+  const auto entry = [](const std::string& name, const std::string& value) {
+    std::string bytes = name + '\0' + "string" + '\0' + static_cast<char>(value.size());
+    bytes += std::string(3, '\0') + value;
+    return testing::HasSubstr(bytes);
+  };
+  const auto frames = [&](const OptionValues& more, const std::string& output) {
+    OptionValues words = {"bar.gltf", "--size", "64x4",        "--shutter", "0.25",
+                          "--spp",    "4",      "--animation", "0",         "--loop"};
+    words.insert(words.end(), more.begin(), more.end());
+    return render(words, output);
+  };
+  const Image third = frames({"--frames", "3", "--fps", "4"}, "a.exr");
+  const std::string bytes = read("a.exr");
+  EXPECT_THAT(bytes, entry("promin:shutter", "0.25"));
+  EXPECT_THAT(bytes, entry("promin:fps", "4"));
+  EXPECT_THAT(bytes, entry("promin:frame", "3"));
+  EXPECT_THAT(bytes, entry("promin:loop", "true"));
+  // The moments depend on the frames per second.
+  EXPECT_NE(frames({"--frames", "6", "--fps", "8"}, "b.exr").pixels, third.pixels);
+  EXPECT_EQ(frames({"--frames", "3", "--fps", "4"}, "c.exr").pixels, third.pixels);
+  film({"-s", "1"}, "d.exr");
+  for (const char* name : {"promin:shutter", "promin:fps", "promin:loop"}) {
+    EXPECT_THAT(read("d.exr"), testing::Not(testing::HasSubstr(name)));
+  }
 }
 
 TEST_F(ShutterCliTest, ATurningCameraBlursToo) {

@@ -214,7 +214,7 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
       return !on_progress || on_progress((range.first - all.first + fraction * (range.end - range.first)) / samples);
     });
     read = read_film(*film_, size);
-    if (wanted_.cryptomatte) tally_samples(read, range.end - range.first, tally);
+    if (wanted_.cryptomatte) tally_samples(read, range, tally);
   }
   average_samples(film_records_, samples, std::span(result.image.pixels).subspan(first, count));
   const uint32_t middle = view.samples_per_pixel / 2;
@@ -233,13 +233,14 @@ void PictureTracer::trace_band(const PixelWindow& band, const View& view, size_t
   });
 }
 
-void PictureTracer::tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const {
+void PictureTracer::tally_samples(const ReadFilm& read, const SampleRange& samples, CoverageTally& tally) const {
   for_each_pixel(read.pixel_count, [&](size_t i) {
     // The samples of a pixel usually show the same object.
     uint32_t order = layout::NO_ORDER;
     uint32_t object = Aovs::kNoId;
-    for (uint32_t sample = 0; sample < samples; ++sample) {
-      const uint32_t shown = read.record(read.layout.first_ids + sample / 4, i)[static_cast<int>(sample % 4)];
+    for (uint32_t sample = samples.first; sample < samples.end; ++sample) {
+      const uint32_t place = sample % layout::SAMPLE_IDS;
+      const uint32_t shown = read.record(read.layout.first_ids + place / 4, i)[static_cast<int>(place % 4)];
       if (shown != order) object = object_of(shown);
       order = shown;
       tally.add(i, object);
@@ -371,8 +372,9 @@ RenderResult PictureTracer::render_samples(const View& view, const ProgressCallb
   prepare_film(view.mode, has_lens(view.camera));
   const double steps_share = wanted_.steps ? 1.0 / (1.0 + view.samples_per_pixel) : 0.0;
   const auto pixel_count = static_cast<double>(result.image.pixels.size());
-  if (wanted_.steps) trace_middle(view, result, keep_going(progress));
-  if (wanted_.ambient_occlusion) trace_occlusion(view, result, keep_going(progress));
+  const bool has_middle = !only_sample_ || *only_sample_ == view.samples_per_pixel / 2;
+  if (wanted_.steps && has_middle) trace_middle(view, result, keep_going(progress));
+  if (wanted_.ambient_occlusion && has_middle) trace_occlusion(view, result, keep_going(progress));
   for_each_band(view, film_->records().count, [&](const PixelWindow& band, size_t first) {
     const uvec2 size = band.hi - band.lo;
     trace_band(band, view, first, result, [&](double fraction) {

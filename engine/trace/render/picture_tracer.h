@@ -58,8 +58,8 @@ class PictureTracer {
   // The following functions are like those of Renderer, for valid views.
   RenderResult render(const View& view, const ProgressCallback& progress);
   /// Renders one sample of each pixel of a view that has a fixed number of samples. The mean of the results of all
-  /// samples is the picture of the view, except for rounding. AOVs of surfaces, the error and Cryptomatte are not those
-  /// of a picture.
+  /// samples is the picture of the view, except for rounding. Cryptomatte has the object of the sample. Only the middle
+  /// sample has the AOVs of surfaces and passes of their own. The error is not that of a picture.
   RenderResult render_sample(const View& view, uint32_t sample, const ProgressCallback& progress);
   RenderResult render_within(const View& view, double seconds, const ProgressCallback& progress);
   void render_progressively(const View& view, double budget_ms,
@@ -98,7 +98,8 @@ class PictureTracer {
   /// space for their AOVs. The band's first pixel is the result's pixel `first`.
   void trace_band(const PixelWindow& band, const View& view, size_t first, RenderResult& result,
                   const ProgressCallback& on_progress);
-  void tally_samples(const ReadFilm& read, uint32_t samples, CoverageTally& tally) const;
+  /// Counts the objects of samples, of which there are at most SAMPLE_IDS.
+  void tally_samples(const ReadFilm& read, const SampleRange& samples, CoverageTally& tally) const;
   uint32_t object_of(uint32_t order) const;
   /// Reads the records of a window from a film. Results of earlier calls become invalid.
   ReadFilm read_film(const Film& from, const uvec2& size);

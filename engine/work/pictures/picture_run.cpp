@@ -59,6 +59,9 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   apply_quality(run.options);
   const RenderSpec& options = run.options;
   RunStats& stats = run.stats;
+  stats.shutter = options.shutter;
+  const bool has_fps = options.fps ? *options.fps != PathPictures::kStored : !options.path;
+  if (options.shutter && has_fps) stats.shutter_fps = options.fps.value_or(kDefaultFps);
   std::shared_ptr<MovingScene> moving;
   if (options.moves_scene()) {
     TracingOptions resting = options.tracing;

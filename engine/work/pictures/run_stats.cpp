@@ -139,7 +139,10 @@ Metadata describe_picture(const RunStats& stats) {
     metadata.emplace_back("promin:animation", stats.motion.animations.empty()
                                                   ? "0"
                                                   : fmt::format("{}", fmt::join(stats.motion.animations, ", ")));
+    if (stats.motion.loops) metadata.emplace_back("promin:loop", "true");
   }
+  if (stats.shutter) metadata.emplace_back("promin:shutter", fmt::format("{}", *stats.shutter));
+  if (stats.shutter_fps) metadata.emplace_back("promin:fps", fmt::format("{}", *stats.shutter_fps));
   const bool has_instances = std::ranges::count(stats.setup.features, "instances") > 0;
   if (has_instances || stats.instances != Instancing::kAuto) {
     metadata.emplace_back("promin:instances", instancing_names()[static_cast<size_t>(stats.instances)]);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/radical_inverse.h"
+#include "trace/film/film_records.h"
 #include "work/pictures/camera_choice.h"
 #include "work/pictures/camera_path.h"
 #include "work/pictures/view_setup.h"
@@ -30,6 +31,11 @@ void divide_values(float count, std::vector<Value>& sum) {
 /// Returns whether a picture has the mean of an AOV over its samples.
 constexpr bool is_mean(AovSource source) {
   return source == AovSource::kParts || source == AovSource::kUnlit;
+}
+
+/// Counts the objects that a sample shows.
+void count_objects(const Aovs& sample, CoverageTally& tally) {
+  for (size_t i = 0; i < sample.object_coverage.size(); ++i) tally.add(i, sample.object_coverage[i].front().id);
 }
 
 /// Adds the result of a sample to the sum of those before it. The middle sample gives the AOVs of surfaces.
@@ -80,6 +86,9 @@ TracedFrame trace_open_shutter(FrameRenderers& renderers, FrameMotion& motion, c
   const double shutter = run.options.shutter.value_or(0.0);
   const uint32_t count = view.samples_per_pixel;
   RenderResult sum;
+  std::vector<uint32_t> materials;
+  for (const Object& object : run.scene.objects) materials.push_back(object.material);
+  std::optional<CoverageTally> tally;
   for (uint32_t i = 0; i < count; ++i) {
     const double fraction = shutter * radical_inverse(i);
     const PlannedFrame moment = frame_between(run, frame, fraction);
@@ -87,9 +96,11 @@ TracedFrame trace_open_shutter(FrameRenderers& renderers, FrameMotion& motion, c
     View view_then = view;
     RunStats unused;
     renderers.describe(moment, view_then, unused);
-    RenderResult sample = render_sample(
-        renderer, view_then, i, [&](double done) { return !on_progress || on_progress((i + done) / count); });
+    RenderResult sample = render_sample(renderer, view_then, i,
+                                        [&](double done) { return !on_progress || on_progress((i + done) / count); });
     const bool is_middle = i == count / 2;
+    if (!tally) tally.emplace(sample.aovs.object_coverage.size(), materials);
+    count_objects(sample.aovs, *tally);
     if (is_middle) motion.add(frame, fraction, view_then, sample.aovs);
     if (i == 0) {
       sum = std::move(sample);
@@ -98,6 +109,7 @@ TracedFrame trace_open_shutter(FrameRenderers& renderers, FrameMotion& motion, c
     }
   }
   finish(count, sum);
+  for (size_t i = 0; i < sum.aovs.object_coverage.size(); ++i) tally->put(i, count, i, sum.aovs);
   TracedFrame traced;
   traced.trace_ms.push_back(sum.trace_ms);
   traced.result = std::move(sum);
