@@ -262,12 +262,17 @@ void DeviceScene::reserve_stack(uint32_t entries) {
 void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper,
                                   std::shared_ptr<const GlassSolids> glass_solids, const ShadingParts* shading) {
   constexpr uint64_t kNodeBytes = sizeof(layout::Node);
-  reserve_nodes(upper.first_record + upper.records.size(), level.first_node());
+  reserve_nodes(upper.first_record + upper.record_count(), level.first_node());
   reserve_stack(upper.stack_size);
   nodes_.write(std::as_bytes(std::span(&upper.root, 1)));
   if (!upper.nodes.empty()) nodes_.write(std::as_bytes(std::span(upper.nodes)), level.first_node() * kNodeBytes);
-  if (!upper.records.empty()) nodes_.write(std::as_bytes(std::span(upper.records)), upper.first_record * kNodeBytes);
-  uploads_.moves += (1 + upper.nodes.size() + upper.records.size()) * kNodeBytes;
+  if (!upper.order.empty()) {
+    UnsetVector<layout::Node> records;
+    records.resize(upper.record_count());
+    level.put_records(upper.order, records);
+    nodes_.write(std::as_bytes(std::span(records)), upper.first_record * kNodeBytes);
+  }
+  uploads_.moves += (1 + upper.nodes.size() + upper.record_count()) * kNodeBytes;
   constants_.tree_bounds = center_and_radius(upper.bounds);
   constants_.glass_solids = std::move(glass_solids);
   emitter_ranges_.first_instance = upper.first_record;

@@ -160,40 +160,55 @@ UpperLevel::UpperLevel(const TwoLevels& input, const BuildOptions& options) : ow
       instance.object = source.object;
       instance.mesh = source.mesh;
       const bool has_own = !input.scene.meshes[source.mesh].triangle_materials.empty();
-      instance.records[0].children.y = meshes_[source.mesh].root;
-      instance.records[0].children.z = input.first_order[source.object];
-      instance.records[1] = {};
-      instance.records[1].frame.w = has_own ? NO_INSTANCE_MATERIAL : input.scene.objects[source.object].material;
-      instance.records[1].lo.w = hashes_of(source.object, 0) & INSTANCE_HASH_MASK;
+      instance.first_order = input.first_order[source.object];
+      instance.material = has_own ? NO_INSTANCE_MATERIAL : input.scene.objects[source.object].material;
       place(instance, source.world_from_object);
     }
   });
 }
 
-/// Sets everything that depends on the transform. The radii do not depend on the tree of the mesh, because the bits of
-/// t depend on them.
+/// Sets everything that depends on the transform. `outer` does not depend on the tree of the mesh, because the bits of
+/// t depend on it.
 void UpperLevel::place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const {
   const SharedMesh& mesh = meshes_[instance.mesh];
   const world::InstanceMap map = world::map_of({instance.object, instance.mesh, world_from_object});
+  instance.object_from_world = map.object_from_world;
+  instance.origin = map.origin;
   instance.box = world::bounds_of(map, mesh.top_boxes);
   instance.outer = world::bounds_of(map, {&mesh.box, 1});
+}
+
+UpperLevel::Records UpperLevel::records_of(const PlacedInstance& instance) const {
+  const SharedMesh& mesh = meshes_[instance.mesh];
   const float radius = largest_component(glm::max(glm::abs(dvec3(mesh.box.lo)), glm::abs(dvec3(mesh.box.hi))));
-  const dvec3 origin(map.origin);
+  const dvec3 origin(instance.origin);
   const float world_radius =
       largest_component(glm::max(dvec3(instance.outer.hi) - origin, origin - dvec3(instance.outer.lo)));
-  const glm::mat3& turn = map.object_from_world;
-  Node& to_object = instance.records[0];
-  to_object.frame = row_of(turn, 0, word_of(map.origin.x));
-  to_object.lo = row_of(turn, 1, word_of(map.origin.y));
-  to_object.hi = row_of(turn, 2, word_of(map.origin.z));
-  to_object.children.x = word_of(radius);
-  to_object.children.w = word_of(world_radius);
-  const glm::mat3& back = map.world_from_object;
-  Node& to_world = instance.records[1];
-  to_world.frame = row_of(back, 0, to_world.frame.w);
+  const glm::mat3& turn = instance.object_from_world;
+  Records records{};
+  Node& to_object = records[0];
+  to_object.frame = row_of(turn, 0, word_of(instance.origin.x));
+  to_object.lo = row_of(turn, 1, word_of(instance.origin.y));
+  to_object.hi = row_of(turn, 2, word_of(instance.origin.z));
+  to_object.children = uvec4(word_of(radius), mesh.root, instance.first_order, word_of(world_radius));
+  // E of world::InstanceMap.
+  const glm::mat3 back(glm::inverse(dmat3(turn)));
+  Node& to_world = records[1];
+  to_world.frame = row_of(back, 0, instance.material);
   const bool is_mirrored = glm::determinant(dmat3(turn)) < 0.0;
-  to_world.lo = row_of(back, 1, (to_world.lo.w & INSTANCE_HASH_MASK) | (is_mirrored ? INSTANCE_IS_MIRRORED : 0U));
+  const uint32_t hash = hashes_of(instance.object, 0) & INSTANCE_HASH_MASK;
+  to_world.lo = row_of(back, 1, hash | (is_mirrored ? INSTANCE_IS_MIRRORED : 0U));
   to_world.hi = row_of(back, 2, 0);
+  return records;
+}
+
+void UpperLevel::put_records(std::span<const uint32_t> order, std::span<Node> records,
+                             const BuildOptions& options) const {
+  for_each_chunk(order.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      std::ranges::copy(records_of(instances_[order[i]]), records.begin() + static_cast<std::ptrdiff_t>(2 * i));
+    }
+  });
 }
 
 /// Packs the subtrees of the scene's own primitives, each by itself, so that they stay when instances move.
@@ -230,14 +245,14 @@ UpperNodes UpperLevel::build(const BuildOptions& options) {
   // The records are in the order of the leaves, because neighbours are read together.
   std::vector<uint32_t> words;
   words.reserve(bvh.references.size());
-  upper.records.reserve(INSTANCE_RECORDS * count);
+  upper.order.reserve(count);
   for (const uint32_t reference : bvh.references) {
     if (reference >= count) {
       words.push_back(kInstanceBit | kOwnBit | (reference - static_cast<uint32_t>(count)));
       continue;
     }
-    words.push_back(kInstanceBit | static_cast<uint32_t>(upper.records.size() / INSTANCE_RECORDS));
-    for (const Node& record : instances_[reference].records) upper.records.push_back(record);
+    words.push_back(kInstanceBit | static_cast<uint32_t>(upper.order.size()));
+    upper.order.push_back(reference);
   }
   divide_leaves(bvh, boxes, words);
   upper.stats = measure_bvh("sah", bvh);
@@ -265,7 +280,7 @@ UpperNodes UpperLevel::build(const BuildOptions& options) {
 
 UnsetVector<Node> UpperLevel::join(const TwoLevels& input, const UpperNodes& upper) {
   UnsetVector<Node> nodes;
-  nodes.resize(upper.first_record + upper.records.size());
+  nodes.resize(upper.first_record + upper.record_count());
   nodes[0] = upper.root;
   std::ranges::copy(own_nodes_, nodes.begin() + 1);
   own_nodes_ = {};
@@ -282,7 +297,7 @@ UnsetVector<Node> UpperLevel::join(const TwoLevels& input, const UpperNodes& upp
   std::ranges::copy(upper.nodes, nodes.begin() + first_node_);
   std::fill(nodes.begin() + first_node_ + static_cast<std::ptrdiff_t>(upper.nodes.size()),
             nodes.begin() + upper.first_record, Node{});
-  std::ranges::copy(upper.records, nodes.begin() + upper.first_record);
+  put_records(upper.order, std::span(nodes).subspan(upper.first_record));
   return nodes;
 }
 

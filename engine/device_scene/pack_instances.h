@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -67,9 +68,11 @@ struct UpperNodes {
   layout::Node root = {};
   /// The other nodes of the upper level. The first has the index UpperLevel::first_node().
   UnsetVector<layout::Node> nodes;
-  /// The records of the instances. The first has the index `first_record`.
-  UnsetVector<layout::Node> records;
+  /// The indices of the instances in the order of their records (UpperLevel::put_records). The first record has the
+  /// index `first_record`.
+  std::vector<uint32_t> order;
   uint32_t first_record = 0;
+  size_t record_count() const { return order.size() * layout::INSTANCE_RECORDS; }
   /// The number of entries that the traversal stack needs for both levels.
   uint32_t stack_size = 1;
   /// The bounds of the whole tree, not the smallest ones.
@@ -88,6 +91,10 @@ class UpperLevel {
   UpperNodes build(const BuildOptions& options = {});
   /// Returns all nodes of both levels. Call it once, with the input of the constructor.
   UnsetVector<layout::Node> join(const TwoLevels& input, const UpperNodes& upper);
+
+  /// Writes the records of instances (UpperNodes::order), which fill `records`.
+  void put_records(std::span<const uint32_t> order, std::span<layout::Node> records,
+                   const BuildOptions& options = {}) const;
 
   /// Replaces the transforms of different objects. Objects that are not instances, or whose mesh no ray can hit, are
   /// ignored.
@@ -114,13 +121,22 @@ class UpperLevel {
   struct PlacedInstance {
     uint32_t object;
     uint32_t mesh;
+    /// The number of its first primitive.
+    uint32_t first_order;
+    /// The material of all triangles, or NO_INSTANCE_MATERIAL.
+    uint32_t material;
+    /// R and c (world::InstanceMap).
+    glm::mat3 object_from_world;
+    vec3 origin;
     /// A box that contains the instance.
     Bounds box;
     /// A box that does not depend on the tree of the mesh, because the bits of t depend on it.
     Bounds outer;
-    layout::Node records[layout::INSTANCE_RECORDS];
   };
+  /// The records of an instance, as layout.h describes them.
+  using Records = std::array<layout::Node, layout::INSTANCE_RECORDS>;
   static_assert(layout::INSTANCE_RECORDS == 2);
+  Records records_of(const PlacedInstance& instance) const;
 
   void place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const;
   void collect_own(const TwoLevels& input);

@@ -311,7 +311,7 @@ PackedScene pack_two_levels(const world::Scene& scene, Geometries geometries, st
   packed.upper = std::make_shared<UpperLevel>(levels, options);
   const UpperNodes upper = packed.upper->build(options);
   check_at_most(MAX_NODES, upper.first_record, scene, "the scene's tree has", "nodes");
-  check_at_most(CHILD_INSTANCE_INDEX, upper.first_record + upper.records.size(), scene, "the scene's tree has",
+  check_at_most(CHILD_INSTANCE_INDEX, upper.first_record + upper.record_count(), scene, "the scene's tree has",
                 "nodes and instances");
   packed.nodes = packed.upper->join(levels, upper);
   packed.bvh_ms = packing.ms();

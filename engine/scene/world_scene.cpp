@@ -166,6 +166,7 @@ Scene flatten(const promin::Scene& scene, Purpose purpose, Instancing instancing
   result.objects.reserve(scene.objects.size());
   PictureMeshes* pictures = meshes ? &*meshes : nullptr;
   const std::vector<bool> is_instance = choose_instances(scene, instancing);
+  result.instances.reserve(static_cast<size_t>(std::ranges::count(is_instance, true)));
   InstanceAdder instances(scene, pictures, result);
   for (uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (is_instance[i]) {

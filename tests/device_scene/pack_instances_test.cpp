@@ -128,7 +128,12 @@ TEST(PackInstancesTest, MovedInstancesHaveANewUpperLevel) {
   const auto are_equal = [](std::span<const Node> a, std::span<const Node> b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
   };
-  EXPECT_TRUE(are_equal(upper.records, same.records));
+  const auto records_of = [](const PackedScene& from, const UpperNodes& nodes) {
+    std::vector<Node> records(nodes.record_count());
+    from.upper->put_records(nodes.order, records);
+    return records;
+  };
+  EXPECT_TRUE(are_equal(records_of(packed, upper), records_of(fresh, same)));
   EXPECT_EQ(upper.nodes.size(), same.nodes.size());
   EXPECT_EQ(center_and_radius(upper.bounds), fresh.tree_bounds);
   EXPECT_NE(fresh.tree_bounds, packed.tree_bounds);

@@ -99,6 +99,10 @@ class SceneReader {
     const std::optional<uint64_t> instance_count = count_gltf_instances(document_, placed);
     if (!instance_count) return read_mesh(placed);
     if (*instance_count == 0 || !has_room_for(*instance_count, placed)) return;
+    const size_t object_count = *instance_count * document_.meshes[static_cast<size_t>(node.mesh)].primitives.size();
+    reserve(scene_.objects, object_count);
+    reserve(motion_.objects, object_count);
+    reserve(motion_.places, *instance_count);
     size_t number = 0;
     for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
       PlacedNode instance = placed;
@@ -113,6 +117,13 @@ class SceneReader {
       motion_.places.push_back(place);
       read_mesh(instance, static_cast<uint32_t>(motion_.places.size() - 1));
     }
+  }
+
+  /// Reserves space for more values, and at least as much as adding them one by one would reserve.
+  template <typename Value>
+  static void reserve(std::vector<Value>& values, size_t more) {
+    if (values.size() + more <= values.capacity()) return;
+    values.reserve(values.empty() ? more : std::max(values.size() + more, 2 * values.capacity()));
   }
 
   bool is_skinned(const GltfNode& node) const { return node.skin >= 0 && skins_->has_joints(node.skin); }
