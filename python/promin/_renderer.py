@@ -373,10 +373,11 @@ class Renderer:
         another pose, or moves objects. The number of materials must stay the same.
 
         time, animation, loop: the pose, like the arguments of Scene.at; None leaves the pose as it is. Lights,
-        materials and objects that `update` has replaced or moved do not move with poses. transforms: new transforms (4, 4) by the
-        objects' numbers, like those of Scene.add_instances. All other objects stay. Instances (docs/instances.md) move
-        in milliseconds; to move other objects, the tree is built again. Framing, exposure, and the light and the ground
-        that the Renderer added do not change, because they belong to the scene of the constructor.
+        materials and objects that `update` has replaced or moved do not move with poses. transforms: new transforms
+        (4, 4) by the objects' numbers, like those of Scene.add_instances. All other objects stay. Instances
+        (docs/instances.md) move in milliseconds; to move other objects, the tree is built again. Framing, exposure, and
+        the light and the ground that the Renderer added do not change, because they belong to the scene of the
+        constructor.
 
         Raises UsageError and InputError for invalid arguments, and then changes nothing."""
         new: dict[str, Any] = {}
