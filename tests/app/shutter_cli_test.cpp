@@ -3,6 +3,7 @@
 
 // These tests render frames with motion blur.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,11 +12,19 @@
 #include <set>
 
 #include "bar_film.h"
+#include "promin/display.h"
 
 namespace promin {
 namespace {
 
 class ShutterCliTest : public BarFilmTest {};
+
+/// Matches the bytes of an EXR with this entry of metadata.
+testing::Matcher<std::string> has_entry(const std::string& name, const std::string& value) {
+  std::string bytes = name + '\0' + "string" + '\0' + static_cast<char>(value.size());
+  bytes += std::string(3, '\0') + value;
+  return testing::HasSubstr(bytes);
+}
 
 TEST_F(ShutterCliTest, AMovingBarLeavesItsStreak) {
   constexpr uint32_t kSamples = 16;
@@ -88,11 +97,6 @@ TEST_F(ShutterCliTest, CryptomatteIsTheMeanOfAllSamples) {
 
 /// The frame can be rendered again from the metadata of its picture.
 TEST_F(ShutterCliTest, MetadataOfAPictureNameItsMoments) {
-  const auto entry = [](const std::string& name, const std::string& value) {
-    std::string bytes = name + '\0' + "string" + '\0' + static_cast<char>(value.size());
-    bytes += std::string(3, '\0') + value;
-    return testing::HasSubstr(bytes);
-  };
   const auto frames = [&](const OptionValues& more, const std::string& output) {
     OptionValues words = {"bar.gltf", "--size", "64x4",        "--shutter", "0.25",
                           "--spp",    "4",      "--animation", "0",         "--loop"};
@@ -101,10 +105,10 @@ TEST_F(ShutterCliTest, MetadataOfAPictureNameItsMoments) {
   };
   const Image third = frames({"--frames", "3", "--fps", "4"}, "a.exr");
   const std::string bytes = read("a.exr");
-  EXPECT_THAT(bytes, entry("promin:shutter", "0.25"));
-  EXPECT_THAT(bytes, entry("promin:fps", "4"));
-  EXPECT_THAT(bytes, entry("promin:frame", "3"));
-  EXPECT_THAT(bytes, entry("promin:loop", "true"));
+  EXPECT_THAT(bytes, has_entry("promin:shutter", "0.25"));
+  EXPECT_THAT(bytes, has_entry("promin:fps", "4"));
+  EXPECT_THAT(bytes, has_entry("promin:frame", "3"));
+  EXPECT_THAT(bytes, has_entry("promin:loop", "true"));
   // The moments depend on the frames per second.
   EXPECT_NE(frames({"--frames", "6", "--fps", "8"}, "b.exr").pixels, third.pixels);
   EXPECT_EQ(frames({"--frames", "3", "--fps", "4"}, "c.exr").pixels, third.pixels);
@@ -112,6 +116,15 @@ TEST_F(ShutterCliTest, MetadataOfAPictureNameItsMoments) {
   for (const char* name : {"promin:shutter", "promin:fps", "promin:loop"}) {
     EXPECT_THAT(read("d.exr"), testing::Not(testing::HasSubstr(name)));
   }
+}
+
+TEST_F(ShutterCliTest, AverageExposureIsThatOfTheFirstBlurredFrame) {
+  const Image blurred = render({"square.gltf", "--turntable", "8", "--frames", "1", "--size", "24x16", "-s", "4",
+                                "--shutter", "1", "--exposure", "average", "--aov", "object"},
+                               "a.exr");
+  const float stops = average_exposure_ev(blurred.pixels, read_channel("a.exr", "object"));
+  EXPECT_NE(stops, 0.0F);
+  EXPECT_THAT(read("a.exr"), has_entry("promin:exposure_ev", fmt::format("{:g}", stops)));
 }
 
 TEST_F(ShutterCliTest, ATurningCameraBlursToo) {

@@ -211,7 +211,6 @@ void check_motion_options(const RenderSpec& options) {
                               {error.time_limit_s.has_value(), "--time-limit"},
                               {options.quality == Quality::kBest, "--quality best"},
                               {options.aovs.error, "--aov error"},
-                              {options.view.look.averages_exposure, "--exposure average"},
                               {options.tracing.repeat_count > 1, "--repeat"}});
 }
 
