@@ -256,7 +256,8 @@ void bind_scene(nb::module_& module) {
       .def(
           "usual_integrator",
           [](const Scene& s, const std::string& choice) {
-            return names_of(Integrator())[static_cast<size_t>(work::usual_integrator(s, read_choice(choice)))];
+            const Integrator integrator = work::usual_integrator(s, read_choice(choice));
+            return std::string(names_of(integrator)[static_cast<size_t>(integrator)]);
           },
           nb::arg("choice"));
 }

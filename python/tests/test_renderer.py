@@ -216,7 +216,7 @@ def test_surfaces_that_emit_much_light_light_others() -> None:
         scene.add_triangles([[-2, 0, -2], [0, 0, 4], [2, 0, -2]], [[0, 1, 2]])
         lamp = scene.add_material(promin.MetallicRoughness(emissive=(radiance,) * 3))
         scene.add_triangles([[-1, 1, -1], [0, 1, 1], [1, 1, -1]], [[0, 1, 2]], material=lamp)
-        return promin.Renderer(scene, light="none", view=promin.View(size=(24, 18), spp=4, up=(0, 0, 1)))
+        return promin.Renderer(scene, light="none", view=promin.View(size=(24, 18), spp=4))
 
     bright, dim = lit_by(9.0), lit_by(1.0)
     assert (bright.render().rgb == bright.render(integrator="direct").rgb).all()
