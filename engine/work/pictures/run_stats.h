@@ -23,7 +23,8 @@ struct RunStats {
   std::string scene_file;
   /// The pose of the scene.
   MotionOptions motion = {};
-  /// The shutter (RenderSpec::shutter), and the frames per second on which its moments depend; empty for no motion blur.
+  /// The shutter (RenderSpec::shutter), and the frames per second on which its moments depend; empty for no motion
+  /// blur.
   std::optional<double> shutter = std::nullopt;
   std::optional<double> shutter_fps = std::nullopt;
   /// The choice of instances.

@@ -19,9 +19,9 @@ PlannedFrame frame_between(const PictureRun& run, const PlannedFrame& frame, dou
 /// Renders a frame with Aovs::motion. `view` is the view of the frame. Pixels do not depend on the view's crop.
 ///
 /// While the shutter is open (RenderSpec::shutter), sample i of each pixel shows the moment at the fraction s r(i) of
-/// the time until the next frame. s is the shutter, and r(i) is the radical inverse of i in base 2. Colours and coverage
-/// of objects and materials are means of the samples, and AOVs of surfaces are those of the middle sample. The view then
-/// has a fixed number of samples.
+/// the time until the next frame. s is the shutter, and r(i) is the radical inverse of i in base 2. Colours and
+/// coverage of objects and materials are means of the samples, and AOVs of surfaces are those of the middle sample. The
+/// view then has a fixed number of samples.
 TracedFrame trace_frame(FrameRenderers& renderers, FrameMotion& motion, const PictureRun& run,
                         const PlannedFrame& frame, const View& view, const std::optional<double>& limit_s,
                         const ProgressCallback& on_progress);
