@@ -6,8 +6,9 @@
 The scene is a glTF file of meshes with diffuse materials (factors only) and one camera. Mitsuba renders its emissive
 meshes; a second file may have the same scene with an area light for promin. Both programs render the same picture. The
 errors are those of the pixels that are not next to an emissive surface, compared with a picture of Mitsuba with many
-samples. The times are CPU times of tracing on all cores, so other programs disturb them little: the difference of a run
-and of a short run, which contains loading and compiling. They are medians of several runs that alternate.
+samples, without the noise of that picture. The times are CPU times of tracing on all cores, so other programs disturb
+them little: the difference of a run and of a short run, which contains loading and compiling. They are medians of
+several runs that alternate.
 
 Needs `pip install mitsuba numpy`. Mitsuba's LLVM variant needs LLVM 16 or later (DRJIT_LIBLLVM_PATH).
 """
@@ -139,7 +140,8 @@ class Promin:
         # Mitsuba counts the edge to the light too: a depth of 2 is direct light.
         depth = max(self.arguments.depth - 2, 0)
         words = [self.arguments.promin, "render", self.arguments.promin_scene or self.arguments.scene]
-        words += ["--size", f"{size}x{size}", "--spp", samples, "--seed", seed, "--integrator", "path"]
+        integrator = "direct" if depth == 0 else "path"
+        words += ["--size", f"{size}x{size}", "--spp", samples, "--seed", seed, "--integrator", integrator]
         words += ["--max-depth", depth, "--light", "none", "--background", "0", "0", "0", "--quiet"]
         words += ["-o", self.folder / "picture.exr"]
         before = cpu_of_children()
@@ -164,14 +166,32 @@ def read_exr(path):
 
 
 def samples_for(target, errors):
-    """Returns the number of samples with this error, interpolated between powers of two on logarithmic scales."""
+    """Returns the number of samples with this error, interpolated between powers of two on logarithmic scales, or
+    extrapolated from the two nearest ones."""
     points = sorted(errors.items())
-    (a, error_a), (b, error_b) = points[-2], points[-1]
+    (a, error_a), (b, error_b) = points[:2] if target > points[0][1] else points[-2:]
     for first, second in zip(points, points[1:]):
         if first[1] >= target >= second[1]:
             (a, error_a), (b, error_b) = first, second
     slope = (math.log(error_b) - math.log(error_a)) / (math.log(b) - math.log(a))
     return math.exp(math.log(a) + (math.log(target) - math.log(error_a)) / slope)
+
+
+def plot(path, title, points):
+    """Draws the RMSE of each renderer over the CPU time. points: (seconds, RMSE) of several pictures by name."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(5.5, 3.5))
+    for (name, measured), marker in zip(points.items(), "os^"):
+        axes.loglog(*zip(*sorted(measured)), marker=marker, label=name)
+    axes.set(xlabel="CPU seconds of tracing", ylabel="RMSE of lit surfaces", title=title)
+    axes.grid(True, which="both", alpha=0.3)
+    axes.legend()
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
 
 
 def main():
@@ -184,6 +204,7 @@ def main():
     parser.add_argument("--samples", type=int, default=64, help="samples of Mitsuba's pictures [64]")
     parser.add_argument("--reference", type=int, default=2048, help="samples of the reference [2048]")
     parser.add_argument("--runs", type=int, default=3, help="runs for each time [3]")
+    parser.add_argument("--plot", type=pathlib.Path, help="SVG or PNG file for a plot of the error over time")
     arguments = parser.parse_args()
     mi.set_variant("llvm_ad_rgb")
     with tempfile.TemporaryDirectory() as folder:
@@ -196,10 +217,16 @@ def main():
         is_lamp = np.any([lamps[y : y + rows, x : x + columns] for y in range(3) for x in range(3)], axis=0)
         surfaces = ~is_lamp & (truth.max(axis=2) > 0)
 
-        def error_of(picture):
-            return float(np.sqrt(np.mean((picture - truth)[surfaces] ** 2)))
+        def square_of(picture):
+            return float(np.mean((picture - truth)[surfaces] ** 2))
 
-        counts = [arguments.samples // 2, arguments.samples, 2 * arguments.samples, 4 * arguments.samples]
+        # The reference has noise too: that of independent samples, which decreases with their number.
+        of_reference = square_of(peers[0].render(arguments.samples)[0]) / (1 + arguments.reference / arguments.samples)
+
+        def error_of(picture):
+            return math.sqrt(max(square_of(picture) - of_reference, 0.0))
+
+        counts = [max(arguments.samples * 2**power // 16, 1) for power in range(7)]
         pictures = {samples: promin.render(samples)[0] for samples in counts}
         errors = {samples: error_of(picture) for samples, picture in pictures.items()}
         means = [float(np.mean(each[surfaces])) for each in (pictures[counts[-1]], truth)]
@@ -217,6 +244,15 @@ def main():
             middle = statistics.median(seconds)
             print(f"| {name} | {arguments.samples} | {middle:.2f} | {paths / middle:.3f} | {noise[name]:.5f} |")
         rate = arguments.samples / statistics.median(times[promin.name])
+        if arguments.plot:
+            a_sample = 1.0 / rate
+            points = {promin.name: [(samples * a_sample, error) for samples, error in errors.items()]}
+            for peer in peers:
+                middle = statistics.median(times[peer.name]) / arguments.samples
+                # Multijitter rounds other numbers of samples up.
+                squares = [arguments.samples // 4, arguments.samples, 4 * arguments.samples]
+                points[peer.name] = [(samples * middle, error_of(peer.render(samples)[0])) for samples in squares]
+            plot(arguments.plot, f"{arguments.scene.stem}, depth {arguments.depth}", points)
         for peer in peers:
             needed = samples_for(noise[peer.name], errors) / rate
             ratio = needed / statistics.median(times[peer.name])
