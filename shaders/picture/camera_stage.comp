@@ -330,6 +330,13 @@ void add_contributions(uint source) {
 uint put_path(Path path) {
   begin_stream();
   uint number = atomicAdd(stream.turn.z, 1u);
+  if (TRACES_SHADOWS != 0u) {
+    store_scattered(number, path);
+    store_part_of_ray(path);
+    words[ask_of_path(number)] = ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
+    words[path_list(turn) + number] = number;
+    return number;
+  }
   uint record = record_of_path(number);
   pixels[record + RECORD_ORIGIN] = uvec4(floatBitsToUint(path.origin), path.pixel);
   pixels[record + RECORD_DIRECTION].xyz = floatBitsToUint(path.direction);

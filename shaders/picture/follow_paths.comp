@@ -70,7 +70,8 @@ vec3 add_contributions(uint path, vec3 seen) {
 
 // Chooses the sample of a light source of the current bounce. Each bounce has a pair of dimensions for each source.
 void choose_source_sample(uint path, uint source) {
-  uvec2 id = floatBitsToUint(load_record(record_of_path(path) + RECORD_SAMPLE).xy);
+  uvec2 id = uvec2(sample_key, sample_number);
+  if (TRACES_SHADOWS == 0u) id = floatBitsToUint(load_record(record_of_path(path) + RECORD_SAMPLE).xy);
   choose_sample(id, FIRST_LIGHT_PAIR + (turn / turns_of_bounce() + 1u) * source_count() + source);
 }
 
@@ -131,8 +132,8 @@ void ask_sources(uint path, ShadingPoint point, vec3 to_eye) {
   for (; source < sources_of_turn; ++source) words[ask_of_source(path, source)] = ASK_NOTHING;
 }
 
-// Adds all light sources to the radiance, if no object casts shadows.
-vec3 add_unshadowed(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
+// Adds all light sources to the radiance, if no object casts shadows or with TRACES_SHADOWS.
+vec3 add_sources(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
   uint source = 0u;
   do {
     if (source < source_count()) {
@@ -146,6 +147,19 @@ vec3 add_unshadowed(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
       }
       vec3 contribution = unshadowed_contribution(point, to_eye, light, sampled);
       if (has(FEATURE_SHADOW_CATCHERS)) seen = without_caught(point, contribution, seen);
+      if (has(FEATURE_SHADOWS) && TRACES_SHADOWS != 0u) {
+        packet[0].tmax = -1.0;
+        passes_backs = false;
+        sight_width = 0.0;
+        sight_spread = 0.0;
+        if (max_abs(contribution) > 0.0) {
+          Ray ray = shadow_ray(point, light, sampled);
+          packet[0] = ray;
+          ++shadow_ray_count;
+        }
+        trace_packet(true);
+        contribution = found[0].primitive == NO_PRIMITIVE ? contribution : vec3(0.0);
+      }
       precise vec3 sum = seen + contribution;
       seen = sum;
       begin_source_log(source);
@@ -187,6 +201,13 @@ uint ask_scattered(uint number, inout Path path, ShadingPoint point, bool touche
   bool goes_on =
       leads_on(point, bounces_of(path)) && scatter(path, point, turn / turns_of_bounce() + 1u, touches);
   if (has(FEATURE_GLASS)) store_glass(number, path, 0u, true);
+  if (TRACES_SHADOWS != 0u) {
+    if (!goes_on) return ASK_NOTHING;
+    ++mirror_ray_count;
+    store_scattered(number, path);
+    store_part_of_ray(path);
+    return ask(LIST_OF_PATHS, bin_of(path.origin, path.direction));
+  }
   if (!goes_on) return ask(LIST_OF_PATHS, BIN_WITHOUT_RAY);
   bool is_refracted = has(FEATURE_GLASS) && path.kind == LOG_REFRACTION;
   refraction_count += is_refracted ? 1u : 0u;
@@ -289,7 +310,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     log_own_light(beyond);
     end_path_log(path.radiance, 1.0);
     if (has_waiting) return ask_after_miss(number, path, ray);
-    finish_path(path);
+    if (TRACES_SHADOWS == 0u) finish_path(path);
     return ASK_NOTHING;
   }
   vec3 weight_at_start = path.weight;
@@ -326,11 +347,16 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
     if (catches_shadows(point)) path.weight = shown;
     store_vector(record_of_weight(number, turn), path.weight);
   }
-  if (has(FEATURE_SHADOWS)) {
+  if (has(FEATURE_SHADOWS) && TRACES_SHADOWS == 0u) {
     ask_sources(number, point, -path.direction);
     if (has(FEATURE_SHADOW_CATCHERS)) seen = left_of_caught;
   } else {
-    seen = add_unshadowed(number, point, -path.direction, seen);
+    seen = add_sources(number, point, -path.direction, seen);
+  }
+  if (TRACES_SHADOWS != 0u) {
+    add_radiance(path, seen, 1.0);
+    if (has(FEATURE_LIGHT_AOVS)) add_seen_part(path.pixel, path.part, path.weight, own, seen);
+    return ask_scattered(number, path, point, false);
   }
   store_vector(record_of_path(number) + RECORD_RADIANCE, path.radiance);
   store_vector(record_of_path(number) + RECORD_SEEN, seen);
@@ -408,6 +434,27 @@ void follow(uint number, bool has_ray, Ray ray, Hit hit) {
   words[ask_of_path(number)] = asked;
 }
 
+// With TRACES_SHADOWS: follows a path to its next point, and adds all light of the point.
+void follow_scattered(uint number) {
+  Path path;
+  load_scattered(number, path);
+  path.part = PART_REFLECTION;
+  if (STREAM_HAS_PARTS != 0u) path.part = pixels[record_of_part(path.pixel, PART_SEEN)].w >> PART_OF_RAY_SHIFT;
+  Ray ray = make_ray(path.origin, path.direction, 0.0, INFINITY);
+  step_counts = uvec2(0u);
+  packet[0] = ray;
+  passes_backs = true;
+  if (has(FEATURE_HOLES)) {
+    sight_width = path.cone_width;
+    sight_spread = path.cone_spread;
+  }
+  trace_packet(false);
+  Hit hit = found[0];
+  uint asked = shade(number, path, vec3(0.0), ray, hit);
+  if (asked == ASK_NOTHING) finish_path(path);
+  words[ask_of_path(number)] = asked;
+}
+
 // Sets the properties of the path's ray, except its origin and direction.
 void prepare_sight(uint number) {
   passes_backs = true;
@@ -432,7 +479,9 @@ void prepare_sight(uint number) {
 void main() {
   begin_stream();
   uint place = group_number() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-  if (place < paths_of_turn(turn)) {
+  if (TRACES_SHADOWS != 0u) {
+    if (place < paths_of_turn(turn)) follow_scattered(load_word(path_list(turn) + place));
+  } else if (place < paths_of_turn(turn)) {
     uint path = load_word(path_list(turn) + place);
     bool has_ray = place < paths_with_ray();
     Ray ray = make_ray(load_record(record_of_path(path) + RECORD_ORIGIN).xyz,

@@ -20,19 +20,74 @@ const uint FIRST_DIRECTION_PAIR = 0x40000000u;
 // The roughness that surfaces have at least after a diffuse one.
 const float ROUGHNESS_AFTER_DIFFUSION = 0.55;
 
-// Sets the state of a path of the stream, and the properties of the surface that its ray hits.
+// Sets whether the path has hit a diffuse surface, and the least roughness of the surface that its ray hits.
+void set_diffused(bool is_after_diffusion) {
+  is_diffused = is_after_diffusion;
+  least_roughness = is_diffused ? ROUGHNESS_AFTER_DIFFUSION : 0.0;
+}
+
+// Sets the state of a path of the stream.
 void load_scattering(uint number) {
   uvec4 state = floatBitsToUint(load_record(record_of_path(number) + RECORD_SAMPLE));
   sample_key = state.x;
   sample_number = state.y;
   environment_share = uintBitsToFloat(state.z);
-  is_diffused = state.w != 0u;
-  least_roughness = is_diffused ? ROUGHNESS_AFTER_DIFFUSION : 0.0;
+  set_diffused(state.w != 0u);
 }
 
 void store_scattering(uint number) {
   pixels[record_of_path(number) + RECORD_SAMPLE] =
       uvec4(sample_key, sample_number, floatBitsToUint(environment_share), is_diffused ? 1u : 0u);
+}
+
+// With TRACES_SHADOWS a path has these records, which fill a cache line.
+const uint SCATTERED_ORIGIN = 0u;     // Its w is the pixel.
+const uint SCATTERED_DIRECTION = 1u;  // Its w is the number of the sample. Bit SEES_BLACK_SHIFT is NO_ENVIRONMENT.
+const uint SCATTERED_WEIGHT = 2u;     // Its w is environment_share. The sign is negative if is_diffused.
+const uint SCATTERED_RADIANCE = 3u;   // Its w is the key of the sample.
+const uint SCATTERED_CONE = 4u;       // With FEATURE_TEXTURES, x and y are width and spread of the path's cone.
+const uint SEES_BLACK_SHIFT = 31u;
+
+// Stores a path whose next ray is that of scatter().
+void store_scattered(uint number, Path path) {
+  uint record = record_of_path(number);
+  uint sees_black = path.roughness == NO_ENVIRONMENT ? 1u : 0u;
+  uint sign_bit = is_diffused ? 0x80000000u : 0u;
+  pixels[record + SCATTERED_ORIGIN] = uvec4(floatBitsToUint(path.origin), path.pixel);
+  pixels[record + SCATTERED_DIRECTION] =
+      uvec4(floatBitsToUint(path.direction), sample_number | sees_black << SEES_BLACK_SHIFT);
+  pixels[record + SCATTERED_WEIGHT] =
+      uvec4(floatBitsToUint(path.weight), floatBitsToUint(environment_share) | sign_bit);
+  pixels[record + SCATTERED_RADIANCE] = uvec4(floatBitsToUint(path.radiance), sample_key);
+  if (has(FEATURE_TEXTURES)) {
+    pixels[record + SCATTERED_CONE].xy = floatBitsToUint(vec2(path.cone_width, path.cone_spread));
+  }
+}
+
+// Sets a path of the stream and its state.
+void load_scattered(uint number, out Path path) {
+  uint record = record_of_path(number);
+  vec4 origin = load_record(record + SCATTERED_ORIGIN);
+  vec4 direction = load_record(record + SCATTERED_DIRECTION);
+  vec4 weight = load_record(record + SCATTERED_WEIGHT);
+  vec4 radiance = load_record(record + SCATTERED_RADIANCE);
+  uint bits = floatBitsToUint(direction.w);
+  path.origin = origin.xyz;
+  path.pixel = floatBitsToUint(origin.w);
+  path.direction = direction.xyz;
+  path.roughness = (bits >> SEES_BLACK_SHIFT) != 0u ? NO_ENVIRONMENT : 0.0;
+  path.weight = weight.xyz;
+  path.radiance = radiance.xyz;
+  path.media = uvec2(NO_MEDIUM);
+  if (has(FEATURE_TEXTURES)) {
+    vec4 cone = load_record(record + SCATTERED_CONE);
+    path.cone_width = cone.x;
+    path.cone_spread = cone.y;
+  }
+  sample_key = floatBitsToUint(radiance.w);
+  sample_number = bits & ((1u << SEES_BLACK_SHIFT) - 1u);
+  environment_share = abs(weight.w);
+  set_diffused((floatBitsToUint(weight.w) & 0x80000000u) != 0u);
 }
 
 // The lobes of a surface, in the order in which they are chosen.

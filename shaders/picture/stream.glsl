@@ -34,6 +34,14 @@ const uint WAITING_BOUNCES_MASK = 0x3FFFu;
 const uint HAS_SEEN_SHIFT = 16u;
 const uint KIND_SHIFT = 16u;
 
+// With TRACES_SHADOWS a path has other records (scatter.glsl), and follow_paths.comp also traces its shadow rays. Few
+// lanes wait, because nearly all of these paths continue at each hit. A bounce always takes one turn, and a turn has no
+// sources. traces_shadows_with_paths() in path_stream.cpp has the same condition.
+const uint TRACES_SHADOWS =
+    FEATURE_BIT(FEATURE_SCATTERING) &
+    uint((FEATURE_BIT(FEATURE_BLENDING) | FEATURE_BIT(FEATURE_GLASS) | FEATURE_BIT(FEATURE_SHADOW_CATCHERS) |
+          FEATURE_BIT(FEATURE_RAY_LOG)) == 0u);
+
 // The records are followed by words in this order: the requests of each path, one word for its own ray and one for each
 // source; the list of the paths of even turns; the list of the paths of odd turns; the list of shadow rays; and the
 // bins of paths and of shadow rays. For each bin there is first the number of its rays, then the position in the list
@@ -67,6 +75,7 @@ void begin_stream() {
   turn = stream.turn.x;
   records_of_path = has(FEATURE_GLASS) ? stream.shadow_rays.y
                                        : PATH_RECORDS + SOURCE_RECORDS * sources_of_turn;
+  if (TRACES_SHADOWS != 0u) records_of_path = STREAM_SCATTERED_RECORDS + FEATURE_BIT(FEATURE_TEXTURES);
 }
 
 uint paths_of_turn(uint which) { return (which & 1u) == 0u ? stream.turn.y : stream.turn.z; }

@@ -332,6 +332,8 @@ LAYOUT_CONSTANT STREAM_SOURCE_RECORDS = 1u;
 LAYOUT_CONSTANT STREAM_BEHIND_RECORDS = 1u;
 // Number of further records of a path, and of each source of a turn, with FEATURE_SAMPLED_LIGHT.
 LAYOUT_CONSTANT STREAM_SAMPLE_RECORDS = 1u;
+// Number of records of a scattered path whose shadow rays are traced with it, and one more with FEATURE_TEXTURES.
+LAYOUT_CONSTANT STREAM_SCATTERED_RECORDS = 4u;
 // Number of further records of a path with FEATURE_GLASS, and number of further records for each waiting ray.
 LAYOUT_CONSTANT STREAM_GLASS_RECORDS = 2u;
 LAYOUT_CONSTANT STREAM_WAITING_RECORDS = 4u;

@@ -29,5 +29,16 @@ TEST(StreamShapeTest, WithoutShadowsNoSourceTakesRoom) {
   EXPECT_EQ(shape.most_paths, 64U);
 }
 
+// A path's records fill a cache line, however many sources there are. With glass its shadow rays have a kernel of their
+// own.
+TEST(StreamShapeTest, ScatteredPathsHaveNoRecordsOfSources) {
+  const FeatureMask features = FeatureMask(layout::FEATURE_SHADOWS) | layout::FEATURE_SCATTERING;
+  const StreamShape shape = StreamShape::of(3, features, 64, 5);
+  EXPECT_EQ(shape.sources, 0U);
+  EXPECT_EQ(shape.records_of_path(), 4U);
+  EXPECT_EQ(StreamShape::of(3, features | layout::FEATURE_TEXTURES, 64, 5).records_of_path(), 5U);
+  EXPECT_EQ(StreamShape::of(3, features | layout::FEATURE_GLASS, 64, 5).sources, 3U);
+}
+
 }  // namespace
 }  // namespace promin

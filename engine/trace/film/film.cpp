@@ -116,7 +116,9 @@ void Film::bind_scene() {
 void Film::reserve(uint32_t pixel_count) {
   pixel_count = std::max(pixel_count, capacity_);
   const uint64_t records = uint64_t{pixel_count} * records_.count + log_records_;
-  const uint64_t bytes = sizeof(layout::FilmHead) + records * sizeof(uvec4) + bytes_of_stream(pixel_count);
+  const uint64_t bytes_of_line = layout::STREAM_SCATTERED_RECORDS * sizeof(uvec4);
+  const uint64_t bytes =
+      sizeof(layout::FilmHead) + records * sizeof(uvec4) + bytes_of_line + bytes_of_stream(pixel_count);
   if (buffer_ && buffer_->size_bytes() >= bytes && capacity_ == pixel_count) return;
   using Usage = vk::BufferUsageFlagBits;
   // The new buffer is created before the old one is freed, so that the film stays valid if memory is short.
@@ -291,7 +293,10 @@ StreamShape Film::stream_shape(uint32_t pixel_count, uint32_t depth) const {
   const SceneConstants& constants = scene_->constants();
   const uint32_t sources = constants.source_count(features_.has_any(layout::FEATURE_SKY_LIGHT));
   StreamShape shape = StreamShape::of(sources, features_, most_paths, depth);
-  shape.first_record = pixel_count * records_.count + log_records_;
+  // The records of a path begin at a cache line if they fill one.
+  constexpr uint32_t kLine = layout::STREAM_SCATTERED_RECORDS;
+  const uint32_t before = layout::FILM_HEAD_TEXELS + pixel_count * records_.count + log_records_;
+  shape.first_record = divide_up(before, kLine) * kLine - layout::FILM_HEAD_TEXELS;
   return shape;
 }
 

@@ -42,6 +42,13 @@ bool needs_nearest_blocker(FeatureMask features) {
   return features.has_any(layout::FEATURE_RAY_LOG | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
 }
 
+/// Returns whether the kernel that follows the paths traces their shadow rays too (shaders/picture/turns.glsl).
+bool traces_shadows_with_paths(FeatureMask features) {
+  return features.has_any(layout::FEATURE_SCATTERING) &&
+         !features.has_any(layout::FEATURE_BLENDING | layout::FEATURE_GLASS | layout::FEATURE_SHADOW_CATCHERS |
+                           layout::FEATURE_RAY_LOG);
+}
+
 void wait_for_last(const vk::raii::CommandBuffer& commands) {
   const vk::MemoryBarrier barrier(Access::eShaderRead | Access::eShaderWrite | Access::eTransferWrite,
                                   Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);
@@ -56,9 +63,12 @@ StreamShape StreamShape::of(uint32_t source_count, FeatureMask features, uint32_
   shape.has_glass = features.has_any(layout::FEATURE_GLASS);
   shape.scatters_through = features.has_any(layout::FEATURE_DIFFUSE_TRANSMISSION);
   shape.samples_lights = features.has_any(layout::FEATURE_SAMPLED_LIGHT);
+  shape.traces_with_paths = traces_shadows_with_paths(features);
+  shape.has_cones = features.has_any(layout::FEATURE_TEXTURES);
   // At each bounce the mirror ray is followed first, so only refracted rays wait.
   shape.waiting_rays = std::min(refracted_rays(features) * depth, layout::MOST_TREE_RAYS);
-  shape.sources = features.has_any(layout::FEATURE_SHADOWS) ? std::min(source_count, layout::STREAM_SOURCES) : 0;
+  const bool asks_for_shadows = features.has_any(layout::FEATURE_SHADOWS) && !shape.traces_with_paths;
+  shape.sources = asks_for_shadows ? std::min(source_count, layout::STREAM_SOURCES) : 0;
   shape.turns_of_bounce = shape.sources == 0 ? 1 : divide_up(source_count, shape.sources);
   const auto fitting = static_cast<uint32_t>(kMostBytes / shape.path_bytes());
   shape.most_paths = std::min(most_paths, fitting) / kLanes * kLanes;
@@ -66,6 +76,7 @@ StreamShape StreamShape::of(uint32_t source_count, FeatureMask features, uint32_
 }
 
 uint32_t StreamShape::records_of_path() const {
+  if (traces_with_paths) return layout::STREAM_SCATTERED_RECORDS + (has_cones ? 1 : 0);
   const uint32_t of_glass =
       has_glass ? layout::STREAM_GLASS_RECORDS + layout::STREAM_WAITING_RECORDS * waiting_rays : 0;
   const uint32_t of_behind = scatters_through ? layout::STREAM_BEHIND_RECORDS : 0;
@@ -89,15 +100,19 @@ PathStream::PathStream(const gpu::Device& device, FeatureMask features,
                        std::span<const gpu::SpecializationConstant> constants,
                        std::span<const gpu::BoundBuffer> buffers, const PictureShaders& shaders)
     : most_group_rows_(device.profile().most_group_rows),
+      traces_with_paths_(traces_shadows_with_paths(features)),
       follow_paths_(shaders.follow_paths),
       follow_constants_(with_query(constants, false)),
       place_(device, k_place_rays_spirv, constants, buffers),
       list_(device, k_list_rays_spirv, constants, buffers),
-      shadow_(device, shaders.trace_shadow_rays, with_query(constants, !needs_nearest_blocker(features)), buffers),
-      follow_(device, follow_paths_, follow_constants_, buffers) {}
+      follow_(device, follow_paths_, follow_constants_, buffers) {
+  if (traces_with_paths_) return;
+  shadow_.emplace(device, shaders.trace_shadow_rays, with_query(constants, !needs_nearest_blocker(features)), buffers);
+}
 
 void PathStream::bind(const gpu::BoundBuffer& buffer) {
-  for (gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_, &follow_}) pipeline->bind(buffer);
+  for (gpu::ComputePipeline* pipeline : {&place_, &list_, &follow_}) pipeline->bind(buffer);
+  if (shadow_) shadow_->bind(buffer);
 }
 
 void PathStream::record_begin(const vk::raii::CommandBuffer& commands, const gpu::Buffer& film,
@@ -122,18 +137,19 @@ void PathStream::record_turns(const vk::raii::CommandBuffer& commands, const gpu
     pipeline.dispatch_indirect(commands, film, offsetof(layout::FilmHead, stream) + groups);
   };
   // The last turn adds the light of the shadow rays of the last step.
-  const uint64_t turns = uint64_t{steps} * shape.turns_of_bounce + 1;
+  const uint64_t turns = uint64_t{steps} * shape.turns_of_bounce + (traces_with_paths_ ? 0 : 1);
   for (uint64_t turn = 0; turn < turns; ++turn) {
     wait_for_last(commands);
     place_.dispatch(commands, uvec2(1));
     dispatch(list_, offsetof(layout::StreamState, list_groups));
-    dispatch(shadow_, offsetof(layout::StreamState, shadow_groups));
+    if (shadow_) dispatch(*shadow_, offsetof(layout::StreamState, shadow_groups));
     dispatch(follow_, offsetof(layout::StreamState, path_groups));
   }
 }
 
 void PathStream::record_small_warm_up(const vk::raii::CommandBuffer& commands) const {
-  for (const gpu::ComputePipeline* pipeline : {&place_, &list_, &shadow_}) {
+  for (const gpu::ComputePipeline* pipeline : {&place_, &list_, shadow_ ? &*shadow_ : nullptr}) {
+    if (pipeline == nullptr) continue;
     wait_for_last(commands);
     pipeline->dispatch(commands, uvec2(1));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,7 +30,8 @@ struct StreamShape {
   uint32_t first_record = 0;
   /// Largest number of paths, a multiple of the number of lanes of a workgroup.
   uint32_t most_paths = 0;
-  /// Largest number of lights whose shadow rays are traced in a turn; 0 if no object casts shadows.
+  /// Largest number of lights whose shadow rays are traced in a turn; 0 if no object casts shadows, or if the kernel
+  /// that follows the paths traces them.
   uint32_t sources = 0;
   uint32_t turns_of_bounce = 1;
   /// Largest number of waiting rays of a path; only with glass.
@@ -39,6 +41,10 @@ struct StreamShape {
   bool scatters_through = false;
   /// True if paths and sources keep the data of sampled points of lights (FEATURE_SAMPLED_LIGHT).
   bool samples_lights = false;
+  /// True if the kernel that follows scattered paths traces their shadow rays too. Their records are others.
+  bool traces_with_paths = false;
+  /// True if textures are looked up in the cones of paths.
+  bool has_cones = false;
 
   /// Returns the number of records of a path, including its light sources.
   uint32_t records_of_path() const;
@@ -77,11 +83,12 @@ class PathStream {
 
  private:
   uint32_t most_group_rows_;
+  bool traces_with_paths_;
   std::span<const uint32_t> follow_paths_;
   std::vector<gpu::SpecializationConstant> follow_constants_;
   gpu::ComputePipeline place_;
   gpu::ComputePipeline list_;
-  gpu::ComputePipeline shadow_;
+  std::optional<gpu::ComputePipeline> shadow_;
   gpu::ComputePipeline follow_;
 };
 
