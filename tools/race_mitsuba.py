@@ -149,9 +149,11 @@ class Promin:
         return cpu_of_children() - before
 
     def render(self, samples, seed=0):
-        """Returns the picture and the seconds of tracing: those of a run less those of a run with one sample."""
-        short = self.run(1, seed)
-        seconds = (self.run(samples, seed) - short) * samples / (samples - 1)
+        """Returns the picture and the seconds of tracing: those of a long run less those of a short run."""
+        # A picture with fewer samples has other kernels (samples_that_repay_packets in engine/device/profile.cpp).
+        short = math.ceil(2**19 / self.arguments.size**2)
+        seconds = self.run(short + samples, seed) - self.run(short, seed)
+        self.run(samples, seed)
         return read_exr(self.folder / "picture.exr"), seconds
 
 
