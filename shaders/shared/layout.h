@@ -257,13 +257,13 @@ struct LightRecord {
                // that of the sky
 };
 LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
-// A source with a table of elements, one of which a sample chooses, needs FEATURE_EMITTERS or FEATURE_CHOSEN_LIGHTS. In
-// its LightRecord, kind.y is the number of elements. kind.w is the first texel of the table, counted from the record of
-// the first source. position.w is a factor of the radiance of surfaces. The tables follow the records of the sources. An
-// element takes two texels. In the first, x is the first number of the element's range in 0...2^32 - 1, y has the bits
-// of its chance, and z is the element that contains the first number of the cell with this index. The second texel has
-// an index of a primitive, or of a light's record counted from that of the first source. Its y is Hit::part of points on
-// the primitive, or EMITTER_IS_LIGHT. Its w has the bits of the area.
+// A source with a table of elements, one of which a sample chooses, needs FEATURE_EMITTERS or FEATURE_CHOSEN_LIGHTS.
+// In its LightRecord, kind.y is the number of elements. kind.w is the first texel of the table, counted from the
+// record of the first source. position.w is a factor of the radiance of surfaces. The tables follow the records of the
+// sources. An element takes two texels. In the first, x is the first number of the element's range in 0...2^32 - 1, y
+// has the bits of its chance, and z is the element that contains the first number of the cell with this index. The
+// second texel has an index of a primitive, or of a light's record counted from that of the first source. Its y is
+// Hit::part of points on the primitive, or EMITTER_IS_LIGHT. Its w has the bits of the area.
 LAYOUT_CONSTANT LIGHT_EMITTERS = 7u;
 LAYOUT_CONSTANT EMITTER_TEXELS = 2u;
 LAYOUT_CONSTANT EMITTER_IS_LIGHT = 0xFFFFFFFFu;

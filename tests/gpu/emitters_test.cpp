@@ -12,6 +12,7 @@
 #include "gpu/lit_scenes.h"
 #include "gpu/test_scenes.h"
 #include "oracle/emitters.h"
+#include "support/lambert.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin {
@@ -125,18 +126,6 @@ world::Scene make_lit_floor(const world::Shape& lamp, const Material& material) 
   scene.materials = {make_diffuse(vec3(1.0F)), material};
   scene.objects = {{"floor", world::Plane{vec3(0.0F), vec3(0, 1, 0)}, 0}, {"lamp", lamp, 1}};
   return scene;
-}
-
-/// Returns Lambert's formula for the irradiance that a polygon of radiance 1 causes at a point of a plane y = 0.
-double irradiance_of(std::vector<dvec3> corners, const dvec3& at) {
-  double sum = 0.0;
-  for (dvec3& corner : corners) corner = glm::normalize(corner - at);
-  for (size_t i = 0; i < corners.size(); ++i) {
-    const dvec3& a = corners[i];
-    const dvec3& b = corners[(i + 1) % corners.size()];
-    sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(b, a)).y;
-  }
-  return std::abs(0.5 * sum);
 }
 
 class EmittersTest : public test::SampledLightTest {
@@ -254,7 +243,7 @@ TEST_F(EmittersTest, TrianglesHaveTheirClosedForm) {
   for (const auto& [a, b, c] : triangles) {
     const world::Scene scene = make_lit_floor(make_triangle(a, b, c), make_glow(vec3(2.0F), true));
     for (const vec3& at : {vec3(0.0F), vec3(0.6F, 0.0F, 0.3F)}) {
-      const double expected = 2.0 / std::numbers::pi * irradiance_of({dvec3(a), dvec3(b), dvec3(c)}, dvec3(at));
+      const double expected = 2.0 / std::numbers::pi * test::irradiance_of({dvec3(a), dvec3(b), dvec3(c)}, dvec3(at));
       EXPECT_NEAR(mean_of(scene, make_point_view(at, 0.005F)).x / expected, 1.0, 0.004) << a.y << " " << at.x;
     }
   }
@@ -451,7 +440,7 @@ double light_of_part(const dvec2& lo, const dvec2& hi, const dvec3& at, double s
   const auto corner = [&](double u, double v) {
     return at + scale * (dvec3(0.6 * (2.0 * u - 1.0), 0.8, 0.5 * (2.0 * v - 1.0)) - at);
   };
-  return irradiance_of({corner(lo.x, lo.y), corner(hi.x, lo.y), corner(hi.x, hi.y), corner(lo.x, hi.y)}, at) /
+  return test::irradiance_of({corner(lo.x, lo.y), corner(hi.x, lo.y), corner(hi.x, hi.y), corner(lo.x, hi.y)}, at) /
          std::numbers::pi;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hard/hard_case.h"
+#include "support/lambert.h"
 #include "trace/render/renderer_impl.h"
 
 namespace promin::hard {
@@ -55,18 +56,6 @@ double error_of_mean(const Lab& lab, const world::Scene& scene, const View& view
   const Image image = make_renderer(lab.device(), scene).render(view).image;
   for (const vec3& pixel : image.pixels) sum += static_cast<double>(pixel.x);
   return std::abs(sum / static_cast<double>(image.pixels.size()) / expected - 1.0);
-}
-
-/// Returns Lambert's formula for the irradiance of a polygon of radiance 1 at a point of the floor.
-double lambert_irradiance(std::vector<dvec3> corners, const dvec3& at) {
-  double sum = 0.0;
-  for (dvec3& corner : corners) corner = glm::normalize(corner - at);
-  for (size_t i = 0; i < corners.size(); ++i) {
-    const dvec3& a = corners[i];
-    const dvec3& b = corners[(i + 1) % corners.size()];
-    sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(b, a)).y;
-  }
-  return std::abs(0.5 * sum);
 }
 
 Mesh make_lamp(const dvec3& a, const dvec3& b, const dvec3& c) {
@@ -126,7 +115,7 @@ void run_emissive(Lab& lab) {
   for (const auto& [name, a, b, c] : lamps) {
     world::Scene scene = make_lit_plane(2.0F);
     scene.objects.push_back({"lamp", make_lamp(dvec3(vec3(a)), dvec3(vec3(b)), dvec3(vec3(c))), 1});
-    const double expected = 2.0 / std::numbers::pi * lambert_irradiance({a, b, c}, dvec3(0.0));
+    const double expected = 2.0 / std::numbers::pi * test::irradiance_of({a, b, c}, dvec3(0.0));
     lab.expect_at_most(fmt::format("light of a triangle, |mean / closed form - 1|, {}", name), 0.002,
                        error_of_mean(lab, scene, make_near_view(vec3(0.0F)), expected));
   }
@@ -144,7 +133,7 @@ void run_many(Lab& lab) {
       const vec3 b = at + vec3(0.01F, 0.0F, 0.002F);
       const vec3 c = at + vec3(0.0F, 0.004F, 0.01F);
       scene.objects.push_back({"lamp", make_lamp(dvec3(at), dvec3(b), dvec3(c)), 1});
-      expected += 2.0 / std::numbers::pi * lambert_irradiance({dvec3(at), dvec3(b), dvec3(c)}, dvec3(0.0));
+      expected += 2.0 / std::numbers::pi * test::irradiance_of({dvec3(at), dvec3(b), dvec3(c)}, dvec3(0.0));
     }
     View view = make_near_view(vec3(0.0F));
     view.size = uvec2(32);
