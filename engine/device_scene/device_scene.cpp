@@ -11,6 +11,7 @@
 #include "promin/error.h"
 #include "promin/explain.h"
 #include "scene/layers.h"
+#include "scene/light_kinds.h"
 
 namespace promin {
 namespace {
@@ -259,8 +260,7 @@ void DeviceScene::reserve_stack(uint32_t entries) {
   ++version_;
 }
 
-void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper,
-                                  std::shared_ptr<const GlassSolids> glass_solids, const ShadingParts* shading) {
+void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upper, const ShadingParts* shading) {
   constexpr uint64_t kNodeBytes = sizeof(layout::Node);
   reserve_nodes(upper.first_record + upper.record_count(), level.first_node());
   reserve_stack(upper.stack_size);
@@ -274,7 +274,7 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   }
   uploads_.moves += (1 + upper.nodes.size() + upper.record_count()) * kNodeBytes;
   constants_.tree_bounds = center_and_radius(upper.bounds);
-  constants_.glass_solids = std::move(glass_solids);
+  if (shading != nullptr) constants_.glass_solids = shading->glass_solids;
   emitter_ranges_.first_instance = upper.first_record;
   NewParts parts = shading == nullptr ? NewParts() : parts_of(*shading);
   parts.have_instances_moved = true;
@@ -342,10 +342,15 @@ void DeviceScene::put_direct_sources(Tail& tail, const Environment& environment)
     if (direct.table[i].y == layout::EMITTER_IS_LIGHT) direct.table[i].x -= lights.first_direct;
   }
   lights.tables = std::move(direct.table);
+  are_lights_chosen_ = direct.are_lights_chosen;
   source_features_ = {};
   if (direct.has_surfaces) source_features_ |= layout::FEATURE_EMITTERS;
   // A light that is switched on later needs no other kernel.
   if (direct.may_choose_lights) source_features_ |= layout::FEATURE_CHOSEN_LIGHTS;
+}
+
+bool DeviceScene::has_light_with_size() const {
+  return std::ranges::any_of(lights_, [](const Light& light) { return light.is_on && has_size(light); });
 }
 
 void DeviceScene::find_emissive(const EmitterGeometry& geometry) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "device/buffer.h"
@@ -48,10 +49,9 @@ class DeviceScene {
   bool has_space_for(const PackedScene& packed) const;
   /// Replaces the geometry, for which there is space, and the shading. Images and textures stay.
   void set_geometry(const PackedScene& packed, const ShadingParts& shading);
-  /// Replaces the upper level after instances have moved, and the materials, lights and environment by those of
-  /// `shading`; null keeps them.
-  void set_upper_level(const UpperLevel& level, const UpperNodes& upper,
-                       std::shared_ptr<const GlassSolids> glass_solids, const ShadingParts* shading = nullptr);
+  /// Replaces the upper level after instances have moved, and the shading; null keeps it. Textures stay.
+  void set_upper_level(const UpperLevel& level, const UpperNodes& upper, const ShadingParts* shading = nullptr);
+  void set_glass_solids(std::shared_ptr<const GlassSolids> solids) { constants_.glass_solids = std::move(solids); }
 
   /// Returns the constants of pictures and casts that depend on the scene.
   const SceneConstants& constants() const { return constants_; }
@@ -59,6 +59,10 @@ class DeviceScene {
   std::span<const uint32_t> source_numbers(Integrator integrator) const;
   /// Returns the features that the sources of Integrator::kDirect need, without those of lights and sky.
   FeatureMask source_features() const { return source_features_; }
+  /// Returns whether a light that is on has a size.
+  bool has_light_with_size() const;
+  /// Returns whether each sample of Integrator::kDirect asks one of many sources (kMostAskedSources).
+  bool are_lights_chosen() const { return are_lights_chosen_; }
   /// Returns whether instances have too many emissive triangles to be sources (EmissiveSurfaces).
   bool leaves_out_emitters() const { return emissive_.leaves_out_instances; }
   uint32_t stack_size() const { return stack_size_; }
@@ -171,6 +175,7 @@ class DeviceScene {
   size_t uv_count_ = 0;
   EmissiveSurfaces emissive_;
   FeatureMask source_features_;
+  bool are_lights_chosen_ = false;
   SceneConstants constants_;
   uint32_t stack_size_;
   uint64_t version_ = 0;

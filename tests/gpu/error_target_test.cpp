@@ -229,6 +229,39 @@ TEST_F(ErrorTargetTest, BitsDoNotDependOnPiecesPacketsOrCrops) {
   }
 }
 
+// The rule of claims depends on what samples choose. Kernels for more than that, and lights that are off, change no
+// pixel.
+TEST_F(ErrorTargetTest, BitsDoNotDependOnFeaturesOfKernels) {
+  world::Scene scene = make_scene_of_everything(0);
+  scene.lights.resize(1);
+  View view = with_target(make_view(uvec2(32, 24)), 1.0F / 16.0F, 4, 64);
+  TunedRendererOptions options;
+  options.has_error_target = true;
+  options.aovs.samples = options.aovs.error = true;
+  const auto render = [&](const world::Scene& of) {
+    options.mode = view.mode;
+    return make_renderer(device(), of, options).render(view);
+  };
+  const auto expect_same = [](const RenderResult& result, const RenderResult& expected) {
+    EXPECT_TRUE(has_same_bits(result.image, expected.image));
+    EXPECT_EQ(result.aovs.samples, expected.aovs.samples);
+    EXPECT_EQ(result.aovs.error, expected.aovs.error);
+  };
+  const RenderResult whitted = render(scene);
+  options.more_features = all_features();
+  expect_same(render(scene), whitted);
+  options.more_features = {};
+
+  view.mode.integrator = Integrator::kDirect;
+  const RenderResult of_one = render(scene);
+  EXPECT_EQ(std::ranges::min(of_one.aovs.samples), 4U);
+  // With 17 lights and surfaces that emit light, each sample asks one source.
+  scene.lights.resize(17, scene.lights[0]);
+  EXPECT_GE(std::ranges::min(render(scene).aovs.samples), 16U);
+  for (size_t i = 1; i < scene.lights.size(); ++i) scene.lights[i].is_on = false;
+  expect_same(render(scene), of_one);
+}
+
 // Camera rays continue behind surfaces that blend.
 TEST_F(ErrorTargetTest, AgreesWithManySamplesWhereRaysGoOn) {
   View view = make_view(uvec2(40, 30));

@@ -455,7 +455,7 @@ TEST(RefinementTest, NoiseAroundAPixelCountsIfSamplesChoosePoints) {
   const vec3 claim = calm.claim({vec3(0.5F), vec3(0.5F)}, noisy.variance());
   EXPECT_NEAR(claim.x, 1.6 * std::sqrt(1.0 / 12.0), 1e-6);
   const std::vector<vec3> variances = {vec3(0.0F), vec3(0.9F), vec3(0.0F), vec3(0.0F)};
-  EXPECT_FLOAT_EQ(mean_around(variances, uvec2(2, 2), 0).x, 0.225F);
+  EXPECT_FLOAT_EQ(mean_around(variances, uvec2(2, 2), 0, 1).x, 0.225F);
 
   // A picture of noise takes more samples with the term.
   const auto noise = [](const dvec2& p) {
@@ -499,6 +499,23 @@ TEST(RefinementTest, RareLightIsNotLost) {
   EXPECT_LT(bias_of(Integrator::kWhitted, {}), -0.1);
   EXPECT_NEAR(bias_of(Integrator::kPath, {.any = true}), 0.0, 0.05);
   EXPECT_NEAR(bias_of(Integrator::kDirect, {.any = true, .of_many_sources = true}), 0.0, 0.02);
+}
+
+// Paths, and samples that choose one of many sources, take 16 first samples, unless that is more than the most.
+TEST(RefinementTest, NoisyPixelsTakeMoreFirstSamples) {
+  View view = make_refined_view(1.0F / 16.0F, 4);
+  const auto first_samples = [&](Integrator integrator, const SampledPoints& points) {
+    view.mode.integrator = integrator;
+    return ClaimRule(view, points).first_samples;
+  };
+  EXPECT_EQ(first_samples(Integrator::kWhitted, {.any = true}), 4U);
+  EXPECT_EQ(first_samples(Integrator::kDirect, {.any = true}), 4U);
+  EXPECT_EQ(first_samples(Integrator::kDirect, {.any = true, .of_many_sources = true}), 16U);
+  EXPECT_EQ(first_samples(Integrator::kPath, {.any = true}), 16U);
+  view.error_target->max_samples = 8;
+  EXPECT_EQ(first_samples(Integrator::kPath, {.any = true}), 8U);
+  view.error_target->min_samples = view.error_target->max_samples = 32;
+  EXPECT_EQ(first_samples(Integrator::kPath, {.any = true}), 32U);
 }
 
 TEST(RefinementTest, CropsOfSampledLightHaveThePixelsOfTheWhole) {

@@ -180,6 +180,16 @@ bool Film::is_listed() const {
   return features_.has_any(layout::FEATURE_LISTED_SAMPLES);
 }
 
+SampledPoints Film::sampled_points(const View& view) const {
+  const RenderMode& mode = view.mode;
+  const bool samples_sources = mode.integrator != Integrator::kWhitted && mode.debug_view == DebugView::kNone;
+  // A film without the feature ignores the lens of a camera.
+  const bool samples_lens = features_.has_any(layout::FEATURE_LENS) && has_lens(view.camera);
+  return {.any = samples_sources || samples_lens || mode.debug_view == DebugView::kOcclusion ||
+                 scene_->has_light_with_size(),
+          .of_many_sources = samples_sources && scene_->are_lights_chosen()};
+}
+
 TileScheduler Film::cut(const View& view, const PixelWindow& window, const TileOptions& options) const {
   return {scene_->constants(), view, window, options};
 }

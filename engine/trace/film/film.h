@@ -93,11 +93,9 @@ class Film {
   /// kernel.
   std::optional<gpu::KernelSource> side_kernel() const;
 
-  /// Returns what samples choose besides their places in the pixels.
-  SampledPoints sampled_points() const {
-    return {.any = features_.has_any(layout::FEATURE_SAMPLED_LIGHT | layout::FEATURE_LENS),
-            .of_many_sources = features_.has_any(layout::FEATURE_CHOSEN_LIGHTS)};
-  }
+  /// Returns what the samples of a view choose besides their places in the pixels. It depends on the scene and the
+  /// view, and not on further features of the film.
+  SampledPoints sampled_points(const View& view) const;
 
   /// Returns the layout of a pixel's records. Each record is a uvec4.
   const FilmRecords& records() const { return records_; }

@@ -32,7 +32,7 @@ ColorRange range_around(std::span<const ColorRange> ranges, const uvec2& size, s
 
 /// Returns the mean of the values of a pixel and of the pixels at most `reach` columns and rows away, for the same
 /// arguments.
-vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index, uint32_t reach = 1);
+vec3 mean_around(std::span<const vec3> values, const uvec2& size, size_t index, uint32_t reach);
 
 /// The mean of a pixel's samples, and an estimate of its error (docs/model.md, "Error of a pixel"). The samples are
 /// scrambled nets (ScrambledPoints), whose error decreases as N^(-3/4). Everything is computed on the host, so the
@@ -58,8 +58,9 @@ class PixelEstimate {
   vec3 variance() const;
 
   /// Returns the claimed error of each channel of the mean. `around` is the range of the first samples of the pixel's
-  /// neighbours. `spread` is the variance of the mean that the first samples of the pixel and its neighbours suggest; 0
-  /// if the samples only decide where in the pixel they lie. Requires at least kMinRefinedSamples samples.
+  /// neighbours. `spread` is the variance of the mean that the first samples of the pixel and of the pixels up to
+  /// ClaimRule::reach suggest; 0 if the samples only decide where in the pixel they lie. Requires at least
+  /// kMinRefinedSamples samples.
   vec3 claim(const ColorRange& around, const vec3& spread = vec3(0.0F), double batch_error = kBatchError) const;
 
  private:

@@ -73,9 +73,9 @@ struct ClaimRule {
 
 /// Refines a window of a picture until each of its pixels is within View::error_target or has the largest number of
 /// samples. It returns samples to trace, receives their results, and doubles the number of samples of pixels whose
-/// claim is too large. It also takes the first samples of the pixels around the window, which their neighbours need. A
-/// pixel thus depends only on itself and its adjacent pixels, and its bits do not depend on crops and divisions. This
-/// code does not use Vulkan.
+/// claim is too large. It also takes the first samples of the pixels around the window, up to ClaimRule::reach. A pixel
+/// thus depends only on itself and the first samples of the pixels up to this distance, and its bits do not depend on
+/// crops and divisions. This code does not use Vulkan.
 class Refinement {
  public:
   /// The view must have an error target, and the window must not be empty. With `has_unlit`, take() also receives the

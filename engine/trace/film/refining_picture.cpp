@@ -22,7 +22,8 @@ RefiningPicture::RefiningPicture(Film& film, const View& view)
     : view_(view),
       film_(&film),
       error_(first_error(*view.error_target)),
-      refinement_(aimed_at(view, error_), {uvec2(0), view.size}, film.records().has_unlit(), film.sampled_points()) {}
+      refinement_(aimed_at(view, error_), {uvec2(0), view.size}, film.records().has_unlit(),
+                  film.sampled_points(view)) {}
 
 void RefiningPicture::prepare(double units) {
   assert(!is_done());

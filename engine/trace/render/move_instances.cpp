@@ -84,7 +84,7 @@ bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64
   }
   auto moved = std::make_shared<UpperLevel>(*level);
   moved->move(transforms);
-  scene.set_upper_level(*moved, moved->build(), shading.glass_solids, &shading);
+  scene.set_upper_level(*moved, moved->build(), &shading);
   level = std::move(moved);
   return true;
 }
@@ -102,7 +102,9 @@ void move_instances(std::span<const Transform> world_from_object, const Primitiv
   const std::vector<Transform> sorted = sort_by_object(world_from_object);
   auto moved = std::make_shared<UpperLevel>(*level);
   moved->move(sorted);
-  scene.set_upper_level(*moved, moved->build(), GlassSolids::moved(scene.constants().glass_solids, sorted));
+  std::shared_ptr<const GlassSolids> solids = GlassSolids::moved(scene.constants().glass_solids, sorted);
+  scene.set_upper_level(*moved, moved->build());
+  scene.set_glass_solids(std::move(solids));
   level = std::move(moved);
 }
 

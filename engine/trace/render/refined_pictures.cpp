@@ -117,7 +117,7 @@ RenderResult PictureTracer::render_to_error(const View& view, const ProgressCall
   double told = 0.0;
   const auto pixels = static_cast<double>(result.image.pixels.size());
   for (const PixelWindow& part : parts_to_refine(picture_window(view))) {
-    Refinement refinement(view, part, tells_unlit(view.mode), film_->sampled_points());
+    Refinement refinement(view, part, tells_unlit(view.mode), film_->sampled_points(view));
     RefinedAovs aovs = begin_refined_aovs(part, view);
     const auto part_pixels = static_cast<double>(refinement.pixel_count());
     refine(refinement, view, aovs, result, [&](double of_part) {
@@ -142,7 +142,7 @@ RenderResult PictureTracer::refine_within(const View& view, double seconds, cons
   step.error_target->error = first_error(*view.error_target);
   RenderResult result = begin_refined(step, progress);
   const PixelWindow window = picture_window(view);
-  Refinement refinement(step, window, tells_unlit(view.mode), film_->sampled_points());
+  Refinement refinement(step, window, tells_unlit(view.mode), film_->sampled_points(view));
   RefinedAovs aovs = begin_refined_aovs(window, step);
   const Stopwatch tracing;
   float& error = step.error_target->error;
@@ -170,7 +170,8 @@ RenderResult PictureTracer::render_within(const View& view, double seconds, cons
   RenderResult best = render(fixed, tell);
   // The kernels for refinement take as long to compile as the kernels that traced this picture.
   const double compiling_ms = std::max(elapsed.ms() - best.trace_ms, stats_.pipeline_ms);
-  const double refining_ms = compiling_ms + kListedCost * best.trace_ms * view.error_target->min_samples;
+  const uint32_t first_samples = ClaimRule(view, film_->sampled_points(view)).first_samples;
+  const double refining_ms = compiling_ms + kListedCost * best.trace_ms * first_samples;
   if (kTimesFirstError * refining_ms < limit_ms - elapsed.ms()) {
     bool is_late = false;
     try {

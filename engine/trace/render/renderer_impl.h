@@ -55,13 +55,14 @@ class SceneOnDevice {
 
  private:
   /// Uploads a packed scene. The tree of the scene may have been read from a file.
-  void upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed, SetupStats& stats);
+  void upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed,
+              const ShadingParts& shading, SetupStats& stats);
   /// Takes the host's data of a packed scene, and the cost of its tree.
   void take(const world::Scene& scene, PackedScene& packed, SetupStats& stats);
   /// Takes the features of materials, lights and environment.
   void take_shading(const world::Scene& scene);
   /// Sets the pose if only instances have moved. Returns false if anything else differs.
-  bool move_only(const world::Scene& posed);
+  bool move_only(const world::Scene& posed, const ShadingParts& shading);
   /// Returns whether images have the same levels. `mask_cutoffs` is the result of find_mask_cutoffs().
   bool has_images_of(const world::Scene& posed, const std::vector<float>& mask_cutoffs) const;
 

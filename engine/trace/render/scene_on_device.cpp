@@ -27,7 +27,7 @@ SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scen
                              SetupStats& stats)
     : more_features_(options.more_features), images_(scene.images), textures_(scene.textures) {
   PackedScene packed = pack(scene, options);
-  upload(device, scene, packed, stats);
+  upload(device, scene, packed, shading_of(scene), stats);
   take(scene, packed, stats);
   take_shading(scene);
 }
@@ -39,9 +39,9 @@ void SceneOnDevice::take_shading(const world::Scene& scene) {
 }
 
 void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed,
-                           SetupStats& stats) {
+                           const ShadingParts& shading, SetupStats& stats) {
   const Stopwatch uploading;
-  device_scene_ = upload_scene(device, packed, shading_of(scene));
+  device_scene_ = upload_scene(device, packed, shading);
   stats.upload_ms = uploading.ms();
   stats.warnings = packed.warnings;
   if (packed.surfaces.images.warning) stats.warnings.push_back(*packed.surfaces.images.warning);
@@ -78,26 +78,27 @@ bool SceneOnDevice::has_images_of(const world::Scene& posed, const std::vector<f
   return posed.images == images_ && posed.textures == textures_ && mask_cutoffs == mask_cutoffs_;
 }
 
-bool SceneOnDevice::move_only(const world::Scene& posed) {
+bool SceneOnDevice::move_only(const world::Scene& posed, const ShadingParts& shading) {
   const bool may_move = copied_materials_.empty() && has_images_of(posed, find_mask_cutoffs(posed));
-  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_, shading_of(posed));
+  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_, shading);
 }
 
 void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
                              TreeOfPose tree, SetupStats& stats) {
-  if (posed.instances.empty() || !move_only(posed)) {
+  const ShadingParts shading = shading_of(posed);
+  if (posed.instances.empty() || !move_only(posed, shading)) {
     PackedScene packed = posed.instances.empty() ? pack_pose(posed, options.builder, tree, kept_tree_)
                                                  : pack_scene(posed, options.builder, {}, options.texture_bytes);
     if (options.repack) packed = options.repack(std::move(packed));
     packed.stack_size = std::max(packed.stack_size, device_scene_->stack_size());
     const Stopwatch uploading;
     if (has_images_of(posed, packed.mask_cutoffs) && device_scene_->has_space_for(packed)) {
-      device_scene_->set_geometry(packed, shading_of(posed));
+      device_scene_->set_geometry(packed, shading);
       stats.upload_ms = uploading.ms();
     } else {
       if (posed.instances.empty()) add_images(packed, posed, options.texture_bytes);
       earlier_uploads_ = uploads();
-      upload(device, posed, packed, stats);
+      upload(device, posed, packed, shading, stats);
       images_ = posed.images;
       textures_ = posed.textures;
     }
