@@ -89,15 +89,19 @@ uint64_t hash_geometry(const Collected& collected) {
   return hash.value();
 }
 
-GeometryTree build_geometry_tree(const Collected& collected, std::string_view builder, const BuildOptions& options) {
+GeometryTree build_geometry_tree(const Collected& collected, const world::Scene& scene, std::string_view builder,
+                                 const BuildOptions& options) {
   GeometryTree tree;
   tree.binary =
       build_bvh(builder,
                 {collected.boxes,
                  [&](uint32_t primitive, const Bounds& window) { return clip(collected.bounded[primitive], window); }},
                 options);
+  check_at_most(CHILD_FIRST_MASK, tree.binary.references.size(), scene, "the tree refers to", "parts of primitives",
+                ", or use the builder sah", Setting::kBuilder);
   tree.references = sort_leaves_by_kind(tree.binary, collected.bounded);
   PackedTree packed = pack_tree(tree.binary);
+  check_at_most(MAX_NODES, packed.nodes.size(), scene, "the scene's tree has", "nodes");
   tree.nodes = std::move(packed.nodes);
   tree.stack_size = packed.stack_size;
   tree.primitive_count = static_cast<uint32_t>(collected.bounded.size());

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "bvh/builder.h"
 #include "bvh/bvh_file.h"
@@ -25,8 +26,10 @@ struct GeometryTree {
   /// The hash_geometry() of the primitives; 0 if nobody has set it.
   uint64_t geometry_hash = 0;
   BvhStats stats;
-  /// The binary tree with the same leaves.
+  /// The binary tree with the same leaves; empty for a mesh after keep_top_boxes().
   Bvh binary;
+  /// Boxes that together contain a mesh (PackedMesh::top_boxes).
+  std::vector<Bounds> top_boxes;
 
   TreeView view() const;
 };
@@ -37,8 +40,10 @@ uint32_t kinds_of(const Collected& collected);
 /// Returns a hash of the geometry. It does not depend on the assignment of primitives to objects.
 uint64_t hash_geometry(const Collected& collected);
 
-/// Builds a tree over the primitives, without the hash of the geometry. Throws UsageError for an unknown builder.
-GeometryTree build_geometry_tree(const Collected& collected, std::string_view builder, const BuildOptions& options);
+/// Builds a tree over primitives of a scene, without the hash of the geometry. Throws UsageError for an unknown
+/// builder, and RunError if there are more references or nodes than the layout can hold.
+GeometryTree build_geometry_tree(const Collected& collected, const world::Scene& scene, std::string_view builder,
+                                 const BuildOptions& options);
 
 /// Returns the tree of these primitives from a file. Throws InputError if the file does not have it.
 GeometryTree read_geometry_tree(const Collected& collected, const BvhFile& file);

@@ -117,6 +117,12 @@ uvec4 row_of(const glm::mat3& matrix, int row, uint32_t last) {
 
 }  // namespace
 
+void keep_top_boxes(GeometryTree& tree) {
+  const size_t count = std::clamp<size_t>(tree.primitive_count / kTrianglesPerBox, 1, kMostTopBoxes);
+  for (const uint32_t node : find_top(tree.binary, count)) tree.top_boxes.push_back(tree.binary.nodes[node].bounds);
+  tree.binary = {};
+}
+
 PackedMesh pack_mesh(Collected collected, GeometryTree tree) {
   PackedMesh mesh;
   mesh.number_count = collected.order;
@@ -133,8 +139,7 @@ PackedMesh pack_mesh(Collected collected, GeometryTree tree) {
     mesh.primitives[i] = collected.bounded[tree.references[i]];
     mesh.surfaces[i] = collected.bounded_surfaces[tree.references[i]];
   }
-  const size_t box_count = std::clamp<size_t>(collected.bounded.size() / kTrianglesPerBox, 1, kMostTopBoxes);
-  for (const uint32_t node : find_top(tree.binary, box_count)) mesh.top_boxes.push_back(tree.binary.nodes[node].bounds);
+  mesh.top_boxes = std::move(tree.top_boxes);
   for (const Bounds& box : collected.boxes) mesh.box.extend(box);
   return mesh;
 }

@@ -45,7 +45,10 @@ struct PackedMesh {
   BvhStats bvh;
 };
 
-/// Packs a mesh that was collected alone, with its tree.
+/// Replaces the binary tree of a mesh by its top boxes.
+void keep_top_boxes(GeometryTree& tree);
+
+/// Packs a mesh that was collected alone, with its tree, which has its top boxes.
 PackedMesh pack_mesh(Collected collected, GeometryTree tree);
 
 /// The input of an UpperLevel.

@@ -71,21 +71,13 @@ void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& co
   packed.tree_bounds = center_and_radius(tree_bounds);
 }
 
-/// Throws RunError if there are more references or nodes than the layout can hold.
-void check_size(const TreeView& tree, const world::Scene& scene) {
-  check_at_most(CHILD_FIRST_MASK, tree.references.size(), scene, "the tree refers to", "parts of primitives",
-                ", or use the builder sah", Setting::kBuilder);
-  check_at_most(MAX_NODES, tree.nodes.size(), scene, "the scene's tree has", "nodes");
-}
-
 /// Builds the tree of the collected primitives.
 void build_tree(PackedScene& packed, const world::Scene& scene, const Collected& collected, std::string_view builder,
                 const BuildOptions& options) {
   const Stopwatch building;
-  GeometryTree tree = build_geometry_tree(collected, builder, options);
+  GeometryTree tree = build_geometry_tree(collected, scene, builder, options);
   packed.bvh_ms = building.ms();
   packed.is_tree_built = true;
-  check_size(tree.view(), scene);
   packed.bvh = tree.stats;
   packed.stack_size = tree.stack_size;
   packed.nodes = std::move(tree.nodes);
@@ -191,20 +183,23 @@ Geometries collect_geometries(const world::Scene& scene) {
   return geometries;
 }
 
-/// Returns the trees of the own primitives and of the meshes, in this order. `make_tree` returns the tree of collected
-/// primitives.
+/// Returns the trees of the own primitives and of the meshes, in this order. Trees of meshes have their top boxes and
+/// no binary tree. `make_tree` returns the tree of collected primitives.
 template <typename MakeTree>
 std::vector<GeometryTree> make_trees(const Geometries& geometries, const MakeTree& make_tree) {
   std::vector<GeometryTree> trees;
   trees.push_back(make_tree(geometries.own));
-  for (const Collected& mesh : geometries.meshes) trees.push_back(make_tree(mesh));
+  for (const Collected& mesh : geometries.meshes) {
+    trees.push_back(make_tree(mesh));
+    keep_top_boxes(trees.back());
+  }
   return trees;
 }
 
-std::vector<GeometryTree> build_trees(const Geometries& geometries, std::string_view builder,
+std::vector<GeometryTree> build_trees(const Geometries& geometries, const world::Scene& scene, std::string_view builder,
                                       const BuildOptions& options) {
   return make_trees(geometries, [&](const Collected& collected) {
-    GeometryTree tree = build_geometry_tree(collected, builder, options);
+    GeometryTree tree = build_geometry_tree(collected, scene, builder, options);
     tree.geometry_hash = hash_geometry(collected);
     return tree;
   });
@@ -395,7 +390,7 @@ class TreeSource {
     const double trees_ms = get(
         geometries.bounded_count(), warnings, [&] { trees = read_trees(geometries, *file_); },
         [&] {
-          trees = build_trees(geometries, builder_, options_);
+          trees = build_trees(geometries, scene, builder_, options_);
           is_built = true;
           return views_of(trees);
         });
@@ -564,8 +559,8 @@ PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const worl
 
 std::vector<GeometryTree> build_scene_trees(const world::Scene& scene, std::string_view builder,
                                             const BuildOptions& options) {
-  std::vector<GeometryTree> trees = build_trees(collect_geometries(scene), builder, options);
-  for (const GeometryTree& tree : trees) check_size(tree.view(), scene);
+  std::vector<GeometryTree> trees = build_trees(collect_geometries(scene), scene, builder, options);
+  trees.front().binary = {};
   return trees;
 }
 

@@ -131,7 +131,9 @@ vec3 EmissionMap::mean_on(const std::array<dvec2, 3>& corners, const Texture& te
       const dvec2 middle = (dvec2(x, y) + 0.5) * side;
       // A square of the plane may lie over several squares of the image where the image repeats.
       for (int corner = 0; corner < 4; ++corner) {
-        const dvec2 at = (dvec2(x, y) + dvec2(corner % 2, corner / 2)) * side - dvec2(corner % 2, corner / 2) * 1e-6;
+        // Behind the end of the box a mirrored image may hide a square.
+        const dvec2 to(corner % 2, corner / 2);
+        const dvec2 at = glm::min((dvec2(x, y) + to) * side - to * 1e-6, hi);
         const int column = texel_of(at.x, size_.x, texture.wrap_u) / static_cast<int>(side);
         const int row = texel_of(at.y, size_.y, texture.wrap_v) / static_cast<int>(side);
         const size_t square =

@@ -74,6 +74,18 @@ TEST(EmissionMapTest, NoTriangleThatShowsLightIsDark) {
   EXPECT_GT(dark_count, 300);
 }
 
+// A triangle shows a little of the last column, because texels are interpolated. A square of the plane contains this
+// column, its mirror image and the columns on both sides.
+TEST(EmissionMapTest, InterpolationAtAMirrorShowsLight) {
+  constexpr uint32_t kSize = 33;
+  std::vector<uint32_t> texels(size_t{kSize} * kSize, 0xFF000000);
+  for (size_t i = kSize - 1; i < texels.size(); i += kSize) texels[i] = 0xFFFFFFFF;
+  Texture texture;
+  texture.wrap_u = TextureWrap::kMirroredRepeat;
+  const std::array<dvec2, 3> corners = {dvec2(66.9, 10.0) / 33.0, dvec2(97.8, 10.0) / 33.0, dvec2(97.8, 11.0) / 33.0};
+  EXPECT_GT(EmissionMap(texels, uvec2(kSize)).mean_on(corners, texture).x, 0.0F);
+}
+
 // The mean is that of the texels on the triangle, and it has the channels of linear light.
 TEST(EmissionMapTest, MeansAreThoseOfTheTexels) {
   std::vector<uint32_t> texels(64 * 64, 0xFF000000);
