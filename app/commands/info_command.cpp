@@ -31,6 +31,7 @@
 #include "textures/pack_images.h"
 #include "work/pictures/load_posed.h"
 #include "work/pictures/scene_counts.h"
+#include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
 #include "work/spec/check_spec.h"
 #include "work/spec/environment_choice.h"
@@ -249,7 +250,7 @@ void print_scene_json(Scene scene, const EnvironmentChoice& surroundings) {
   json["counts"]["degenerate_triangles"] = lit.packed.degenerate_count;
   json["environment"] = json_of(scene.environment);
   json["display"] = json_of(display);
-  json["assumed"] = list_assumptions(scene, {}, lit.assumed, display);
+  json["assumed"] = list_assumptions(scene, {}, lit.assumed, usual_integrator(scene, LightChoice::kAuto), display);
   json["counts"]["instances"] = lit.packed.instance_count;
   json["features"] = feature_names(features_of(lit.flat));
   json["warnings"] = scene.warnings;

@@ -115,7 +115,8 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   const LookOptions& look = options.view.look;
   const AssumedLight assumed = light_up(*scene, look, opened.environment, upward_direction(*scene, view_options));
   const DisplayTransform display = choose_display(*scene, look, opened.view.mode.debug_view);
-  const std::string assumptions = describe_assumptions(*scene, view_options, assumed, display);
+  const std::string assumptions =
+      describe_assumptions(*scene, view_options, assumed, opened.view.mode.integrator, display);
   if (!assumptions.empty()) console.note(assumptions);
   check_lights(*scene, options.view.lights_off);
   opened.bounds = bounds_of(*scene);

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "job_fixture.h"
+#include "support/moving_gltf.h"
 
 namespace promin {
 namespace {
@@ -92,6 +93,58 @@ TEST_F(JobCliTest, FilesThatGlowLightThemselves) {
   EXPECT_THAT(run({"render", "glow.obj", "--size", "24", "18", "--explain", "12", "9"}).out,
               HasSubstr("emissive surface"));
   EXPECT_THAT(run({"info", "glow.obj", "--json"}).out, HasSubstr(note));
+}
+
+// The integrator of a film is that of its brightest pose. A lamp that moves is no brighter than one that rests.
+TEST_F(JobCliTest, FilmsHaveOneIntegrator) {
+  const auto write_lamp = [&](const std::string& file, float half, const std::string& target,
+                              const std::vector<float>& times, const std::vector<float>& values,
+                              const std::string& type) {
+    GltfBuilder gltf;
+    const auto add_square = [&](float side, float height, size_t material) {
+      const size_t corners =
+          gltf.add<float>({-side, height, -side, side, height, -side, side, height, side, -side, height, side}, "VEC3");
+      const size_t triangles = gltf.add<uint16_t>({2, 1, 0, 3, 2, 0}, "SCALAR");
+      gltf.json["meshes"].push_back(
+          {{"primitives",
+            {{{"attributes", {{"POSITION", corners}}}, {"indices", triangles}, {"material", material}}}}});
+      gltf.add_node({{"mesh", gltf.json["meshes"].size() - 1}});
+    };
+    gltf.json["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_animation_pointer"};
+    gltf.json["materials"] = {{{"name", "floor"}},
+                              {{"emissiveFactor", {1, 1, 1}},
+                               {"doubleSided", true},
+                               {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1.5}}}}}}};
+    add_square(2.0F, 0.0F, 0);
+    add_square(half, 1.0F, 1);
+    test::animate(gltf, 0, target, times, values, type);
+    write(file, gltf.text());
+  };
+  const auto make_film = [&](const std::string& file, OptionValues more) {
+    more.insert(more.begin(), {"render", file, "--frames", "0-1", "--fps", "1", "--size", "24", "18"});
+    const ProcessResult result = run(more);
+    expect_done(result);
+    return result.err;
+  };
+  const std::string note = "light from emissive surfaces (--integrator direct)";
+  write_lamp("fade.gltf", 0.5F, "/materials/1/extensions/KHR_materials_emissive_strength/emissiveStrength", {0, 1},
+             {0, 9}, "SCALAR");
+  EXPECT_THAT(make_film("fade.gltf", {"-o", "fade_#.exr"}), HasSubstr(note));
+  for (const char* frame : {"fade_0.exr", "fade_1.exr"}) {
+    EXPECT_THAT(read(frame), HasSubstr("promin:integrator")) << frame;
+  }
+  make_film("fade.gltf", {"-o", "cut_#.exr", "--job", "job", "--pieces", "3"});
+  EXPECT_THAT(read("job/job.json"), HasSubstr("\"integrator\": \"direct\""));
+  EXPECT_EQ(read("cut_0.exr") == read("fade_0.exr"), true);
+
+  std::vector<float> times;
+  std::vector<float> places;
+  for (int i = 0; i < 20; ++i) {
+    times.push_back(0.05F * static_cast<float>(i));
+    for (const float coordinate : {0.05F * static_cast<float>(i), 0.0F, 0.0F}) places.push_back(coordinate);
+  }
+  write_lamp("dim.gltf", 0.05F, "/nodes/1/translation", times, places, "VEC3");
+  EXPECT_THAT(make_film("dim.gltf", {"-o", "dim_#.exr"}), Not(HasSubstr(note)));
 }
 
 TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {

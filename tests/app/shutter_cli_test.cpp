@@ -112,6 +112,16 @@ TEST_F(ShutterCliTest, MetadataOfAPictureNameItsMoments) {
   // The moments depend on the frames per second.
   EXPECT_NE(frames({"--frames", "6", "--fps", "8"}, "b.exr").pixels, third.pixels);
   EXPECT_EQ(frames({"--frames", "3", "--fps", "4"}, "c.exr").pixels, third.pixels);
+  // Moments of a turntable depend on them only if the scene moves.
+  const OptionValues turn = {"bar.gltf", "--turntable", "8", "--frames",  "1", "--size",
+                             "8x8",      "-s",          "2", "--shutter", "1"};
+  render(turn, "e.exr");
+  EXPECT_THAT(read("e.exr"), has_entry("promin:shutter", "1"));
+  EXPECT_THAT(read("e.exr"), testing::Not(testing::HasSubstr("promin:fps")));
+  OptionValues moving = turn;
+  moving.insert(moving.end(), {"--animation", "0"});
+  render(moving, "f.exr");
+  EXPECT_THAT(read("f.exr"), has_entry("promin:fps", "24"));
   film({"-s", "1"}, "d.exr");
   for (const char* name : {"promin:shutter", "promin:fps", "promin:loop"}) {
     EXPECT_THAT(read("d.exr"), testing::Not(testing::HasSubstr(name)));

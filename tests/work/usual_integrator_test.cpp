@@ -112,12 +112,17 @@ TEST(UsualIntegratorTest, MeshesOfSeveralMaterialsAndShapesAreLamps) {
 }
 
 TEST(UsualIntegratorTest, InvalidScenesAreRead) {
-  Scene scene = make_room(10.0F, 0.2F);
+  Scene scene = make_room(10.0F, 0.3F);
   scene.objects[0].material = 1000;
   scene.materials[kGlow].emissive_texture.texture = 0;
   scene.textures = {Texture{.image = 1000}};
   scene.objects.push_back(Object{.name = "no geometry"});
+  EXPECT_TRUE(lights_itself(scene)) << "a missing image is white, and a missing material emits no light";
+  scene.materials[kGlow].emissive_texture.texture = 1000;
+  EXPECT_TRUE(lights_itself(scene)) << "a missing texture is white";
+  scene.objects[1].material = 1000;
   EXPECT_FALSE(lights_itself(scene));
+  scene.objects[1].material = kGlow;
   scene.materials[kGlow].emissive = vec3(std::numeric_limits<float>::quiet_NaN());
   EXPECT_FALSE(lights_itself(scene));
 }

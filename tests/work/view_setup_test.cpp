@@ -360,7 +360,9 @@ TEST(ChooseDisplayTest, OptionsComeBeforeTheScene) {
 /// Returns the notes on a scene for a picture that is displayed.
 std::string assumptions_of(Scene scene, const ViewOptions& options) {
   const AssumedLight assumed = light_up(scene, options.look);
-  return describe_assumptions(scene, options, assumed, choose_display(scene, options.look, DebugView::kNone));
+  const Integrator integrator = mode_of(scene, options).integrator;
+  return describe_assumptions(scene, options, assumed, integrator,
+                              choose_display(scene, options.look, DebugView::kNone));
 }
 
 TEST(DescribeAssumptionsTest, OneSentenceTellsAll) {
@@ -418,7 +420,7 @@ TEST(DescribeAssumptionsTest, WhatTheUserSaysIsNotAssumed) {
   Scene scene;
   scene.cameras = {Camera()};
   const AssumedLight assumed = light_up(scene, {});
-  EXPECT_EQ(describe_assumptions(scene, {}, assumed, std::nullopt),
+  EXPECT_EQ(describe_assumptions(scene, {}, assumed, Integrator::kWhitted, std::nullopt),
             "assumed: the light of a studio, a grey background");
 }
 

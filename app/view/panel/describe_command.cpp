@@ -96,7 +96,9 @@ std::string describe_command(const DescribedScene& scene, const View& view) {
     command += fmt::format(" --shading {}", debug_view_names()[static_cast<size_t>(view.mode.debug_view)]);
   }
   if (!scene.has_shadows) command += " --no-shadows";
-  if (view.mode.integrator != Integrator::kWhitted || scene.usual_integrator != Integrator::kWhitted) {
+  // The usual integrator is that of the pose in which the scene was opened.
+  if (view.mode.integrator != Integrator::kWhitted || scene.usual_integrator != Integrator::kWhitted ||
+      scene.motion.time_s) {
     command += fmt::format(" --integrator {}", integrator_names()[static_cast<size_t>(view.mode.integrator)]);
   }
   if (!scene.lights_off.empty()) command += fmt::format(" --lights-off {}", fmt::join(scene.lights_off, ","));

@@ -24,6 +24,10 @@ jobs::Manifest make_manifest(const RenderSpec& spec, const PictureRun& run, std:
   jobs::Manifest manifest = begin_manifest(kPictureJob, list_bits(spec));
   const uvec2& size = run.stats.view->size;
   manifest.options.emplace_back("size", fmt::format("{}x{}", size.x, size.y));
+  const Integrator integrator = run.stats.view->mode.integrator;
+  if (!spec.view.integrator && integrator != Integrator::kWhitted) {
+    manifest.options.emplace_back("integrator", integrator_names()[static_cast<size_t>(integrator)]);
+  }
   add_scene_files(manifest, run.sources);
   if (run.options.path) manifest.files.push_back(jobs::describe_input(*run.options.path));
   const auto& panorama = run.options.view.environment.panorama;

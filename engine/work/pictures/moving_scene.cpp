@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "work/pictures/moving_scene.h"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
+#include "core/rounding.h"
 #include "motion/envelope.h"
 #include "scene/features.h"
 #include "scene/world_scene.h"
+#include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
 
 namespace promin::work {
@@ -54,6 +57,20 @@ void MovingScene::take_light(const Scene& lit_envelope, const std::vector<uint32
   lit_.objects.clear();
   lights_off_ = lights_off;
   for (const double time_s : times_) features_ |= find_features(at(time_s));
+}
+
+bool MovingScene::lights_itself() const {
+  const auto emits = [](const Material& material) { return max_component(material.emissive) > 0.0F; };
+  const auto moves_emission = [](const AnimationChannel& channel) {
+    return channel.property == AnimatedProperty::kEmissive || channel.property == AnimatedProperty::kEmissiveStrength;
+  };
+  const bool may_emit =
+      std::ranges::any_of(scene_.materials, emits) || std::ranges::any_of(clip_.animations, [&](uint32_t animation) {
+        return std::ranges::any_of(scene_.motion->animations[animation].channels, moves_emission);
+      });
+  return may_emit && std::ranges::any_of(times_, [&](double time_s) {
+           return work::lights_itself(scene_at(scene_, {.animations = clip_.animations, .time_s = time_s}));
+         });
 }
 
 Scene MovingScene::at(double time_s) const {

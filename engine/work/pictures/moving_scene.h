@@ -35,6 +35,8 @@ class MovingScene {
   /// Uses the light and the environment of the envelope after light_up() for all frames, with some lights off.
   void take_light(const Scene& lit_envelope, const std::vector<uint32_t>& lights_off);
   double duration_s() const { return duration_s_; }
+  /// Returns whether lights_itself() is true for a pose at a time of a key.
+  bool lights_itself() const;
   /// Returns the features of pictures of all poses at the times of keys, so that all frames use the same kernels.
   const FeatureMask& features() const { return features_; }
   /// Returns the scene at a time, with its light. Throws InputError.

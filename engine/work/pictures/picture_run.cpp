@@ -52,6 +52,12 @@ std::shared_ptr<MovingScene> make_moving(Scene scene, const RenderSpec& options)
   return std::make_shared<MovingScene>(std::move(scene), std::move(clip));
 }
 
+/// Returns the integrator of all frames if the options name none. `moving` is null if the scene does not move.
+Integrator usual_integrator_of(const Scene& scene, const MovingScene* moving, LightChoice light) {
+  if (moving == nullptr || light == LightChoice::kSoft) return usual_integrator(scene, light);
+  return moving->lights_itself() ? Integrator::kDirect : Integrator::kWhitted;
+}
+
 }  // namespace
 
 PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console) {
@@ -60,7 +66,9 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   const RenderSpec& options = run.options;
   RunStats& stats = run.stats;
   stats.shutter = options.shutter;
-  const bool has_fps = options.fps ? *options.fps != PathPictures::kStored : !options.path;
+  // A path without --fps has the times of its file. A turntable of a resting scene has no times.
+  const bool has_fps =
+      options.path ? options.fps.value_or(PathPictures::kStored) != PathPictures::kStored : options.moves_scene();
   if (options.shutter && has_fps) stats.shutter_fps = options.fps.value_or(kDefaultFps);
   std::shared_ptr<MovingScene> moving;
   if (options.moves_scene()) {
@@ -82,9 +90,13 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   ViewOptions view = options.view;
   view.given_camera = run.frames.front().camera;
   view.shows_all_sides = options.turntable.has_value();
-  stats.view = make_view(scene, view, console);
-  stats.usual_integrator = usual_integrator(scene, view.look.light);
-  run.options.view.integrator = stats.view->mode.integrator;
+  stats.has_named_integrator = view.integrator.has_value();
+  const Integrator integrator =
+      view.integrator ? *view.integrator : usual_integrator_of(scene, moving.get(), view.look.light);
+  run.options.view.integrator = integrator;
+  ViewOptions complete = view;
+  complete.integrator = integrator;
+  stats.view = make_view(scene, complete, console);
   if (options.turntable) turn_frames(run.frames, *options.turntable, scene, view, stats.view->camera);
   stats.view->error_target = options.error.error_target();
   check_explained_pixel(options, stats.view->size);
@@ -99,8 +111,8 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   // If errors are measured as displayed, the display also affects the bits of an EXR.
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||
                             (stats.view->error_target && stats.view->error_target->display);
-  const std::string assumptions =
-      describe_assumptions(scene, view, assumed, is_displayed ? std::optional(stats.display) : std::nullopt);
+  const std::string assumptions = describe_assumptions(scene, view, assumed, integrator,
+                                                       is_displayed ? std::optional(stats.display) : std::nullopt);
   if (!assumptions.empty()) console.note(assumptions);
   // The pieces of a job may be displayed later, so they keep this AOV.
   const bool keeps_unlit =

@@ -130,7 +130,7 @@ Metadata describe_picture(const RunStats& stats) {
                        {"promin:max_depth", std::to_string(stats.view->max_depth)},
                        {"promin:exposure_ev", fmt::format("{:g}", stats.display.exposure_ev)},
                        {"promin:tone_mapping", name_of(stats.display.tone_mapping)}};
-  if (stats.view->mode.integrator != Integrator::kWhitted || stats.usual_integrator != Integrator::kWhitted) {
+  if (stats.view->mode.integrator != Integrator::kWhitted || stats.has_named_integrator) {
     metadata.emplace_back("promin:integrator", integrator_names()[static_cast<size_t>(stats.view->mode.integrator)]);
     metadata.emplace_back("promin:seed", std::to_string(stats.view->seed));
   }

@@ -23,9 +23,10 @@ struct RunStats {
   std::string scene_file;
   /// The pose of the scene.
   MotionOptions motion = {};
-  /// The shutter (RenderSpec::shutter), and the frames per second on which its moments depend; empty for no motion
-  /// blur.
+  /// The shutter (RenderSpec::shutter); empty for no motion blur.
   std::optional<double> shutter = std::nullopt;
+  /// The frames per second on which the moments of the shutter depend; empty if they depend on none, or only on the
+  /// file of a camera path.
   std::optional<double> shutter_fps = std::nullopt;
   /// The choice of instances.
   Instancing instances = Instancing::kAuto;
@@ -35,8 +36,8 @@ struct RunStats {
   size_t light_count = 0;
   /// The view; only set for pictures.
   std::optional<View> view;
-  /// The integrator of a picture whose options name none.
-  Integrator usual_integrator = Integrator::kWhitted;
+  /// True if the options name an integrator.
+  bool has_named_integrator = false;
   /// The display transform for 8-bit files.
   DisplayTransform display;
   SetupStats setup;

@@ -27,6 +27,9 @@ constexpr size_t kMostTexels = 4096;
 /// The largest number of lamps that are compared with each object. The brightest are.
 constexpr size_t kMostLamps = 64;
 
+/// The largest number of triangles of lamps. Renderers leave out instances with more of them (kMostInstancedEmitters).
+constexpr uint64_t kMostTriangles = uint64_t{1} << 22;
+
 /// An object whose surfaces emit light.
 struct GlowingObject {
   /// The sum of area times mean radiance.
@@ -134,6 +137,7 @@ bool lights_itself(const Scene& scene) {
   std::vector<Bounds> receivers;
   Bounds whole;
   double flux = 0.0;
+  uint64_t triangle_count = 0;
   size_t object_count = 0;
   const std::vector<Bounds> boxes = bounds_of_objects(scene);
   for (size_t i = 0; i < boxes.size(); ++i) {
@@ -149,6 +153,8 @@ bool lights_itself(const Scene& scene) {
       receivers.push_back(box);
     }
     if (!any_material(geometry, object, [&](uint32_t material) { return emissions.at(material) > 0.0; })) continue;
+    if (const auto* mesh = std::get_if<Mesh>(&geometry)) triangle_count += mesh->triangles.size();
+    if (triangle_count > kMostTriangles) return false;
     lamps.push_back({flux_of(scene, object, box, emissions), 0.5 * (dvec3(box.lo) + dvec3(box.hi))});
     flux += lamps.back().flux;
   }

@@ -11,7 +11,8 @@ namespace promin::work {
 /// Returns whether the surfaces of a scene emit enough light to light others (docs/model.md, "Surfaces that emit
 /// light"). Only surfaces whose radiance is above 1 in a channel count. Their light must give a white surface a
 /// radiance of at least 1/256: either that of all objects, spread over a sphere around the scene, or that of one
-/// object, spread over a sphere around it that contains another object. Throws InputError if a mesh lacks a position.
+/// object, spread over a sphere around it that contains another object. False if the lamps have more than 4 million
+/// triangles. Throws InputError if a mesh lacks a position.
 bool lights_itself(const Scene& scene);
 
 /// Returns the integrator of pictures whose options name none.

@@ -166,14 +166,14 @@ std::string describe_light(const AssumedLight& light) {
 }
 
 std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
-                                          const std::optional<DisplayTransform>& display) {
+                                          Integrator integrator, const std::optional<DisplayTransform>& display) {
   const LookOptions& look = options.look;
   std::vector<std::string> parts;
   if (is_camera_assumed(scene, options)) parts.push_back(describe_framing(scene, options.pose));
   if (scene.cameras.size() > 1 && is_file_camera_unchanged(scene, options))
     parts.push_back(fmt::format("the first of the file's {} cameras", scene.cameras.size()));
   if (look.light == LightChoice::kAuto && !describe_light(light).empty()) parts.push_back(describe_light(light));
-  if (!options.integrator && look.light != LightChoice::kSoft && lights_itself(scene)) {
+  if (!options.integrator && look.light != LightChoice::kSoft && integrator == Integrator::kDirect) {
     parts.emplace_back("light from emissive surfaces (--integrator direct)");
   }
   if (light.has_background) parts.emplace_back("a grey background");
@@ -187,8 +187,8 @@ std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions&
 }
 
 std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
-                                 const std::optional<DisplayTransform>& display) {
-  const std::vector<std::string> parts = list_assumptions(scene, options, light, display);
+                                 Integrator integrator, const std::optional<DisplayTransform>& display) {
+  const std::vector<std::string> parts = list_assumptions(scene, options, light, integrator, display);
   return parts.empty() ? "" : fmt::format("assumed: {}", fmt::join(parts, ", "));
 }
 

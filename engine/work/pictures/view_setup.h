@@ -58,12 +58,13 @@ bool shows_unlit_apart(const Scene& scene, const Environment& environment, const
                        const DisplayTransform& display);
 
 /// Returns the assumptions that neither the file nor the options specify, with a few words each. `light` is what
-/// light_up() has added to the scene. `display` is the display transform if the picture is displayed.
+/// light_up() has added to the scene. `integrator` is that of the pictures. `display` is the display transform if the
+/// picture is displayed.
 std::vector<std::string> list_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
-                                          const std::optional<DisplayTransform>& display);
+                                          Integrator integrator, const std::optional<DisplayTransform>& display);
 /// Returns the assumptions as one sentence for promin's notes; empty if there are none.
 std::string describe_assumptions(const Scene& scene, const ViewOptions& options, const AssumedLight& light,
-                                 const std::optional<DisplayTransform>& display);
+                                 Integrator integrator, const std::optional<DisplayTransform>& display);
 
 /// Returns a text for the camera that frames a scene without a camera, for describe_assumptions() and `promin info`.
 std::string describe_framing(const Scene& scene, const PoseOptions& pose);
