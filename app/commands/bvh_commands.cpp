@@ -79,6 +79,17 @@ Scene load(const BvhOptions& options, const Console& console) {
   return scene;
 }
 
+/// Returns the numbers of references and primitives of all trees.
+std::string describe_references(std::span<const TreeView> trees) {
+  size_t references = 0;
+  size_t primitives = 0;
+  for (const TreeView& tree : trees) {
+    references += tree.references.size();
+    primitives += tree.primitive_count;
+  }
+  return fmt::format("{} references to {} primitives", references, primitives);
+}
+
 void build(const BvhOptions& options) {
   if (lower_case_ending(options.file) != ".pbvh") {
     throw UsageError({"output.extension",
@@ -98,12 +109,8 @@ void build(const BvhOptions& options) {
   }
   const double build_ms = building.ms();
   std::vector<TreeView> views;
-  size_t references = 0;
-  size_t primitives = 0;
   for (const GeometryTree& tree : trees) {
     views.push_back(tree.view());
-    references += tree.references.size();
-    primitives += tree.primitive_count;
     console.detail(fmt::format("built {} nodes, depth {}, SAH cost {:.4g}", tree.stats.nodes, tree.stats.depth,
                                tree.stats.sah_cost));
   }
@@ -115,8 +122,8 @@ void build(const BvhOptions& options) {
   if (!console.is_quiet()) {
     const std::string cost = trees.size() > 1 ? fmt::format("in {} trees", trees.size())
                                               : fmt::format("SAH cost {:.4g}", trees.front().stats.sah_cost);
-    fmt::print("{} references to {} primitives by {}, {}, in {:.1f} ms: {}\n", references, primitives, options.builder,
-               cost, build_ms, options.file.string());
+    fmt::print("{} by {}, {}, in {:.1f} ms: {}\n", describe_references(views), options.builder, cost, build_ms,
+               options.file.string());
   }
 }
 
@@ -188,15 +195,8 @@ void verify(const BvhOptions& options) {
   }
   if (console.is_quiet()) return;
   size_t nodes = 0;
-  size_t references = 0;
-  size_t primitives = 0;
-  for (const TreeView& tree : file.trees()) {
-    nodes += tree.nodes.size();
-    references += tree.references.size();
-    primitives += tree.primitive_count;
-  }
-  fmt::print("{} nodes, {} references to {} primitives, no fault: {}\n", nodes, references, primitives,
-             options.file.string());
+  for (const TreeView& tree : file.trees()) nodes += tree.nodes.size();
+  fmt::print("{} nodes, {}, no fault: {}\n", nodes, describe_references(file.trees()), options.file.string());
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
     view_options.given_camera = opened.replay->camera(0);
   }
   opened.view = make_view(*scene, view_options, console);
-  opened.usual_integrator = usual_integrator(*scene, view_options.look.light);
+  opened.usual_integrator =
+      view_options.integrator ? usual_integrator(*scene, view_options.look.light) : opened.view.mode.integrator;
   if (!options.replay) warn_of_empty_pictures(*scene, {&opened.view.camera, 1}, opened.view.size, console);
   const LookOptions& look = options.view.look;
   const AssumedLight assumed = light_up(*scene, look, opened.environment, upward_direction(*scene, view_options));

@@ -13,6 +13,7 @@
 
 #include "bvh/pack_tree.h"
 #include "bvh/read_node.h"
+#include "core/divide_up.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "promin/error.h"
@@ -56,7 +57,7 @@ struct Header {
   uint32_t further_kinds = 0;
 };
 /// A section begins at a multiple of this.
-constexpr size_t kSectionAlignment = sizeof(Node);
+constexpr uint64_t kSectionAlignment = sizeof(Node);
 static_assert(sizeof(Header) == 128 && sizeof(Header) % alignof(Node) == 0 && std::is_trivially_copyable_v<Header>);
 
 /// The largest stack that the traversal of a tree of kMaxBvhDepth can need: an entry for each node above the deepest
@@ -101,11 +102,6 @@ uint64_t hash_layout(uint32_t further_kinds) {
     if (((kFirstKindBits | further_kinds) >> kind & 1) != 0) hash.add(kind);
   }
   return hash.value();
-}
-
-/// Returns the place at which the next section begins if one ends here.
-constexpr uint64_t aligned(uint64_t size) {
-  return (size + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
 }
 
 uint64_t hash_section(Header header, std::span<const std::byte> nodes, std::span<const std::byte> references) {
@@ -267,7 +263,7 @@ TreeView read_section(std::span<const std::byte> all, uint64_t at, const fs::pat
   const uint64_t node_bytes = uint64_t{header.node_count} * sizeof(Node);
   const uint64_t reference_bytes = uint64_t{header.reference_count} * sizeof(uint32_t);
   end = at + sizeof(Header) + node_bytes + reference_bytes;
-  if (all.size() != end && all.size() < aligned(end) + sizeof(Header)) {
+  if (all.size() != end && all.size() < next_multiple(end, kSectionAlignment) + sizeof(Header)) {
     refuse("bvh.file.short", file,
            "the BVH file has " + std::to_string(all.size()) + " bytes, but its header declares " + std::to_string(end));
   }
@@ -324,7 +320,7 @@ BvhFile::BvhFile(const fs::path& file) : file_(file), mapped_(file) {
   uint64_t end = 0;
   trees_.push_back(read_section(bytes, 0, file, end));
   while (end < bytes.size()) {
-    const uint64_t next = aligned(end);
+    const uint64_t next = next_multiple(end, kSectionAlignment);
     const auto filling = bytes.subspan(end, next - end);
     const bool is_filled = std::ranges::all_of(filling, [](std::byte byte) { return byte == std::byte{0}; });
     if (!is_filled || std::memcmp(bytes.data() + next, kMagic.data(), kMagic.size()) != 0) {
@@ -347,13 +343,13 @@ void write_bvh_file(const fs::path& file, std::span<const TreeView> trees) {
   std::vector<Header> headers;
   for (const TreeView& tree : trees) headers.push_back(make_header(tree));
   std::vector<std::span<const std::byte>> parts;
-  size_t size = 0;
+  uint64_t size = 0;
   for (size_t i = 0; i < trees.size(); ++i) {
     const auto nodes = std::as_bytes(trees[i].nodes);
     const auto references = std::as_bytes(trees[i].references);
-    parts.push_back(std::span(kFilling).first(aligned(size) - size));
+    parts.push_back(std::span(kFilling).first(next_multiple(size, kSectionAlignment) - size));
     parts.insert(parts.end(), {std::as_bytes(std::span(&headers[i], 1)), nodes, references});
-    size = aligned(size) + sizeof(Header) + nodes.size() + references.size();
+    size = next_multiple(size, kSectionAlignment) + sizeof(Header) + nodes.size() + references.size();
   }
   write_file(file, parts);
 }

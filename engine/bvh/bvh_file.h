@@ -27,7 +27,8 @@ class BvhFile {
   const std::vector<TreeView>& trees() const { return trees_; }
   size_t size_bytes() const { return mapped_.bytes().size(); }
 
-  /// Returns the tree that was built from this geometry (hash_geometry). Throws InputError if there is none.
+  /// Returns the tree that was built from this geometry (hash_geometry). Throws InputError if the file does not have
+  /// it.
   const TreeView& find(uint64_t geometry_hash, size_t bounded_count) const;
 
  private:

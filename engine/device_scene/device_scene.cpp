@@ -81,17 +81,13 @@ bool gives_light(const Environment& environment) {
 /// At least the largest alignment that Vulkan allows a device to require for a texel view, in bytes.
 constexpr uint64_t kTexelViewAlignment = 256;
 
-constexpr uint64_t align(uint64_t offset, uint64_t alignment) {
-  return divide_up(offset, alignment) * alignment;
-}
-
 EmitterGeometry geometry_of(const PackedScene& packed) {
   return {packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, packed.surfaces.vertices.uvs};
 }
 
 /// Rounds the size of the stack up, so that scenes of about the same depth share pipelines.
 uint32_t round_stack(uint32_t entries) {
-  return divide_up(entries, 8U) * 8U;
+  return next_multiple(entries, 8U);
 }
 
 template <typename... Parts>
@@ -165,7 +161,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
       is_mostly_solids_(packed.solid_count > packed.bounded_count / 2) {
   const PlacedHead head = place_head(packed.surfaces);
   head_sizes_ = head.sizes();
-  const Placed image_words = place(packed.surfaces.images.words, align(head.end(), kTexelViewAlignment));
+  const Placed image_words = place(packed.surfaces.images.words, next_multiple(head.end(), kTexelViewAlignment));
   constants_.first_index.z = head.normals.first_index;
   constants_.first_index.w = head.colors.first_index;
   constants_.first_texture = uvec4(head.uvs.first_index, head.tangents.first_index, 0, image_words.first_index);

@@ -12,6 +12,7 @@
 
 #include "core/rounding.h"
 #include "scene/glass.h"
+#include "scene/layers.h"
 #include "scene/light_kinds.h"
 #include "shapes/shapes.h"
 
@@ -259,10 +260,6 @@ void add_table(std::span<const TableEntry> elements, float radiance_factor, Dire
 }
 
 }  // namespace
-
-bool emits_light(const Material& material) {
-  return !std::holds_alternative<Unlit>(material.model) && max_component(material.emissive) > 0.0F;
-}
 
 EmitterRanges::EmitterRanges(const PackedScene& packed)
     : own_count(packed.own_primitive_count()),

@@ -39,9 +39,6 @@ using EmissionMaps = std::vector<std::unique_ptr<const EmissionMap>>;
 EmissionMaps make_emission_maps(const PackedImages& images, std::span<const Texture> textures,
                                 std::span<const Material> materials);
 
-/// Returns whether the material emits light that other surfaces may receive.
-bool emits_light(const Material& material);
-
 /// The geometry in which emissive surfaces are searched, as on the device.
 struct EmitterGeometry {
   std::span<const layout::Primitive> primitives;

@@ -2,11 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <variant>
+
 #include "core/rounding.h"
 #include "promin/materials.h"
 
-// Functions for rare properties of metallic-roughness materials. Scenes without these properties do not pay for them.
+// Functions for rare properties of materials, most of them of metallic-roughness ones. Scenes without these properties
+// do not pay for them.
 namespace promin {
+
+/// Returns whether the material emits light that other surfaces may receive.
+inline bool emits_light(const Material& material) {
+  return !std::holds_alternative<Unlit>(material.model) && max_component(material.emissive) > 0.0F;
+}
 
 inline bool has_coat(const MetallicRoughness& material) {
   return material.clearcoat > 0.0F;

@@ -175,7 +175,7 @@ struct Share {
   uint64_t first = 0;
 
   /// Returns the number of words for the positions of levels. Texels of bundles begin at multiples of the stride.
-  uint64_t head() const { return divide_up(levels, stride) * stride; }
+  uint64_t head() const { return next_multiple(levels, stride); }
   uint64_t words() const { return head() + stride * (count_words(size, levels) - levels); }
 };
 

@@ -197,7 +197,7 @@ void ScenePreparer::pose(const ShownScene& shown, std::shared_ptr<const gpu::Dev
   is_posing_ = true;
   // Kernels are compiled for multiples of this number of entries.
   constexpr uint32_t kStackStep = 8;
-  stack_size_ = std::max(stack_size_, divide_up(shown.host->packed.stack_size, kStackStep) * kStackStep);
+  stack_size_ = std::max(stack_size_, next_multiple(shown.host->packed.stack_size, kStackStep));
   work_.start([this, device = std::move(device), request = asked_] {
     ReadyPicture ready = make_first(put_into_pose(*base_, request.motion), request, device);
     ready.scene->put();

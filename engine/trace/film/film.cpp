@@ -299,14 +299,14 @@ bool Film::fetches_film_texels() const {
 
 StreamShape Film::stream_shape(uint32_t pixel_count, uint32_t depth) const {
   if (!has_stream()) return {};
-  const uint32_t most_paths = std::min(device_->profile().most_stream_paths, divide_up(pixel_count, kLanes) * kLanes);
+  const uint32_t most_paths = std::min(device_->profile().most_stream_paths, next_multiple(pixel_count, kLanes));
   const SceneConstants& constants = scene_->constants();
   const uint32_t sources = constants.source_count(features_.has_any(layout::FEATURE_SKY_LIGHT));
   StreamShape shape = StreamShape::of(sources, features_, most_paths, depth);
   // The records of a path begin at a cache line if they fill one.
   constexpr uint32_t kLine = layout::STREAM_SCATTERED_RECORDS;
   const uint32_t before = layout::FILM_HEAD_TEXELS + pixel_count * records_.count + log_records_;
-  shape.first_record = divide_up(before, kLine) * kLine - layout::FILM_HEAD_TEXELS;
+  shape.first_record = next_multiple(before, kLine) - layout::FILM_HEAD_TEXELS;
   return shape;
 }
 

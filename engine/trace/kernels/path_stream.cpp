@@ -42,7 +42,8 @@ bool needs_nearest_blocker(FeatureMask features) {
   return features.has_any(layout::FEATURE_RAY_LOG | layout::FEATURE_BLENDING | layout::FEATURE_GLASS);
 }
 
-/// Returns whether the kernel that follows the paths traces their shadow rays too (shaders/picture/turns.glsl).
+/// Returns whether the kernel that follows the paths traces their shadow rays too (TRACES_SHADOWS in
+/// shaders/picture/stream.glsl).
 bool traces_shadows_with_paths(FeatureMask features) {
   return features.has_any(layout::FEATURE_SCATTERING) &&
          !features.has_any(layout::FEATURE_BLENDING | layout::FEATURE_GLASS | layout::FEATURE_SHADOW_CATCHERS |

@@ -12,6 +12,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/divide_up.h"
+
 namespace promin::work {
 namespace {
 
@@ -21,10 +23,6 @@ struct Search {
   std::string id;
 };
 
-size_t align(size_t size, size_t alignment) {
-  return (size + alignment - 1) / alignment * alignment;
-}
-
 /// Returns the build id in the notes of a segment; empty if there is none.
 std::string find_note(std::span<const unsigned char> notes, size_t alignment) {
   constexpr std::string_view kOwner("GNU", 4);
@@ -32,7 +30,7 @@ std::string find_note(std::span<const unsigned char> notes, size_t alignment) {
     ElfW(Nhdr) head;
     std::memcpy(&head, &notes[at], sizeof(head));
     const size_t name = at + sizeof(head);
-    const size_t content = align(name + head.n_namesz, alignment);
+    const size_t content = next_multiple(name + head.n_namesz, alignment);
     const size_t end = content + head.n_descsz;
     if (end > notes.size()) return "";
     const std::string_view owner(reinterpret_cast<const char*>(&notes[name]), head.n_namesz);
@@ -41,7 +39,7 @@ std::string find_note(std::span<const unsigned char> notes, size_t alignment) {
       for (const unsigned char byte : notes.subspan(content, head.n_descsz)) digits += fmt::format("{:02x}", byte);
       return digits;
     }
-    at = align(end, alignment);
+    at = next_multiple(end, alignment);
   }
   return "";
 }

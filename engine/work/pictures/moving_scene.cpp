@@ -6,9 +6,9 @@
 #include <utility>
 #include <variant>
 
-#include "core/rounding.h"
 #include "motion/envelope.h"
 #include "scene/features.h"
+#include "scene/layers.h"
 #include "scene/world_scene.h"
 #include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
@@ -60,14 +60,13 @@ void MovingScene::take_light(const Scene& lit_envelope, const std::vector<uint32
 }
 
 bool MovingScene::lights_itself() const {
-  const auto emits = [](const Material& material) { return max_component(material.emissive) > 0.0F; };
   const auto moves_emission = [](const AnimationChannel& channel) {
     return channel.property == AnimatedProperty::kEmissive || channel.property == AnimatedProperty::kEmissiveStrength;
   };
-  const bool may_emit =
-      std::ranges::any_of(scene_.materials, emits) || std::ranges::any_of(clip_.animations, [&](uint32_t animation) {
-        return std::ranges::any_of(scene_.motion->animations[animation].channels, moves_emission);
-      });
+  const bool may_emit = std::ranges::any_of(scene_.materials, emits_light) ||
+                        std::ranges::any_of(clip_.animations, [&](uint32_t animation) {
+                          return std::ranges::any_of(scene_.motion->animations[animation].channels, moves_emission);
+                        });
   return may_emit && std::ranges::any_of(times_, [&](double time_s) {
            return work::lights_itself(scene_at(scene_, {.animations = clip_.animations, .time_s = time_s}));
          });

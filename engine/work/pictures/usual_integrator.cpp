@@ -11,6 +11,7 @@
 
 #include "core/rounding.h"
 #include "core/srgb.h"
+#include "scene/framing.h"
 #include "scene/glass.h"
 #include "scene/placed_bounds.h"
 
@@ -101,7 +102,7 @@ bool any_material(const Geometry& geometry, const Object& object, const Conditio
 /// Returns the sum of area times emission of an object.
 double flux_of(const Scene& scene, const Object& object, const Bounds& box, const Emissions& emissions) {
   const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
-  // The box of a shape has about the area of the shape. A plane has none.
+  // The box of a shape has about the area of the shape. The box of a plane is empty.
   if (mesh == nullptr) return emissions.at(object.material) * 2.0 * box.half_area();
   const glm::dmat3 turn(object.world_from_object);
   double sum = 0.0;
@@ -155,7 +156,7 @@ bool lights_itself(const Scene& scene) {
     if (!any_material(geometry, object, [&](uint32_t material) { return emissions.at(material) > 0.0; })) continue;
     if (const auto* mesh = std::get_if<Mesh>(&geometry)) triangle_count += mesh->triangles.size();
     if (triangle_count > kMostTriangles) return false;
-    lamps.push_back({flux_of(scene, object, box, emissions), 0.5 * (dvec3(box.lo) + dvec3(box.hi))});
+    lamps.push_back({flux_of(scene, object, box, emissions), middle_of(box)});
     flux += lamps.back().flux;
   }
   const bool is_alone = object_count == 1 && receivers.empty();
