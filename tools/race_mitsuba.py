@@ -1,30 +1,40 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The promin developers
 # SPDX-License-Identifier: Apache-2.0
-"""Compares the speed and the noise of promin's sampled light with Mitsuba 3, in one run on one machine.
+"""Compares the speed and the noise of promin's sampled light with Mitsuba 3 and Cycles, in one run on one machine.
 
-The scene is a glTF file of meshes with diffuse materials (factors only) and one camera. Mitsuba renders its emissive
-meshes; a second file may have the same scene with an area light for promin. Both programs render the same picture. The
+The scene is a glTF file of meshes with diffuse materials (factors only) and one camera. The peers render its emissive
+meshes; a second file may have the same scene with an area light for promin. All programs render the same picture. The
 errors are those of the pixels that are not next to an emissive surface, compared with a picture of Mitsuba with many
 samples, without the noise of that picture. The times are CPU times of tracing on all cores, so other programs disturb
 them little: the difference of a run and of a short run, which contains loading and compiling. They are medians of
 several runs that alternate.
 
-Needs `pip install mitsuba numpy`. Mitsuba's LLVM variant needs LLVM 16 or later (DRJIT_LIBLLVM_PATH).
+Needs `pip install mitsuba numpy`. Mitsuba's LLVM variant needs LLVM 16 or later (DRJIT_LIBLLVM_PATH). Cycles takes part
+where `bpy` is installed (`pip install bpy`, tried with 5.0.1).
 """
 
 import argparse
+import contextlib
 import json
 import math
+import os
 import pathlib
 import resource
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 
 import mitsuba as mi
 import numpy as np
+
+try:
+    import bpy
+    import mathutils
+except ImportError:
+    bpy = None
 
 _FORMATS = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 _COLUMNS = {"SCALAR": 1, "VEC3": 3}
@@ -127,6 +137,99 @@ class Mitsuba:
         return sum(parts) / len(parts)
 
 
+class Cycles:
+    """Blender's renderer, where `bpy` is installed."""
+
+    name = "Cycles"
+
+    def __init__(self, arguments, folder):
+        self.arguments = arguments
+        self.file = folder / "cycles.exr"
+        model = Model(arguments.scene)
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        scene = bpy.context.scene
+        scene.world = None
+        for positions, triangles, color, radiance in model.meshes():
+            mesh = bpy.data.meshes.new("mesh")
+            mesh.from_pydata(positions.tolist(), [], triangles.tolist())
+            mesh.materials.append(material_of_cycles(color, radiance))
+            scene.collection.objects.link(bpy.data.objects.new("object", mesh))
+        matrix, field = model.camera()
+        lens = bpy.data.cameras.new("camera")
+        lens.sensor_fit, lens.lens_unit, lens.angle = "VERTICAL", "FOV", math.radians(field)
+        scene.camera = bpy.data.objects.new("camera", lens)
+        scene.collection.objects.link(scene.camera)
+        scene.camera.matrix_world = mathutils.Matrix(matrix.tolist())
+        render, cycles = scene.render, scene.cycles
+        render.engine = "CYCLES"
+        render.resolution_x = render.resolution_y = arguments.size
+        render.threads_mode, render.threads = "FIXED", len(os.sched_getaffinity(0))
+        render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+        render.filepath = str(self.file)
+        scene.view_settings.view_transform = "Raw"
+        # The same pixels and paths as the others: no denoiser, no samples left out, no clamps, a box as the filter.
+        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        cycles.light_sampling_threshold = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+        cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
+        cycles.max_bounces = cycles.diffuse_bounces = max(arguments.depth - 2, 0)
+        cycles.min_light_bounces = cycles.max_bounces
+
+    def run(self, samples, seed):
+        bpy.context.scene.cycles.samples = samples
+        bpy.context.scene.cycles.seed = seed
+        begin = time.process_time()
+        with without_output():
+            bpy.ops.render.render(write_still=True)
+        return time.process_time() - begin
+
+    def render(self, samples, seed=0):
+        """Returns the picture and the seconds of tracing: those of a long run less those of a short run."""
+        seconds = self.run(samples + 1, seed) - self.run(1, seed)
+        self.run(samples, seed)
+        return read_exr(self.file), seconds
+
+
+def material_of_cycles(color, radiance):
+    """Returns Lambert's material, which emits from the front alone, as in glTF."""
+    material = bpy.data.materials.new("material")
+    material.cycles.emission_sampling = "FRONT" if any(radiance) else "NONE"
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    diffuse, output = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeOutputMaterial")
+    diffuse.inputs["Color"].default_value = [*color, 1.0]
+    links.new(diffuse.outputs[0], output.inputs["Surface"])
+    if any(radiance):
+        emission, sides, front = (nodes.new(f"ShaderNode{name}") for name in ("Emission", "NewGeometry", "Math"))
+        front.operation = "SUBTRACT"
+        front.inputs[0].default_value = 1.0
+        strength = max(radiance)
+        emission.inputs["Color"].default_value = [*(value / strength for value in radiance), 1.0]
+        scaled, total = nodes.new("ShaderNodeMath"), nodes.new("ShaderNodeAddShader")
+        scaled.operation = "MULTIPLY"
+        scaled.inputs[1].default_value = strength
+        links.new(sides.outputs["Backfacing"], front.inputs[1])
+        links.new(front.outputs[0], scaled.inputs[0])
+        links.new(scaled.outputs[0], emission.inputs["Strength"])
+        links.new(diffuse.outputs[0], total.inputs[0])
+        links.new(emission.outputs[0], total.inputs[1])
+        links.new(total.outputs[0], output.inputs["Surface"])
+    return material
+
+
+@contextlib.contextmanager
+def without_output():
+    """Blender prints progress from C, past sys.stdout."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
 class Promin:
     name = "promin"
 
@@ -187,7 +290,7 @@ def plot(path, title, points):
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(5.5, 3.5))
-    for (name, measured), marker in zip(points.items(), "os^"):
+    for (name, measured), marker in zip(points.items(), "os^v"):
         axes.loglog(*zip(*sorted(measured)), marker=marker, label=name)
     axes.set(xlabel="CPU seconds of tracing", ylabel="RMSE of lit surfaces", title=title)
     axes.grid(True, which="both", alpha=0.3)
@@ -212,6 +315,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         promin = Promin(arguments, pathlib.Path(folder))
         peers = [Mitsuba(arguments, sampler) for sampler in ("independent", "multijitter")]
+        if bpy:
+            peers.append(Cycles(arguments, pathlib.Path(folder)))
         truth = peers[0].reference(arguments.reference)
         # Without bounces, only emissive surfaces are visible.
         lamps = np.pad(peers[0].render(16, depth=1)[0].max(axis=2) > 0, 1)
@@ -231,20 +336,22 @@ def main():
         counts = [max(arguments.samples * 2**power // 16, 1) for power in range(7)]
         pictures = {samples: promin.render(samples)[0] for samples in counts}
         errors = {samples: error_of(picture) for samples, picture in pictures.items()}
-        means = [float(np.mean(each[surfaces])) for each in (pictures[counts[-1]], truth)]
+        mean = float(np.mean(truth[surfaces]))
         times = {each.name: [] for each in [promin, *peers]}
-        noise = {}
+        noise, means = {}, {}
         for _ in range(arguments.runs):
             for each in [promin, *peers]:
                 picture, seconds = each.render(arguments.samples)
                 times[each.name].append(seconds)
                 noise[each.name] = error_of(picture)
+                means[each.name] = float(np.mean(picture[surfaces])) / mean
         paths = arguments.size**2 * arguments.samples / 1e6
-        print(f"Ratio of means of surfaces: {means[0] / means[1]:.4f}")
-        print("| renderer | samples | CPU seconds | million paths a CPU second | RMSE |\n|---|---|---|---|---|")
+        print("| renderer | samples | CPU seconds | million paths a CPU second | RMSE | mean over the reference's |")
+        print("|---|---|---|---|---|---|")
         for name, seconds in times.items():
             middle = statistics.median(seconds)
-            print(f"| {name} | {arguments.samples} | {middle:.2f} | {paths / middle:.3f} | {noise[name]:.5f} |")
+            figures = f"{middle:.2f} | {paths / middle:.3f} | {noise[name]:.5f} | {means[name]:.4f}"
+            print(f"| {name} | {arguments.samples} | {figures} |")
         rate = arguments.samples / statistics.median(times[promin.name])
         if arguments.plot:
             a_sample = 1.0 / rate
