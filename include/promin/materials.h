@@ -151,7 +151,8 @@ struct Unlit {
   /// True if the surface shows only the shadows on it: what is behind it, multiplied by the fraction of light that
   /// arrives. Only light from infinity counts: directional lights, and the environment with Integrator::kDirect or
   /// kPath. `color` is then the light that arrives without shadows: the irradiance divided by pi. In pictures with
-  /// alpha, the alpha of the surface is the fraction of light that is missing.
+  /// alpha, the alpha of the surface is the fraction of light that is missing. A plane that catches shadows blocks no
+  /// light.
   bool catches_shadows = false;
 };
 

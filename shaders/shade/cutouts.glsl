@@ -28,6 +28,10 @@ bool may_have_holes(uint index) {
   return has_holes(material_of(surface), surface);
 }
 
+bool is_catcher(uint index) {
+  return (flags_of(material_of(load_surface_of(index, PART_SIDE))) & MATERIAL_CATCHES_SHADOWS) != 0u;
+}
+
 // Returns the alpha of the material, multiplied by the alphas of the vertices and of the texture.
 float alpha_at(MaterialRecord material, Primitive p, SurfaceRecord surface, vec3 weights, float facing,
                float cone_width) {

@@ -4,3 +4,4 @@
 
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge) { return false; }
 bool may_have_holes(uint index) { return false; }
+bool is_catcher(uint index) { return false; }

@@ -98,6 +98,37 @@ TEST_F(GroundTest, OutsideOfShadowsTheGroundIsInvisible) {
   }
 }
 
+// Light from below the ground arrives at objects, as without a ground, whether or not surfaces transmit light.
+TEST_F(GroundTest, TheGroundBlocksNoLight) {
+  world::Scene scene = make_caught_scene(0.7F);
+  scene.lights.front().direction = vec3(0, 1, 0);
+  scene.lights.front().angle = 0.2F;
+  View view;
+  view.size = uvec2(16);
+  view.camera.eye = vec3(0.0F, kBallHeight, 3.0F);
+  view.camera.look = vec3(0, 0, -1);
+  view.camera.up = vec3(0, 1, 0);
+  view.camera.yfov = 0.2F;
+  view.samples_per_pixel = 2;
+  for (const bool has_glass : {false, true}) {
+    if (has_glass) {
+      Phong glass;
+      glass.transmission = vec3(1.0F);
+      scene.materials.push_back({.name = "", .model = glass});
+      scene.objects.push_back({"window", world::Sphere{vec3(0.0F, 50.0F, 0.0F), 1.0F}, 2});
+    }
+    for (const Integrator integrator : {Integrator::kWhitted, Integrator::kDirect}) {
+      view.mode.integrator = integrator;
+      world::Scene floating = scene;
+      floating.objects.erase(floating.objects.begin() + 1);
+      const Image expected = make_renderer(device(), floating).render(view).image;
+      EXPECT_TRUE(test::has_same_bits(make_renderer(device(), scene).render(view).image, expected)) << has_glass;
+      // The lower half of the ball is brighter.
+      EXPECT_GT(expected.pixels[15 * 16 + 8].x, expected.pixels[8].x + 0.1F);
+    }
+  }
+}
+
 // With Whitted's integrator only lights cast shadows.
 TEST_F(GroundTest, LightsCastHardShadowsWithoutTheSky) {
   View view = make_ground_view(0.0F);
