@@ -115,11 +115,42 @@ TEST_F(ProgressivePictureTest, EveryErrorIsWhatTheRendererGives) {
     EXPECT_EQ(error.largest_claim, expected.error->largest_claim);
     EXPECT_EQ(error.unmet_pixels, expected.error->unmet_pixels);
     EXPECT_EQ(error.samples, expected.error->samples);
+    const uint64_t area = uint64_t{kPictureSize.x} * kPictureSize.y;
+    if (error.target == view.error_target->error) {
+      EXPECT_EQ(picture.shown()->finished_pixels, area - error.unmet_pixels);
+    } else {
+      EXPECT_LT(picture.shown()->finished_pixels, area - error.unmet_pixels);
+    }
   }
   ASSERT_EQ(errors.size(), 3U);
   EXPECT_EQ(errors.front(), 0.125F);
   EXPECT_EQ(errors.back(), 1.0F / 16.0F);
   EXPECT_EQ(trace(picture), 0.0);
+}
+
+// Samples of soft and scattered light choose their points by the numbers of the samples, also in lists.
+TEST_F(ProgressivePictureTest, SoftLightIsRefinedToWhatTheRendererGives) {
+  const uvec2 size(48, 32);
+  world::Scene scene = scene_;
+  scene.lights[0].angle = 0.2F;
+  SetupStats stats;
+  const SceneOnDevice on_device(device(), scene, {}, stats);
+  for (const Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+    View view = with_target(test::make_view(size), 1.0F / 16.0F);
+    view.mode.integrator = integrator;
+    ProgressivePicture picture(device(), on_device.device_scene(), on_device.features(view.mode), 1.0);
+    picture.resize(size);
+    picture.want(view);
+    while (!picture.is_settled()) picture.trace();
+    TunedRendererOptions options;
+    options.mode = view.mode;
+    options.has_error_target = true;
+    const RenderResult expected = make_renderer(device(), scene, options).render(view);
+    EXPECT_GT(expected.error->samples, 16U * size.x * size.y);
+    EXPECT_TRUE(test::has_same_bits(read(picture), expected.image)) << static_cast<int>(integrator);
+    EXPECT_EQ(picture.shown()->error->samples, expected.error->samples);
+    EXPECT_EQ(picture.shown()->error->largest_claim, expected.error->largest_claim);
+  }
 }
 
 // A refined picture is written to a film that has held a smaller one, with a second record for unlit surfaces.

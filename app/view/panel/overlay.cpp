@@ -52,8 +52,13 @@ void show_times(const OverlayContent& content) {
   if (!shown) return;
   show_text("{} x {} of {} x {} pixels", shown->size.x, shown->size.y, content.picture->full_size().x,
             content.picture->full_size().y);
-  if (!shown->error) return show_text("samples per pixel: {}", shown->samples_per_pixel);
-  show_text("samples per pixel: {:.3g}", static_cast<double>(shown->error->samples) / shown->size.x / shown->size.y);
+  if (!shown->error) show_text("samples per pixel: {}", shown->samples_per_pixel);
+}
+
+/// Returns an error as a word.
+std::string describe_error(float error) {
+  return error > 0.0F && error < 1.0F ? fmt::format("1/{:.0f}", 1.0 / static_cast<double>(error))
+                                      : fmt::format("{:.2g}", error);
 }
 
 /// Returns a description of the picture's quality.
@@ -62,10 +67,7 @@ std::string describe_quality(const ProgressivePicture& picture) {
   if (!shown) return "making the first picture";
   if (shown->size != picture.full_size()) return "coarse so far";
   if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
-  const std::string accuracy = fmt::format("accurate to 1/{:.0f}", 1.0 / static_cast<double>(shown->error->target));
-  if (!picture.is_settled()) return accuracy + ", sharpening";
-  if (shown->error->unmet_pixels == 0) return "done: " + accuracy;
-  return fmt::format("done: {} except for {} pixels", accuracy, shown->error->unmet_pixels);
+  return describe_accuracy(*shown, picture.wanted().error_target->error, picture.is_settled());
 }
 
 void show_state(const OverlayContent& content) {
@@ -259,6 +261,15 @@ void for_each_help(const Use& use) {
 }
 
 }  // namespace
+
+std::string describe_accuracy(const ShownPicture& shown, float target, bool is_settled) {
+  const double pixels = static_cast<double>(shown.size.x) * shown.size.y;
+  // The percentage is rounded down, so 100 % are all pixels.
+  const double percent = std::floor(1000.0 * static_cast<double>(shown.finished_pixels) / pixels) / 10.0;
+  return fmt::format("{}: {:g} % of pixels within {}\n{:.3g} samples per pixel, largest error {}",
+                     is_settled ? "done" : "sharpening", percent, describe_error(target),
+                     static_cast<double>(shown.error->samples) / pixels, describe_error(shown.error->largest_claim));
+}
 
 float overlay_margin() {
   return scaled(kMargin);

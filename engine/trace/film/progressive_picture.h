@@ -30,6 +30,9 @@ struct ShownPicture {
   uint32_t samples_per_pixel = 1;
   /// The accuracy; set for a picture with an error target.
   std::optional<PictureError> error;
+  /// The number of pixels whose claim is within the error that the user requested, which may be smaller than that of
+  /// the picture.
+  uint64_t finished_pixels = 0;
 
   /// Returns `view` with the number of samples, or the error, that the picture has reached. A complete picture of the
   /// returned view equals this picture.

@@ -237,6 +237,10 @@ bool Refinement::is_near_enough(size_t pixel) const {
   return errors_[pixel] <= target_.error;
 }
 
+uint64_t Refinement::count_within(float error) const {
+  return static_cast<uint64_t>(std::ranges::count_if(errors_, [error](float claimed) { return claimed <= error; }));
+}
+
 void Refinement::add_to(PictureError& whole) const {
   for (size_t pixel = 0; pixel < pixel_count(); ++pixel) {
     whole.largest_claim = std::max(whole.largest_claim, errors_[pixel]);

@@ -110,6 +110,8 @@ class Refinement {
   float claimed_error(size_t pixel) const { return errors_[pixel]; }
   /// Returns whether a pixel's claim is within the requested error. If not, it has the largest number of samples.
   bool is_near_enough(size_t pixel) const;
+  /// Returns the number of the window's pixels whose claim, in the measure of the target, is at most `error`.
+  uint64_t count_within(float error) const;
   /// Adds the results of the window's pixels to those of a picture. The target does not change.
   void add_to(PictureError& whole) const;
 
