@@ -232,7 +232,9 @@ struct LitScene {
 };
 
 LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
-  LitScene lit{.assumed = light_up(scene, {}, surroundings),
+  LookOptions look;
+  look.light = choose_light(scene, look.light, usual_integrator(scene, look.light));
+  LitScene lit{.assumed = light_up(scene, look, surroundings),
                .flat = world::flatten(scene, world::Purpose::kPictures, Instancing::kAuto),
                .packed = {}};
   for (auto& image : lit.flat.images) {

@@ -73,11 +73,12 @@ void tell_reached(const RunStats& stats, double limit_s, double taken_s, const C
                              is_least ? ": even one sample per pixel takes longer" : ""));
   }
   const uint32_t samples = stats.view->samples_per_pixel;
-  if (!stats.view->error_target && samples < kDefaultSamples) {
+  const uint32_t usual = samples_of(Quality::kNormal, stats.view->mode);
+  if (!stats.view->error_target && samples < usual) {
     const double sample_s = 1e-3 * stats.median_trace_ms() / samples;
     console.note(
         fmt::format("the time was enough for {} of the default {} samples per pixel, which take about {:.0f} s",
-                    samples, kDefaultSamples, taken_s + (kDefaultSamples - samples) * sample_s));
+                    samples, usual, taken_s + (usual - samples) * sample_s));
   }
   const bool can_refine = !stats.errors.empty() && stats.errors.back().unmet_pixels > 0 &&
                           stats.view->error_target->max_samples < kMaxRefinedSamples;

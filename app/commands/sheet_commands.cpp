@@ -211,7 +211,7 @@ Command add_contact_sheet_command(CLI::App& program) {
                      [=](const OptionValues& w) { options->each.pictures = {w.text()}; });
   table.add("--columns", "N", "Number of pictures per row [the sheet is approximately square]",
             [=](const OptionValues& w) { options->columns = w.whole(0, 1, kMaxColumns); });
-  add_sample_options(table, options->each, fmt::to_string(kDefaultSamples));
+  add_sample_options(table, options->each);
   add_view_options(table, options->each.view);
   command.get_option("--size")->description(
       fmt::format("Size of each picture in pixels; 640 alone is a width [{}x{}]", kSheetPicture.x, kSheetPicture.y));

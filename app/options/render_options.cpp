@@ -136,7 +136,8 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   const std::span<const std::string_view> lights = light_choice_names();
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
             "Light that is added if the scene has no light or no sky. soft is the studio with soft shadows: a sun 10 "
-            "degrees wide, --integrator direct and --ground [studio; classic scenes: headlight]",
+            "degrees wide, --integrator direct and --ground. fill is the studio without its sun, and darker [studio; "
+            "files that their own surfaces light: fill; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = w.name<LightChoice>(lights, 1); });
   table.add(
       "--ground", "on|off",
@@ -280,13 +281,16 @@ void add_error_options(OptionTable& table, ErrorOptions& error, std::string_view
             [&](const OptionValues& w) { error.space = w.name<ErrorSpace>(error_space_names()); });
 }
 
-void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual) {
-  table.add("-s,--spp", "N", fmt::format("Samples per pixel, 1 to {} [{}]", kMaxSamplesPerPixel, usual),
+void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view more_defaults) {
+  table.add("-s,--spp", "N",
+            fmt::format("Samples per pixel, 1 to {} [{}, with --integrator direct or path {}{}]", kMaxSamplesPerPixel,
+                        kDefaultSamples, kNoiseFactor * kDefaultSamples, more_defaults),
             [&](const OptionValues& w) { options.view.samples_per_pixel = w.whole(0, 1, kMaxSamplesPerPixel); });
   table.add("--quality", fmt::format("{}", fmt::join(quality_names(), "|")),
-            fmt::format("Replaces --spp: {}, {} or {} samples per pixel. best adds samples until the error of "
-                        "displayed colours is at most one 8-bit step [normal]",
-                        1, kDefaultSamples, kHighSamples),
+            fmt::format("Replaces --spp: {}, {} or {} samples per pixel, {} times as many with --integrator direct or "
+                        "path. best adds samples until the error of displayed colours is at most one 8-bit step "
+                        "[normal]",
+                        1, kDefaultSamples, kHighSamples, kNoiseFactor),
             [&](const OptionValues& w) { options.quality = w.name<Quality>(quality_names()); });
 }
 
@@ -306,7 +310,7 @@ void add_render_options(CLI::App& command, RenderSpec& options) {
             [&](const OptionValues& w) {
               options.explained_pixel = uvec2(w.whole(0, 0, kMaxSide), w.whole(1, 0, kMaxSide));
             });
-  add_sample_options(table, options, fmt::format("{}, with --explain 1", kDefaultSamples));
+  add_sample_options(table, options, ", with --explain 1");
   add_error_options(
       table, options.error,
       fmt::format(

@@ -23,9 +23,9 @@ void add_view_options(OptionTable& table, ViewOptions& view);
 /// Adds the rows of the environment. `options` must outlive the parsing.
 void add_environment_options(OptionTable& table, EnvironmentOptions& options);
 
-/// Adds the rows of --spp, whose help has this text for the default, and of --quality. `options` must outlive the
+/// Adds the rows of --spp, whose help has this text after the defaults, and of --quality. `options` must outlive the
 /// parsing.
-void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view usual);
+void add_sample_options(OptionTable& table, RenderSpec& options, std::string_view more_defaults = "");
 
 /// Adds the rows of --target-error, with this help, and of the options for its samples. `error` must outlive the
 /// parsing.

@@ -175,8 +175,10 @@ void Viewer::show_scene(OpenedScene opened) {
     switches_.surroundings = {.light_rotation_deg = start_.environment.light_rotation_deg};
   }
   keep_camera();
+  LookOptions look = start_.look;
+  look.light = opened_.light;
   preparer_ = std::make_unique<ScenePreparer>(device_, target_ms_, opened_.file, opened_.load, opened_.motion,
-                                              opened_.sources, start_.look, opened_.environment, view);
+                                              opened_.sources, look, opened_.environment, view);
   preparer_->begin(opened_.scene, request());
   draw_again();
 }

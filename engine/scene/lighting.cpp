@@ -83,11 +83,14 @@ double illuminance_of(const Scene& scene) {
   for (const Light& light : scene.lights) {
     const double distance =
         has_distance(light) ? std::max(glm::length(dvec3(light.position) - center), least_distance) : 1.0;
-    // A flat light has the intensity of its radiance times its area.
-    const double area = is_flat(light.kind) ? static_cast<double>(light.size.x) * static_cast<double>(light.size.y) *
-                                                  (light.kind == LightKind::kDisk ? 0.25 * kPi : 1.0)
-                                            : 1.0;
-    sum += luminance_of(light.diffuse) * area / (distance * distance);
+    double share = 1.0 / (distance * distance);
+    if (is_flat(light.kind)) {
+      // A flat light has the intensity of its radiance times its area. It fills at most a half space.
+      const double area = static_cast<double>(light.size.x) * static_cast<double>(light.size.y) *
+                          (light.kind == LightKind::kDisk ? 0.25 * kPi : 1.0);
+      share = std::min(area * share, kPi);
+    }
+    sum += luminance_of(light.diffuse) * share;
   }
   return sum / power_per_lux(scene);
 }
@@ -105,14 +108,15 @@ void let_ambient_light_in(Scene& scene) {
 
 std::span<const std::string_view> light_choice_names() {
   using std::string_view_literals::operator""sv;
-  static constexpr std::array kNames = {"auto"sv, "studio"sv, "headlight"sv, "none"sv, "soft"sv};
+  static constexpr std::array kNames = {"auto"sv, "studio"sv, "headlight"sv, "none"sv, "soft"sv, "fill"sv};
   return kNames;
 }
 
 AssumedLight light_scene(Scene& scene, LightChoice choice) {
   if (choice == LightChoice::kAuto) choice = scene.is_classic ? LightChoice::kHeadlight : LightChoice::kStudio;
   const bool is_soft = choice == LightChoice::kSoft;
-  if (is_soft) choice = LightChoice::kStudio;
+  const bool is_fill = choice == LightChoice::kFill || !scene.lights.empty();
+  if (is_soft || choice == LightChoice::kFill) choice = LightChoice::kStudio;
   AssumedLight assumed;
   Environment& environment = scene.environment;
   const bool had_sky = is_surrounded(environment);
@@ -133,7 +137,7 @@ AssumedLight light_scene(Scene& scene, LightChoice choice) {
   environment.sky = Studio{front};
   assumed.has_studio = true;
   if (!scene.is_classic) let_ambient_light_in(scene);
-  if (!scene.lights.empty()) {
+  if (is_fill) {
     environment.intensity = kStudioFill * unexposed;
     return assumed;
   }

@@ -29,6 +29,9 @@ enum class LightChoice : uint32_t {
   /// Acts like kStudio, with a directional light that is kSoftSunAngle wide. The programs also use
   /// Integrator::kDirect, and add a ground that shows the shadow of the scene.
   kSoft,
+  /// Adds the weaker studio of scenes with lights, and no light. The programs choose it for kAuto if the surfaces of a
+  /// file light it.
+  kFill,
 };
 
 /// Returns the names to display, indexed by LightChoice. The first name is "auto".

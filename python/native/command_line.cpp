@@ -95,7 +95,11 @@ nb::dict list_defaults() {
   defaults["ErrorTarget"] = write(ErrorTarget());
   defaults["ExrOptions"] = write(ExrOptions());
   defaults["View"] = write(View());
-  defaults["samples"] = work::kDefaultSamples;
+  const auto samples_of = [](Integrator integrator) {
+    return work::samples_of(work::Quality::kNormal, {.integrator = integrator});
+  };
+  defaults["samples"] = samples_of(Integrator::kWhitted);
+  defaults["noisy_samples"] = samples_of(Integrator::kDirect);
   defaults["builder"] = RendererOptions().builder;
   defaults["texture_memory"] = RendererOptions().texture_bytes;
   defaults["aspect_ratio"] = work::kDefaultAspectRatio;
@@ -158,7 +162,7 @@ nb::dict read_quality(const std::string& spec) {
   work::RenderSpec options = read_spec(spec);
   work::apply_quality(options);
   nb::dict fields;
-  fields["spp"] = options.view.samples_per_pixel.value_or(work::kDefaultSamples);
+  fields["spp"] = options.view.samples_per_pixel;
   fields["target_error"] = options.error.target;
   fields["error_in"] = std::string(
       work::error_space_names()[static_cast<size_t>(options.error.space.value_or(work::ErrorSpace::kLinear))]);

@@ -254,6 +254,14 @@ void bind_scene(nb::module_& module) {
           [](const Scene& s, const std::string& choice) { return write(display_of(s, read_choice(choice))); },
           nb::arg("choice"))
       .def(
+          "choose_light",
+          [](const Scene& s, const std::string& choice, const std::string& integrator) {
+            const auto chosen = static_cast<Integrator>(find_name(names_of(Integrator()), integrator, "integrator"));
+            const LightChoice light = work::choose_light(s, read_choice(choice), chosen);
+            return std::string(light_choice_names()[static_cast<size_t>(light)]);
+          },
+          nb::arg("choice"), nb::arg("integrator"))
+      .def(
           "usual_integrator",
           [](const Scene& s, const std::string& choice) {
             const Integrator integrator = work::usual_integrator(s, read_choice(choice));

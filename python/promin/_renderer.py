@@ -165,7 +165,7 @@ class Renderer:
         and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
         Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
         If this view frames the scene, the light that is added and the ground stand on its `up`. light: the light that
-        is added to a scene without light: "auto", "studio", "headlight", "none" or "soft". The soft light is the studio
+        is added to a scene without light: "auto", "studio", "headlight", "none", "soft" or "fill". The soft light is the studio
         with soft shadows of its lamps and its sky, and with a ground. ground: True if a ground under the scene shows
         its shadow, False if not; None: only with soft light. background: the background, as in `promin render
         --background`. Three sRGB numbers from 0 to 1, a name such as "white", or "#80a0ff" are a colour that pictures
@@ -181,10 +181,11 @@ class Renderer:
         RunError, Cancelled."""
         self._scene = to_scene(scene).snapshot()
         self._chosen = device
-        self._light = str(light)
-        self._usual_integrator = self._scene.native().usual_integrator(self._light)
+        self._usual_integrator = self._scene.native().usual_integrator(str(light))
         # The light stands on the view's `up`, unless a Camera replaces the scene's framing.
         self._view = of_view(view)
+        integrator = self._usual_integrator if self._view.integrator is None else str(self._view.integrator)
+        self._light = self._scene.native().choose_light(str(light), integrator)
         framing = {} if isinstance(self._view.camera, Camera) else pose_of(self._view)
         self._surroundings = to_spec(
             {
@@ -318,7 +319,7 @@ class Renderer:
         Raises UsageError for arguments that break the rules of include/promin/view.h or contradict each other,
         InputError if next_scene has other objects, RunError, Cancelled."""
         given = locals()  # each field of a view is a keyword of its name
-        whole = settle_quality(change_view(self._view if view is None else of_view(view), given))
+        whole = self._settled(change_view(self._view if view is None else of_view(view), given))
         names = self._aovs if aovs is None else _names(aovs)
         check_shading(whole, names)
         self._check_background(names)
@@ -442,7 +443,7 @@ class Renderer:
     def _remake(self, changes: dict[str, Any]) -> None:
         """Replaces the native renderer by one with these changes."""
         opened = self._open()
-        self._opened = self._make(opened.aovs, settle_quality(self._view), None, changes)
+        self._opened = self._make(opened.aovs, self._settled(self._view), None, changes)
 
     def set_material(self, material: str | int, new: Material | None = None, **fields: Any) -> None:
         """Changes a material in all later pictures, without building a tree. The arguments are those of
@@ -463,7 +464,7 @@ class Renderer:
         """Returns the view for the native module, and the display transform of its picture."""
         camera = self._choose_camera(view, size_of(view), _ASPECT_RATIO)
         shown = self.display if shows_light(view) else Display()
-        return to_record(self._with_integrator(view), camera, shown, self._lit().default_max_depth()), shown
+        return to_record(view, camera, shown, self._lit().default_max_depth()), shown
 
     def _choose_next_camera(
         self, next_scene: Scene | None, next_camera: CameraLike, record: dict[str, Any]
@@ -478,9 +479,11 @@ class Renderer:
             given = move_camera(next_camera, scene.native_center)
         return scene.native().choose_camera(camera_spec(View(camera=next_camera)), given, record["size"], _ASPECT_RATIO)
 
-    def _with_integrator(self, view: View) -> View:
-        """Returns the view with an integrator: its own, or the one that suits the light of the scene."""
-        return view if view.integrator is not None else replace(view, integrator=self._usual_integrator)
+    def _settled(self, view: View) -> View:
+        """Returns the view with an integrator and a number of samples or an error: its own, or those that suit the
+        light of the scene."""
+        integrator = self._usual_integrator if view.integrator is None else view.integrator
+        return settle_quality(replace(view, integrator=integrator))
 
     def _finish(self, aovs: dict[str, NDArray[Any]], names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """Returns the AOVs of these names. Positions are in world coordinates."""
@@ -502,7 +505,7 @@ class Renderer:
                 opened = self._opened
                 if opened is None or aovs not in (None, opened.aovs):
                     names = self._aovs if aovs is None else aovs
-                    opened = self._make(names, view or settle_quality(self._view), progress)
+                    opened = self._make(names, view or self._settled(self._view), progress)
                     self._opened = opened
         # No lock is taken if everything exists: a thread that changes the scene holds the lock while a picture is
         # traced, and the progress callback of this picture may read the lights.
@@ -530,7 +533,7 @@ class Renderer:
             self._bvh,
             self._instances,
             begins_with_target(view),
-            mode_of(self._with_integrator(view)),
+            mode_of(view),
             self._expected_samples,
             self._texture_memory,
             progress,

@@ -47,8 +47,9 @@ class View:
     requests, else a height of 720."""
     crop: tuple[int, int, int, int] | None = None
     """The pixels to trace: x0, y0, x1, y1, without column x1 and row y1."""
-    spp: int = 8
-    """Samples per pixel. A single sample is at the pixel's centre."""
+    spp: int | None = None
+    """Samples per pixel. A single sample is at the pixel's centre. None: 8, or 32 with the integrators "direct" and
+    "path"."""
     quality: str | None = None
     """The quality, in place of `spp` and `target_error`: "draft", "normal", "high" or "best"."""
     max_depth: int | None = None
@@ -166,13 +167,17 @@ _NUMBERS_OF_SAMPLES = ("spp", "target_error", "time_limit")
 
 
 def settle_quality(view: View) -> View:
-    """Returns the view with the settings of its quality."""
-    if view.quality is None:
+    """Returns the view with the settings of its quality, or with the usual number of samples. Both depend on its
+    integrator."""
+    given = [name for name in _NUMBERS_OF_SAMPLES if getattr(view, name) is not None]
+    if given and view.quality is None:
         return view
-    for name in _NUMBERS_OF_SAMPLES:
-        if getattr(view, name) != getattr(View, name):
-            raise UsageError(f"quality and {name} contradict each other; remove one of them")
-    fields = _promin.read_quality(to_spec({"quality": str(view.quality), "shading": str(view.debug_view)}))
+    if given:
+        raise UsageError(f"quality and {given[0]} contradict each other; remove one of them")
+    quality = None if view.quality is None else str(view.quality)
+    fields = _promin.read_quality(
+        to_spec({"quality": quality, "shading": str(view.debug_view), "integrator": view.integrator})
+    )
     if fields["target_error"] is None:
         fields["error_in"] = view.error_in
     return dataclasses.replace(view, quality=None, **fields)
@@ -314,7 +319,7 @@ def _check_samples(view: View) -> None:
         raise UsageError(f"error_in is {view.error_in!r:.80}; give {names}")
     if has_target(view):
         name = "time_limit" if view.target_error is None else "target_error"
-        if isinstance(view.spp, (int, np.integer)) and view.spp not in (1, View.spp):
+        if isinstance(view.spp, (int, np.integer)) and view.spp not in (1, None):
             raise UsageError(
                 f"{name} and spp={view.spp} contradict each other; remove one of them; min_spp and max_spp limit the "
                 "samples"

@@ -210,6 +210,11 @@ def test_qualities_are_those_of_the_command_line() -> None:
         return whole.spp, whole.target_error, whole.error_in
 
     assert numbers(promin.View()) == numbers(promin.View(quality="normal")) == (8, None, "linear")
+    for integrator in ("direct", "path"):
+        assert numbers(promin.View(integrator=integrator)) == (32, None, "linear")
+        assert numbers(promin.View(integrator=integrator, quality="draft")) == (4, None, "linear")
+        assert numbers(promin.View(integrator=integrator, debug_view="uv")) == (8, None, "linear")
+        assert numbers(promin.View(integrator=integrator, spp=3)) == (3, None, "linear")
     assert numbers(promin.View(quality="draft")) == (1, None, "linear")
     assert numbers(promin.View(quality="best"))[1:] == (1 / 256, "display")
     assert numbers(promin.View(quality="best", debug_view="uv")) == (128, None, "linear")

@@ -83,16 +83,16 @@ def test_records_have_the_defaults_of_the_library(kind: type) -> None:
 
 def test_a_view_has_the_defaults_of_the_library() -> None:
     view, theirs = promin.View(), DEFAULTS["View"]
-    assert view.spp == DEFAULTS["samples"]
     assert (view.filter, view.depth) == (theirs["filter"], theirs["depth_kind"])
     assert _view.mode_of(view) == theirs["mode"]
     assert view.error_in == CHOICES["error_in"][0]
-    open_ones = {"camera", "size", "crop", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
+    open_ones = {"camera", "size", "crop", "spp", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
     open_ones |= {"filter_width", "integrator", *_view.POSE}
     assert {f.name for f in dataclasses.fields(view) if f.default is None} == open_ones
     told = told_fields(promin.View)
     target = DEFAULTS["ErrorTarget"]
     assert f"a height of {DEFAULTS['height']}." in told["size"]
+    assert f"None: {DEFAULTS['samples']}, or {DEFAULTS['noisy_samples']} with the integrators" in told["spp"]
     assert f"None: {theirs['max_depth']}, or {DEFAULTS['max_depth_of_glass']} with glass" in told["max_depth"]
     assert f"None: {target['min_samples']}, or {DEFAULTS['coarse_min_spp']} for a coarse target" in told["min_spp"]
     assert f"None: {target['max_samples']}." in told["max_spp"]

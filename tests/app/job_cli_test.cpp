@@ -76,7 +76,7 @@ TEST_F(JobCliTest, FilesThatGlowLightThemselves) {
         "mtllib glow.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -.5 1 -.5\nv .5 1 -.5\nv .5 1 .5\nv -.5 1 .5\n"
         "usemtl floor\nf 4 3 2 1\nusemtl lamp\nf 5 6 7 8\n");
   const auto render_glow = [&](OptionValues more) {
-    more.insert(more.begin(), {"render", "glow.obj", "--size", "24", "18", "--light", "none"});
+    more.insert(more.begin(), {"render", "glow.obj", "--size", "24", "18"});
     const ProcessResult result = run(more);
     expect_done(result);
     return result;
@@ -87,7 +87,34 @@ TEST_F(JobCliTest, FilesThatGlowLightThemselves) {
   EXPECT_EQ(read("direct.exr") == read("whole.exr"), true);
   render_glow({"-o", "cut.exr", "--job", "job", "--pieces", "3"});
   EXPECT_EQ(read("cut.exr") == read("whole.exr"), true);
+  // Its lamp is so bright that the file gets no sun.
+  render_glow({"-o", "fill.exr", "--light", "fill"});
+  EXPECT_EQ(read("fill.exr") == read("whole.exr"), true);
+  render_glow({"-o", "studio.exr", "--light", "studio"});
+  EXPECT_EQ(read("studio.exr") == read("whole.exr"), false);
+  const auto expect_entry = [&](const std::string& file, const std::string& name, const std::string& value) {
+    // The header of an EXR has the length of a text before the text.
+    const std::string entry =
+        name + '\0' + "string" + '\0' + static_cast<char>(value.size()) + std::string(3, '\0') + value;
+    EXPECT_THAT(read(file), HasSubstr(entry)) << name;
+  };
+  expect_entry("whole.exr", "promin:spp", "32");
+  render_glow({"-o", "draft.exr", "--quality", "draft"});
+  expect_entry("draft.exr", "promin:spp", "4");
+  render_glow({"-o", "path.exr", "--integrator", "path", "--target-error", "1/8", "--min-spp", "4"});
+  expect_entry("path.exr", "promin:min_spp", "16");
+  render_glow({"-o", "error.exr", "--target-error", "1/8", "--min-spp", "4"});
+  expect_entry("error.exr", "promin:min_spp", "4");
+  // With more than 16 lamps, each sample chooses one of them.
+  std::string lamps = read("glow.obj");
+  for (int i = 0; i < 17; ++i) lamps += fmt::format("o lamp{}\nusemtl lamp\nf 5 6 7 8\n", i);
+  write("lamps.obj", lamps);
+  expect_done(run({"render", "lamps.obj", "--size", "24", "18", "-o", "lamps.exr", "--target-error", "1/8"}));
+  expect_entry("lamps.exr", "promin:min_spp", "16");
   render_glow({"-o", "old.exr", "--integrator", "whitted"});
+  expect_entry("old.exr", "promin:spp", "8");
+  render_glow({"-o", "sun.exr", "--integrator", "whitted", "--light", "studio"});
+  EXPECT_EQ(read("sun.exr") == read("old.exr"), true);
   EXPECT_EQ(read("old.exr") == read("whole.exr"), false);
   EXPECT_THAT(read("old.exr"), HasSubstr("promin:integrator")) << "it is not the usual one";
   EXPECT_THAT(run({"render", "glow.obj", "--size", "24", "18", "--explain", "12", "9"}).out,

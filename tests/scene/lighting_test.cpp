@@ -81,6 +81,18 @@ TEST(LightSceneTest, ASceneWithoutLightStandsInTheStudio) {
   EXPECT_EQ(scene.lights.size(), 1U);
 }
 
+TEST(LightSceneTest, TheFillIsTheStudioOfScenesWithLights) {
+  Scene scene = phong_scene();
+  const AssumedLight assumed = light_scene(scene, LightChoice::kFill);
+  EXPECT_TRUE(assumed.has_studio && assumed.has_background && !assumed.has_studio_light);
+  EXPECT_TRUE(has_studio(scene) && scene.lights.empty());
+  EXPECT_EQ(scene.environment.intensity, kStudioFill);
+  Scene lit = phong_scene();
+  lit.lights.emplace_back().is_on = false;
+  light_scene(lit, LightChoice::kStudio);
+  EXPECT_EQ(lit.environment.intensity, kStudioFill * std::exp2(-exposure_of(lit)));
+}
+
 TEST(LightSceneTest, TheSoftStudioHasASunOfTenDegrees) {
   Scene scene = phong_scene();
   EXPECT_TRUE(light_scene(scene, LightChoice::kSoft).has_studio_light);
@@ -127,6 +139,18 @@ TEST(LightSceneTest, ClassicScenesKeepHeadlightAndBlack) {
   EXPECT_EQ(lit.lights.size(), 1U);
   EXPECT_EQ(lit.environment.ambient, vec3(0.0F));
   EXPECT_EQ(display_of(lit), DisplayTransform());
+}
+
+// A rectangle of radiance L causes at most pi L, so a huge one does not make the picture black.
+TEST(LightSceneTest, TheExposureOfAFlatLightHasALimit) {
+  Scene scene = physical_scene();
+  scene.lights = {light_of(LightKind::kRect, 10.0F)};
+  for (const float side : {1e3F, 1e6F, 1e15F}) {
+    scene.lights[0].size = vec2(side);
+    EXPECT_EQ(exposure_of(scene), -3.5F) << side;
+  }
+  scene.lights[0].size = vec2(1e-3F);
+  EXPECT_GT(exposure_of(scene), 10.0F);
 }
 
 TEST(LightSceneTest, UnlitColoursAreShownAsTheyAre) {

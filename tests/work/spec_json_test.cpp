@@ -175,9 +175,10 @@ TEST(SpecJsonTest, EveryOptionIsKnown) {
 }
 
 TEST(SpecJsonTest, TheTextIsCanonical) {
-  EXPECT_EQ(write_spec(parse(R"("size": [64, 48], "aov": ["normal", "depth"], "scene": "/a.gltf", "spp": 8)")),
-            "{\n \"promin_render_spec\": 1,\n \"scene\": \"/a.gltf\",\n \"size\": [64,48],\n"
-            " \"aov\": [\"depth\",\"normal\"]\n}\n");
+  EXPECT_EQ(
+      write_spec(parse(R"("size": [64, 48], "aov": ["normal", "depth"], "scene": "/a.gltf", "quality": "normal")")),
+      "{\n \"promin_render_spec\": 1,\n \"scene\": \"/a.gltf\",\n \"size\": [64,48],\n"
+      " \"aov\": [\"depth\",\"normal\"]\n}\n");
   // write_spec_of_pieces() keeps exactly the members on which pieces depend.
   const RenderSpec spec = parse(R"("scene": "/a.gltf", "output": "a.exr", "pieces": 4)");
   EXPECT_THAT(write_spec(spec), HasSubstr("\"output\""));
@@ -253,20 +254,36 @@ TEST(SpecJsonTest, WrongMembersAreRefusedTogether) {
   EXPECT_THROW(parse_spec<RenderSpec>("{", "spec.json"), InputError);
 }
 
+TEST(SpecJsonTest, QualitiesStandForNumbersOfSamples) {
+  const auto samples_of = [](const std::vector<std::string>& options) {
+    RenderSpec spec = of_render(options);
+    apply_quality(spec);
+    return spec.view.samples_per_pixel;
+  };
+  EXPECT_EQ(samples_of({}), 8U);
+  EXPECT_EQ(samples_of({"--quality", "draft"}), 1U);
+  EXPECT_EQ(samples_of({"--quality", "high"}), 32U);
+  EXPECT_EQ(samples_of({"--quality", "best"}), std::nullopt);
+  EXPECT_EQ(samples_of({"--quality", "best", "--shading", "uv"}), 128U);
+  EXPECT_EQ(samples_of({"--explain", "1", "2"}), 1U);
+  for (const std::string integrator : {"direct", "path"}) {
+    EXPECT_EQ(samples_of({"--integrator", integrator}), 32U);
+    EXPECT_EQ(samples_of({"--integrator", integrator, "--quality", "draft"}), 4U);
+    EXPECT_EQ(samples_of({"--integrator", integrator, "--quality", "high"}), 128U);
+    EXPECT_EQ(samples_of({"--integrator", integrator, "--spp", "8"}), 8U);
+    EXPECT_EQ(samples_of({"--integrator", integrator, "--explain", "1", "2"}), 1U);
+    EXPECT_EQ(samples_of({"--integrator", integrator, "--shading", "uv"}), 8U) << "no noise";
+  }
+}
+
 // The manual puts these options in brackets. A job with them equals a job without them.
 TEST(SpecJsonTest, DefaultsCountAsNotGiven) {
-  const std::vector<std::pair<std::string, std::string>> defaults = {{"--spp", "8"},
-                                                                     {"--filter", "box"},
-                                                                     {"--shading", "full"},
-                                                                     {"--exposure", "auto"},
-                                                                     {"--depth", "ray"},
-                                                                     {"--compression", "zip"},
-                                                                     {"--error-in", "linear"},
-                                                                     {"-s", "8"},
-                                                                     {"--quality", "normal"},
-                                                                     {"--environment-rotation", "0"},
-                                                                     {"--light-rotation", "0"},
-                                                                     {"--environment-intensity", "1"}};
+  const std::vector<std::pair<std::string, std::string>> defaults = {
+      {"--filter", "box"},       {"--shading", "full"},
+      {"--exposure", "auto"},    {"--depth", "ray"},
+      {"--compression", "zip"},  {"--error-in", "linear"},
+      {"--quality", "normal"},   {"--environment-rotation", "0"},
+      {"--light-rotation", "0"}, {"--environment-intensity", "1"}};
   for (const auto& [name, word] : defaults) {
     EXPECT_EQ(write_spec(of_render({name, word})), write_spec(of_render({}))) << name;
     EXPECT_TRUE(list_bits(of_render({name, word})).empty()) << name;

@@ -111,6 +111,31 @@ TEST(UsualIntegratorTest, MeshesOfSeveralMaterialsAndShapesAreLamps) {
   EXPECT_TRUE(lights_itself(planes));
 }
 
+// The least flux is 4 pi 8.25 / 32 = 3.24.
+TEST(UsualIntegratorTest, FilesWithStrongLampsGetNoSun) {
+  const auto choose = [](const Scene& scene, Integrator integrator = Integrator::kDirect) {
+    return choose_light(scene, LightChoice::kAuto, integrator);
+  };
+  const Scene strong = make_room(10.0F, 0.57F);
+  EXPECT_EQ(choose(strong), LightChoice::kFill);
+  EXPECT_EQ(choose(strong, Integrator::kPath), LightChoice::kFill);
+  EXPECT_EQ(choose(strong, Integrator::kWhitted), LightChoice::kStudio) << "its lamps light nothing";
+  EXPECT_EQ(choose(make_room(10.0F, 0.56F)), LightChoice::kAuto) << "a small display needs other light";
+  EXPECT_EQ(choose(make_room(1.0F, 4.0F)), LightChoice::kAuto);
+  for (const LightChoice choice : {LightChoice::kStudio, LightChoice::kNone, LightChoice::kSoft}) {
+    EXPECT_EQ(choose_light(strong, choice, Integrator::kDirect), choice);
+  }
+  Scene other = strong;
+  other.is_classic = true;
+  EXPECT_EQ(choose(other), LightChoice::kAuto);
+  other = strong;
+  other.lights.emplace_back();
+  EXPECT_EQ(choose(other), LightChoice::kAuto);
+  other = strong;
+  other.environment.sky = Studio();
+  EXPECT_EQ(choose(other), LightChoice::kAuto);
+}
+
 TEST(UsualIntegratorTest, InvalidScenesAreRead) {
   Scene scene = make_room(10.0F, 0.3F);
   scene.objects[0].material = 1000;

@@ -31,6 +31,8 @@ struct OpenedScene {
   View view;
   /// The integrator of a picture whose options name none.
   Integrator usual_integrator = Integrator::kWhitted;
+  /// The light that was chosen for the scene, which it keeps with every integrator.
+  LightChoice light = LightChoice::kAuto;
   /// The flight to play.
   std::optional<PathPictures> replay;
   RunStats stats;

@@ -62,7 +62,6 @@ Integrator usual_integrator_of(const Scene& scene, const MovingScene* moving, Li
 
 PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> frames, const Messages& console) {
   PictureRun run{.options = given, .frames = std::move(frames), .scene = {}, .sources = {}, .stats = {}};
-  apply_quality(run.options);
   const RenderSpec& options = run.options;
   RunStats& stats = run.stats;
   stats.shutter = options.shutter;
@@ -94,6 +93,8 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   const Integrator integrator =
       view.integrator ? *view.integrator : usual_integrator_of(scene, moving.get(), view.look.light);
   run.options.view.integrator = integrator;
+  apply_quality(run.options);
+  view.samples_per_pixel = run.options.view.samples_per_pixel;
   ViewOptions complete = view;
   complete.integrator = integrator;
   stats.view = make_view(scene, complete, console);
@@ -104,7 +105,9 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   if (const std::string note = describe_file_camera(scene, view, *stats.view); !note.empty()) console.note(note);
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
-  AssumedLight assumed = light_up(scene, view.look, surroundings, upward_direction(scene, view));
+  LookOptions lit_look = view.look;
+  lit_look.light = choose_light(scene, view.look.light, integrator);
+  AssumedLight assumed = light_up(scene, lit_look, surroundings, upward_direction(scene, view));
   if (options.aovs.alpha) assumed.has_background = false;  // With alpha, no picture shows a background.
   stats.display = choose_display(scene, view.look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);

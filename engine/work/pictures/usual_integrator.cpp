@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -21,6 +22,9 @@ namespace {
 /// The radiance that emissive surfaces must give a white surface, and the radiance above which they count.
 constexpr double kLeastRadiance = 1.0 / 256.0;
 constexpr float kLeastEmission = 1.0F;
+
+/// The radiance that emissive surfaces must give a white surface so that the scene needs no other light.
+constexpr double kStrongRadiance = 1.0 / 32.0;
 
 /// The largest number of texels whose mean is computed.
 constexpr size_t kMostTexels = 4096;
@@ -118,10 +122,10 @@ double flux_of(const Scene& scene, const Object& object, const Bounds& box, cons
   return sum;
 }
 
-/// Returns whether a flux gives white surfaces on a sphere of this radius the least radiance. The sphere receives pi
-/// times the flux, and a white surface reflects 1 / pi of its irradiance.
-bool lights_sphere(double flux, double radius) {
-  return flux >= kLeastRadiance * 4.0 * std::numbers::pi * radius * radius;
+/// Returns whether a flux gives white surfaces on a sphere of this radius a radiance. The sphere receives pi times the
+/// flux, and a white surface reflects 1 / pi of its irradiance.
+bool lights_sphere(double flux, double radius, double radiance = kLeastRadiance) {
+  return flux >= radiance * 4.0 * std::numbers::pi * radius * radius;
 }
 
 /// Returns the distance of a point to the farthest point of a box.
@@ -129,15 +133,21 @@ double farthest_distance(const dvec3& point, const Bounds& box) {
   return glm::length(glm::max(glm::abs(dvec3(box.lo) - point), glm::abs(dvec3(box.hi) - point)));
 }
 
-}  // namespace
-
-bool lights_itself(const Scene& scene) {
-  const Emissions emissions = find_emissions(scene);
-  if (emissions.are_all_dark()) return false;
+/// The lamps of a scene, and the boxes of what they could light.
+struct Glow {
   std::vector<GlowingObject> lamps;
   std::vector<Bounds> receivers;
-  Bounds whole;
   double flux = 0.0;
+  /// Half of the diagonal of the scene's box.
+  double radius = 0.0;
+};
+
+/// Returns the lamps of a scene; nullopt if they light nothing.
+std::optional<Glow> find_glow(const Scene& scene) {
+  const Emissions emissions = find_emissions(scene);
+  if (emissions.are_all_dark()) return {};
+  Glow glow;
+  Bounds whole;
   uint64_t triangle_count = 0;
   size_t object_count = 0;
   const std::vector<Bounds> boxes = bounds_of_objects(scene);
@@ -151,25 +161,44 @@ bool lights_itself(const Scene& scene) {
     whole.extend(box);
     const Geometry& geometry = scene.geometries[object.geometry];
     if (any_material(geometry, object, [&](uint32_t material) { return emissions.at(material) == 0.0; })) {
-      receivers.push_back(box);
+      glow.receivers.push_back(box);
     }
     if (!any_material(geometry, object, [&](uint32_t material) { return emissions.at(material) > 0.0; })) continue;
     if (const auto* mesh = std::get_if<Mesh>(&geometry)) triangle_count += mesh->triangles.size();
-    if (triangle_count > kMostTriangles) return false;
-    lamps.push_back({flux_of(scene, object, box, emissions), middle_of(box)});
-    flux += lamps.back().flux;
+    if (triangle_count > kMostTriangles) return {};
+    glow.lamps.push_back({flux_of(scene, object, box, emissions), middle_of(box)});
+    glow.flux += glow.lamps.back().flux;
   }
-  const bool is_alone = object_count == 1 && receivers.empty();
-  if (!(flux > 0.0) || is_alone) return false;
-  if (lights_sphere(flux, 0.5 * glm::length(dvec3(whole.extent())))) return true;
+  const bool is_alone = object_count == 1 && glow.receivers.empty();
+  if (!(glow.flux > 0.0) || is_alone) return {};
+  glow.radius = 0.5 * glm::length(dvec3(whole.extent()));
+  return glow;
+}
+
+}  // namespace
+
+bool lights_itself(const Scene& scene) {
+  std::optional<Glow> glow = find_glow(scene);
+  if (!glow) return false;
+  if (lights_sphere(glow->flux, glow->radius)) return true;
   // A large floor does not hide that a lamp lights the objects on it.
+  std::vector<GlowingObject>& lamps = glow->lamps;
   const size_t count = std::min(lamps.size(), kMostLamps);
   const auto end = lamps.begin() + static_cast<std::ptrdiff_t>(count);
   std::ranges::partial_sort(lamps, end, std::ranges::greater(), &GlowingObject::flux);
   return std::any_of(lamps.begin(), end, [&](const GlowingObject& lamp) {
-    return std::ranges::any_of(
-        receivers, [&](const Bounds& box) { return lights_sphere(lamp.flux, farthest_distance(lamp.center, box)); });
+    return std::ranges::any_of(glow->receivers, [&](const Bounds& box) {
+      return lights_sphere(lamp.flux, farthest_distance(lamp.center, box));
+    });
   });
+}
+
+LightChoice choose_light(const Scene& scene, LightChoice choice, Integrator integrator) {
+  const bool has_light = !scene.lights.empty() || scene.environment.has_sky();
+  if (choice != LightChoice::kAuto || scene.is_classic || has_light) return choice;
+  const std::optional<Glow> glow = find_glow(scene);
+  if (!glow || !lights_sphere(glow->flux, glow->radius, kStrongRadiance)) return choice;
+  return integrator == Integrator::kWhitted ? LightChoice::kStudio : LightChoice::kFill;
 }
 
 Integrator usual_integrator(const Scene& scene, LightChoice light) {

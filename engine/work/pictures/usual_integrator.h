@@ -15,6 +15,12 @@ namespace promin::work {
 /// triangles. Throws InputError if a mesh lacks a position.
 bool lights_itself(const Scene& scene);
 
+/// Returns the light of a scene of a file for LightChoice::kAuto; other choices are returned unchanged. A scene without
+/// lights and sky gets LightChoice::kFill if its surfaces light it strongly: they give a white surface on a sphere
+/// around the scene a radiance of at least 1/32. Emissive surfaces light nothing with Integrator::kWhitted; the result
+/// is then kStudio, and no change of the integrator changes the light. Throws as lights_itself() does.
+LightChoice choose_light(const Scene& scene, LightChoice choice, Integrator integrator);
+
 /// Returns the integrator of pictures whose options name none.
 Integrator usual_integrator(const Scene& scene, LightChoice light);
 

@@ -94,29 +94,27 @@ void complete_film(RenderSpec& options) {
   if (options.names_film() && !options.moves_camera() && !options.frames && !options.fps) options.fps = kDefaultFps;
 }
 
+uint32_t samples_of(Quality quality, const RenderMode& mode) {
+  static constexpr std::array kSamples = {1U, kDefaultSamples, kHighSamples, kBestSamples};
+  const bool has_noise = mode.debug_view == DebugView::kNone && mode.integrator != Integrator::kWhitted;
+  return kSamples[static_cast<size_t>(quality)] * (has_noise ? kNoiseFactor : 1);
+}
+
 void apply_quality(RenderSpec& options) {
-  std::optional<uint32_t>& samples = options.view.samples_per_pixel;
-  if (options.error.is_given() || samples) return;
-  const bool has_error = options.view.debug_view == DebugView::kNone && !options.view.look.averages_exposure;
-  switch (options.quality.value_or(options.explained_pixel ? Quality::kDraft : Quality::kNormal)) {
-    case Quality::kDraft:
-      samples = 1;
-      break;
-    case Quality::kNormal:
-      samples = kDefaultSamples;
-      break;
-    case Quality::kHigh:
-      samples = kHighSamples;
-      break;
-    case Quality::kBest:
-      if (!has_error) {
-        samples = kBestSamples;
-        break;
-      }
-      options.error.target = kBestError;
-      options.error.space = ErrorSpace::kDisplay;
-      break;
+  ViewOptions& view = options.view;
+  if (options.error.is_given() || view.samples_per_pixel) return;
+  if (options.explained_pixel && !options.quality) {
+    view.samples_per_pixel = 1;
+    return;
   }
+  const Quality quality = options.quality.value_or(Quality::kNormal);
+  if (quality == Quality::kBest && view.debug_view == DebugView::kNone && !view.look.averages_exposure) {
+    options.error.target = kBestError;
+    options.error.space = ErrorSpace::kDisplay;
+    return;
+  }
+  view.samples_per_pixel = samples_of(
+      quality, {.debug_view = view.debug_view, .integrator = view.integrator.value_or(Integrator::kWhitted)});
 }
 
 std::vector<std::filesystem::path> name_pictures(const RenderSpec& options) {

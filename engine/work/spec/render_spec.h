@@ -133,8 +133,8 @@ struct FrameRange {
   uint32_t last = 0;
 };
 
-/// The default number of samples per pixel. Eight samples remove the stairs at edges and the noise of small mirrors.
-/// They cost about one additional second on two cores at 640x480.
+/// The default number of samples per pixel with Integrator::kWhitted. Eight samples remove the stairs at edges and the
+/// noise of small mirrors. They cost about one additional second on two cores at 640x480.
 inline constexpr uint32_t kDefaultSamples = 8;
 
 /// The quality of a picture, for people who do not want to choose a number of samples.
@@ -144,6 +144,13 @@ enum class Quality : uint32_t { kDraft, kNormal, kHigh, kBest };
 std::span<const std::string_view> quality_names();
 /// The number of samples of Quality::kHigh.
 inline constexpr uint32_t kHighSamples = 32;
+/// Pictures of the other integrators have noise and take this many times the samples of each quality. With 8 samples,
+/// the files that light themselves show noise everywhere, with 32 hardly any.
+inline constexpr uint32_t kNoiseFactor = 4;
+
+/// Returns the number of samples per pixel that a quality stands for in pictures of a mode. For Quality::kBest, it is
+/// that of pictures without an error target.
+uint32_t samples_of(Quality quality, const RenderMode& mode);
 
 /// The space in which errors are measured: in linear light, or as displayed.
 enum class ErrorSpace : uint32_t { kLinear, kDisplay };
@@ -234,7 +241,7 @@ struct RenderSpec {
 /// Chooses the frames of the whole animation if a film is named without frames.
 void complete_film(RenderSpec& options);
 
-/// Sets the number of samples or the error target of the quality.
+/// Sets the number of samples or the error target of the quality. The view's integrator must be chosen.
 void apply_quality(RenderSpec& options);
 
 /// Returns the pictures that a command writes: the named ones. If none is named and no pixel is explained, they have

@@ -108,8 +108,7 @@ void add_loading(Table<Spec>& table) {
 
 void add_samples(Table<RenderSpec>& table) {
   table.add_number("spp", PROMIN_AT(view.samples_per_pixel), 1, kMaxSamplesPerPixel,
-                   {.usual = kDefaultSamples,
-                    .replaces = {"quality", "target_error", "time_limit", "min_spp", "max_spp", "error_in"}});
+                   {.replaces = {"quality", "target_error", "time_limit", "min_spp", "max_spp", "error_in"}});
   table.add("quality", PROMIN_AT(quality), NameOf<Quality>{quality_names()},
             {.usual = "normal", .replaces = {"spp", "target_error", "time_limit", "min_spp", "max_spp", "error_in"}});
   table.add_number("target_error", PROMIN_AT(error.target), static_cast<double>(kMinTargetError), 1.0,
