@@ -165,8 +165,9 @@ class Renderer:
         and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
         Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
         If this view frames the scene, the light that is added and the ground stand on its `up`. light: the light that
-        is added to a scene without light: "auto", "studio", "headlight", "none", "soft" or "fill". The soft light is the studio
-        with soft shadows of its lamps and its sky, and with a ground. ground: True if a ground under the scene shows
+        is added to a scene without light: "auto", "studio", "headlight", "none", "soft" or "fill". The soft light is the
+        studio with soft shadows of its lamps and its sky, and with a ground. The fill is a weaker studio without its
+        directional light. "auto" chooses it for a scene that its own surfaces light. ground: True if a ground under the scene shows
         its shadow, False if not; None: only with soft light. background: the background, as in `promin render
         --background`. Three sRGB numbers from 0 to 1, a name such as "white", or "#80a0ff" are a colour that pictures
         show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone mapped. "environment" shows the environment
@@ -650,7 +651,7 @@ def _count_samples(view: View) -> int:
         size = (crop[2] - crop[0], crop[3] - crop[1])
     else:
         size = _promin.choose_size(to_dict(Camera()), size_of(whole)) or (1, 1)
-    samples = whole.min_spp or 1 if has_target(whole) else whole.spp
+    samples = (whole.min_spp if has_target(whole) else whole.spp) or 1
     return max(0, size[0] * size[1] * samples)
 
 

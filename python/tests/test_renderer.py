@@ -211,17 +211,22 @@ def test_soft_light_has_soft_shadows_and_a_ground(box: promin.Scene) -> None:
 
 
 def test_surfaces_that_emit_much_light_light_others() -> None:
-    def lit_by(radiance: float) -> promin.Renderer:
+    def lit_by(radiance: float, light: str = "none", integrator: str | None = None) -> promin.Renderer:
         scene = promin.Scene()
         scene.add_triangles([[-2, 0, -2], [0, 0, 4], [2, 0, -2]], [[0, 1, 2]])
         lamp = scene.add_material(promin.MetallicRoughness(emissive=(radiance,) * 3))
         scene.add_triangles([[-1, 1, -1], [0, 1, 1], [1, 1, -1]], [[0, 1, 2]], material=lamp)
-        return promin.Renderer(scene, light="none", view=promin.View(size=(24, 18), spp=4))
+        view = promin.View(size=(24, 18), spp=4, integrator=integrator)
+        return promin.Renderer(scene, light=light, view=view)
 
     bright, dim = lit_by(9.0), lit_by(1.0)
     assert (bright.render().rgb == bright.render(integrator="direct").rgb).all()
     assert (bright.render().rgb != bright.render(integrator="whitted").rgb).any()
     assert (dim.render().rgb == dim.render(integrator="whitted").rgb).all()
+    # A scene that its lamp lights gets only the fill, unless the lamp lights nothing.
+    assert (lit_by(9.0, "auto").render().rgb == lit_by(9.0, "fill").render().rgb).all()
+    assert not lit_by(9.0, "auto").lights and lit_by(1.0, "auto").lights
+    assert lit_by(9.0, "auto", "whitted").lights
 
 
 def test_a_centre_moves_camera_light_and_positions() -> None:

@@ -86,8 +86,8 @@ def test_a_view_has_the_defaults_of_the_library() -> None:
     assert (view.filter, view.depth) == (theirs["filter"], theirs["depth_kind"])
     assert _view.mode_of(view) == theirs["mode"]
     assert view.error_in == CHOICES["error_in"][0]
-    open_ones = {"camera", "size", "crop", "spp", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
-    open_ones |= {"filter_width", "integrator", *_view.POSE}
+    open_ones = {"camera", "size", "crop", "max_depth", "target_error", "time_limit", "min_spp", "max_spp", "quality"}
+    open_ones |= {"spp", "filter_width", "integrator", *_view.POSE}
     assert {f.name for f in dataclasses.fields(view) if f.default is None} == open_ones
     told = told_fields(promin.View)
     target = DEFAULTS["ErrorTarget"]
@@ -99,7 +99,8 @@ def test_a_view_has_the_defaults_of_the_library() -> None:
 
 
 def test_what_is_left_open_of_a_view_is_as_the_library_has_it() -> None:
-    record = _view.to_record(promin.View(), _records.to_dict(promin.Camera()), promin.Display(), 5)
+    view = _view.settle_quality(promin.View())
+    record = _view.to_record(view, _records.to_dict(promin.Camera()), promin.Display(), 5)
     theirs = DEFAULTS["View"]
     assert record.keys() == theirs.keys()
     for name in theirs.keys() - {"camera", "samples_per_pixel"}:
