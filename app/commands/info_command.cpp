@@ -226,7 +226,7 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
 /// A scene as `promin render` renders it, with added lights.
 struct LitScene {
   AssumedLight assumed;
-  world::Scene flat;
+  FeatureMask features;
   /// The packed scene, without texels.
   PackedScene packed;
 };
@@ -234,13 +234,13 @@ struct LitScene {
 LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
   LookOptions look;
   look.light = choose_light(scene, look.light, usual_integrator(scene, look.light));
-  LitScene lit{.assumed = light_up(scene, look, surroundings),
-               .flat = world::flatten(scene, world::Purpose::kPictures, Instancing::kAuto),
-               .packed = {}};
-  for (auto& image : lit.flat.images) {
+  LitScene lit{.assumed = light_up(scene, look, surroundings), .features = {}, .packed = {}};
+  world::Scene flat = world::flatten(scene, world::Purpose::kPictures, Instancing::kAuto);
+  for (auto& image : flat.images) {
     image = std::make_shared<const TextureImage>(TextureImage{image->name, image->size, {}, image->use});
   }
-  lit.packed = pack_scene(lit.flat, builder_names().front());
+  lit.features = features_of(flat);
+  lit.packed = pack_scene(std::move(flat), builder_names().front());
   for (const Problem& warning : lit.packed.warnings) scene.warnings.push_back(message_of(warning));
   return lit;
 }
@@ -254,7 +254,7 @@ void print_scene_json(Scene scene, const EnvironmentChoice& surroundings) {
   json["display"] = json_of(display);
   json["assumed"] = list_assumptions(scene, {}, lit.assumed, usual_integrator(scene, LightChoice::kAuto), display);
   json["counts"]["instances"] = lit.packed.instance_count;
-  json["features"] = feature_names(features_of(lit.flat));
+  json["features"] = feature_names(lit.features);
   json["warnings"] = scene.warnings;
   fmt::print("{}", write_json(json));
 }
@@ -306,7 +306,7 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
   print_motion(scene);
   print_row("bounds", describe_bounds(bounds_of(scene), scene.center));
   if (scene.center != dvec3(0.0)) print_row("center", describe_place(vec3(0.0F), scene.center, 6));
-  print_row("features", fmt::format("{}", fmt::join(feature_names(features_of(lit.flat)), ", ")));
+  print_row("features", fmt::format("{}", fmt::join(feature_names(lit.features), ", ")));
   print_row("BVH", fmt::format("{} nodes by {}, depth {}, SAH cost {:.4g}", packed.bvh.nodes, packed.bvh.builder,
                                packed.bvh.depth, packed.bvh.sah_cost));
   const uint64_t shading_bytes = scene.materials.size() * sizeof(layout::MaterialRecord) +

@@ -81,8 +81,26 @@ bool gives_light(const Environment& environment) {
 /// At least the largest alignment that Vulkan allows a device to require for a texel view, in bytes.
 constexpr uint64_t kTexelViewAlignment = 256;
 
-EmitterGeometry geometry_of(const PackedScene& packed) {
-  return {packed.primitives, packed.surfaces.surfaces, packed.tree().nodes, packed.surfaces.vertices.uvs};
+EmitterGeometry geometry_of(const PackedScene& packed, std::span<const layout::Node> records) {
+  return {packed.primitives, packed.surfaces.surfaces, records, packed.surfaces.vertices.uvs};
+}
+
+/// Writes the records of instances behind the nodes.
+void write_records(gpu::Buffer& nodes, const UpperLevel& level, std::span<const uint32_t> order, uint64_t first) {
+  if (order.empty()) return;
+  nodes.write_by(
+      [&](std::span<std::byte> bytes) {
+        level.put_records(order, {reinterpret_cast<layout::Node*>(bytes.data()), bytes.size() / sizeof(layout::Node)});
+      },
+      order.size() * layout::INSTANCE_RECORDS * sizeof(layout::Node), first * sizeof(layout::Node));
+}
+
+gpu::Buffer upload_nodes(const gpu::Device& device, const PackedScene& packed) {
+  const std::span<const std::byte> nodes = std::as_bytes(packed.tree().nodes);
+  gpu::Buffer buffer(device, nodes.size() + packed.record_bytes(), kStorageOrTexels);
+  buffer.write(nodes);
+  if (packed.upper) write_records(buffer, *packed.upper, packed.instance_order, packed.first_instance);
+  return buffer;
 }
 
 /// Rounds the size of the stack up, so that scenes of about the same depth share pipelines.
@@ -152,7 +170,7 @@ DeviceScene::PlacedTail DeviceScene::place_tail(const Tail& tail) const {
 
 DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, const ShadingParts& shading)
     : device_(&device),
-      nodes_(upload(device, std::as_bytes(packed.tree().nodes))),
+      nodes_(upload_nodes(device, packed)),
       primitives_(upload(device, std::as_bytes(std::span(packed.primitives)))),
       node_texels_(nodes_.make_texel_view()),
       primitive_texels_(primitives_.make_texel_view()),
@@ -180,7 +198,10 @@ DeviceScene::DeviceScene(const gpu::Device& device, const PackedScene& packed, c
   materials_.assign(shading.materials.begin(), shading.materials.end());
   emission_maps_ = make_emission_maps(packed.surfaces.images, textures_, materials_);
   uv_count_ = packed.surfaces.vertices.uvs.size();
-  find_emissive(geometry_of(packed));
+  const bool needs_records = packed.upper != nullptr && std::ranges::any_of(materials_, emits_light);
+  const UnsetVector<layout::Node> records =
+      needs_records ? packed.upper->make_records(packed.instance_order) : UnsetVector<layout::Node>();
+  find_emissive(geometry_of(packed, records));
   put_direct_sources(tail, shading.environment);
   take_shading_buffer(make_shading_buffer(place_tail(tail).end()));
   for (const Placed& placed : head.parts()) write(*shading_, placed);
@@ -262,12 +283,7 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   reserve_stack(upper.stack_size);
   nodes_.write(std::as_bytes(std::span(&upper.root, 1)));
   if (!upper.nodes.empty()) nodes_.write(std::as_bytes(std::span(upper.nodes)), level.first_node() * kNodeBytes);
-  if (!upper.order.empty()) {
-    UnsetVector<layout::Node> records;
-    records.resize(upper.record_count());
-    level.put_records(upper.order, records);
-    nodes_.write(std::as_bytes(std::span(records)), upper.first_record * kNodeBytes);
-  }
+  write_records(nodes_, level, upper.order, upper.first_record);
   uploads_.moves += (1 + upper.nodes.size() + upper.record_count()) * kNodeBytes;
   constants_.tree_bounds = center_and_radius(upper.bounds);
   if (shading != nullptr) constants_.glass_solids = shading->glass_solids;
@@ -295,7 +311,7 @@ void DeviceScene::set_geometry(const PackedScene& packed, const ShadingParts& sh
   take_tree(packed);
   constants_.glass_solids = shading.glass_solids;
   emitter_ranges_ = EmitterRanges(packed);
-  const EmitterGeometry geometry = geometry_of(packed);
+  const EmitterGeometry geometry = geometry_of(packed, {});
   NewParts parts = parts_of(shading);
   parts.geometry = &geometry;
   replace(parts);
@@ -353,18 +369,26 @@ void DeviceScene::find_emissive(const EmitterGeometry& geometry) {
   emissive_ = find_emissive_surfaces(geometry, emitter_ranges_, materials_, {textures_, emission_maps_});
 }
 
+UnsetVector<layout::Node> DeviceScene::read_records() const {
+  UnsetVector<layout::Node> records;
+  records.resize(size_t{emitter_ranges_.instance_count} * layout::INSTANCE_RECORDS);
+  if (!records.empty()) {
+    nodes_.read(std::as_writable_bytes(std::span(records)), emitter_ranges_.first_instance * sizeof(layout::Node));
+  }
+  return records;
+}
+
 void DeviceScene::find_emissive_again() {
-  std::vector<layout::Node> nodes(nodes_.size_bytes() / sizeof(layout::Node));
+  const UnsetVector<layout::Node> records = read_records();
   std::vector<layout::Primitive> primitives(primitives_.size_bytes() / sizeof(layout::Primitive));
   std::vector<layout::SurfaceRecord> surfaces(primitives.size());
-  nodes_.read(std::as_writable_bytes(std::span(nodes)));
   primitives_.read(std::as_writable_bytes(std::span(primitives)));
   shading_->read(std::as_writable_bytes(std::span(surfaces)));
   std::vector<vec4> uvs(uv_count_);
   if (!uvs.empty()) {
     shading_->read(std::as_writable_bytes(std::span(uvs)), uint64_t{constants_.first_texture.x} * sizeof(vec4));
   }
-  find_emissive({primitives, surfaces, nodes, uvs});
+  find_emissive({primitives, surfaces, records, uvs});
 }
 
 std::span<const uint32_t> DeviceScene::source_numbers(Integrator integrator) const {

@@ -49,6 +49,8 @@ class DeviceScene {
   bool has_space_for(const PackedScene& packed) const;
   /// Replaces the geometry, for which there is space, and the shading. Images and textures stay.
   void set_geometry(const PackedScene& packed, const ShadingParts& shading);
+  /// Returns the records of the instances (UpperLevel::put_records).
+  UnsetVector<layout::Node> read_records() const;
   /// Replaces the upper level after instances have moved, and the shading; null keeps it. Textures stay.
   void set_upper_level(const UpperLevel& level, const UpperNodes& upper, const ShadingParts* shading = nullptr);
   void set_glass_solids(std::shared_ptr<const GlassSolids> solids) { constants_.glass_solids = std::move(solids); }

@@ -110,7 +110,7 @@ class EmissiveFinder {
     }
     leaves_out_instances_ = count_of_instances() > kMostInstancedEmitters;
     if (!leaves_out_instances_) {
-      for (uint32_t i = 0; i < ranges.instance_count; ++i) add_instance(ranges.first_instance + INSTANCE_RECORDS * i);
+      for (uint32_t i = 0; i < ranges.instance_count; ++i) add_instance(INSTANCE_RECORDS * i);
     }
     // The tree determines the order of primitives, and it may refer to a primitive several times.
     const auto key = [](const EmissiveSurface& s) { return std::tuple(s.order, s.part, s.primitive); };
@@ -156,9 +156,9 @@ class EmissiveFinder {
     return textures_.maps[texture.image]->mean_on(places, texture);
   }
 
-  /// Returns the index of the mesh of the instance with this record.
+  /// Returns the index of the mesh of an instance, whose first record has this index.
   size_t mesh_of(uint32_t record) const {
-    const uint32_t root = geometry_.nodes[record].children.y;
+    const uint32_t root = geometry_.records[record].children.y;
     const auto mesh = std::ranges::lower_bound(ranges_.meshes, root, {}, &MeshRange::root);
     return static_cast<size_t>(mesh - ranges_.meshes.begin());
   }
@@ -174,8 +174,8 @@ class EmissiveFinder {
     }
     uint64_t count = 0;
     for (uint32_t i = 0; i < ranges_.instance_count; ++i) {
-      const uint32_t record = ranges_.first_instance + INSTANCE_RECORDS * i;
-      const uint32_t material = geometry_.nodes[record + 1].frame.w;
+      const uint32_t record = INSTANCE_RECORDS * i;
+      const uint32_t material = geometry_.records[record + 1].frame.w;
       const size_t mesh = mesh_of(record);
       if (material == NO_INSTANCE_MATERIAL) {
         count += own_counts[mesh];
@@ -187,8 +187,8 @@ class EmissiveFinder {
   }
 
   void add_instance(uint32_t record) {
-    const Node& map = geometry_.nodes[record];
-    const Node& look = geometry_.nodes[record + 1];
+    const Node& map = geometry_.records[record];
+    const Node& look = geometry_.records[record + 1];
     const uint32_t material = look.frame.w;
     if (material != NO_INSTANCE_MATERIAL && !emits_[material]) return;
     const std::array<dvec3, 3> rows = {vector_of(look.frame), vector_of(look.lo), vector_of(look.hi)};
@@ -201,7 +201,7 @@ class EmissiveFinder {
         corner = dvec3(glm::dot(rows[0], corner), glm::dot(rows[1], corner), glm::dot(rows[2], corner));
       }
       const uint32_t order = map.children.z + geometry_.primitives[i].c.y;
-      add(i, record + FIRST_INSTANCE_PART, order, area_of_triangle(corners), used);
+      add(i, ranges_.first_instance + record + FIRST_INSTANCE_PART, order, area_of_triangle(corners), used);
     }
   }
 

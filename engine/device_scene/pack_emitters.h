@@ -43,7 +43,8 @@ EmissionMaps make_emission_maps(const PackedImages& images, std::span<const Text
 struct EmitterGeometry {
   std::span<const layout::Primitive> primitives;
   std::span<const layout::SurfaceRecord> surfaces;
-  std::span<const layout::Node> nodes;
+  /// The records of the instances (UpperLevel::put_records).
+  std::span<const layout::Node> records;
   /// Texture coordinates of vertices.
   std::span<const vec4> uvs;
 };

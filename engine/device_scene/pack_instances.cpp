@@ -115,6 +115,20 @@ uvec4 row_of(const glm::mat3& matrix, int row, uint32_t last) {
   return {word_of(matrix[0][row]), word_of(matrix[1][row]), word_of(matrix[2][row]), last};
 }
 
+/// Returns the transform of an instance that its first record contains.
+world::InstanceMap map_of_record(const Node& record) {
+  const std::array<uvec4, 3> rows = {record.frame, record.lo, record.hi};
+  world::InstanceMap map;
+  for (int row = 0; row < 3; ++row) {
+    const uvec4& words = rows[static_cast<size_t>(row)];
+    for (int column = 0; column < 3; ++column) {
+      map.object_from_world[column][row] = std::bit_cast<float>(words[column]);
+    }
+    map.origin[row] = std::bit_cast<float>(words.w);
+  }
+  return map;
+}
+
 }  // namespace
 
 void keep_top_boxes(GeometryTree& tree) {
@@ -162,46 +176,45 @@ UpperLevel::UpperLevel(const TwoLevels& input, const BuildOptions& options) : ow
     for (size_t i = begin; i < end; ++i) {
       const world::Instance& source = input.scene.instances[shown[i]];
       PlacedInstance& instance = instances_[i];
-      instance.object = source.object;
-      instance.mesh = source.mesh;
+      instance.source = source;
       const bool has_own = !input.scene.meshes[source.mesh].triangle_materials.empty();
       instance.first_order = input.first_order[source.object];
       instance.material = has_own ? NO_INSTANCE_MATERIAL : input.scene.objects[source.object].material;
-      place(instance, source.world_from_object);
+      place(instance, source.map);
     }
   });
 }
 
-/// Sets everything that depends on the transform. `outer` does not depend on the tree of the mesh, because the bits of
-/// t depend on it.
-void UpperLevel::place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const {
-  const SharedMesh& mesh = meshes_[instance.mesh];
-  const world::InstanceMap map = world::map_of({instance.object, instance.mesh, world_from_object});
-  instance.object_from_world = map.object_from_world;
-  instance.origin = map.origin;
-  instance.box = world::bounds_of(map, mesh.top_boxes);
-  instance.outer = world::bounds_of(map, {&mesh.box, 1});
+/// Sets everything that depends on the transform.
+void UpperLevel::place(PlacedInstance& instance, const world::InstanceMap& map) const {
+  instance.source.map = map;
+  instance.box = world::bounds_of(map, meshes_[instance.source.mesh].top_boxes);
+}
+
+Bounds UpperLevel::outer_box(const PlacedInstance& instance) const {
+  return world::bounds_of(instance.source.map, {&meshes_[instance.source.mesh].box, 1});
 }
 
 UpperLevel::Records UpperLevel::records_of(const PlacedInstance& instance) const {
-  const SharedMesh& mesh = meshes_[instance.mesh];
+  const SharedMesh& mesh = meshes_[instance.source.mesh];
+  const world::InstanceMap& map = instance.source.map;
+  const Bounds outer = outer_box(instance);
   const float radius = largest_component(glm::max(glm::abs(dvec3(mesh.box.lo)), glm::abs(dvec3(mesh.box.hi))));
-  const dvec3 origin(instance.origin);
-  const float world_radius =
-      largest_component(glm::max(dvec3(instance.outer.hi) - origin, origin - dvec3(instance.outer.lo)));
-  const glm::mat3& turn = instance.object_from_world;
+  const dvec3 origin(map.origin);
+  const float world_radius = largest_component(glm::max(dvec3(outer.hi) - origin, origin - dvec3(outer.lo)));
+  const glm::mat3& turn = map.object_from_world;
   Records records{};
   Node& to_object = records[0];
-  to_object.frame = row_of(turn, 0, word_of(instance.origin.x));
-  to_object.lo = row_of(turn, 1, word_of(instance.origin.y));
-  to_object.hi = row_of(turn, 2, word_of(instance.origin.z));
+  to_object.frame = row_of(turn, 0, word_of(map.origin.x));
+  to_object.lo = row_of(turn, 1, word_of(map.origin.y));
+  to_object.hi = row_of(turn, 2, word_of(map.origin.z));
   to_object.children = uvec4(word_of(radius), mesh.root, instance.first_order, word_of(world_radius));
-  // E of world::InstanceMap.
+  // E, the inverse of R.
   const glm::mat3 back(glm::inverse(dmat3(turn)));
   Node& to_world = records[1];
   to_world.frame = row_of(back, 0, instance.material);
   const bool is_mirrored = glm::determinant(dmat3(turn)) < 0.0;
-  const uint32_t hash = hashes_of(instance.object, 0) & INSTANCE_HASH_MASK;
+  const uint32_t hash = hashes_of(instance.source.object, 0) & INSTANCE_HASH_MASK;
   to_world.lo = row_of(back, 1, hash | (is_mirrored ? INSTANCE_IS_MIRRORED : 0U));
   to_world.hi = row_of(back, 2, 0);
   return records;
@@ -214,6 +227,13 @@ void UpperLevel::put_records(std::span<const uint32_t> order, std::span<Node> re
       std::ranges::copy(records_of(instances_[order[i]]), records.begin() + static_cast<std::ptrdiff_t>(2 * i));
     }
   });
+}
+
+UnsetVector<Node> UpperLevel::make_records(std::span<const uint32_t> order) const {
+  UnsetVector<Node> records;
+  records.resize(order.size() * INSTANCE_RECORDS);
+  put_records(order, records);
+  return records;
 }
 
 /// Packs the subtrees of the scene's own primitives, each by itself, so that they stay when instances move.
@@ -241,9 +261,14 @@ UpperNodes UpperLevel::build(const BuildOptions& options) {
   boxes.resize(count + own_boxes_.size());
   UpperNodes upper;
   upper.bounds = own_bounds_;
-  for (size_t i = 0; i < count; ++i) {
-    boxes[i] = instances_[i].box;
-    upper.bounds.extend(instances_[i].outer);
+  const auto take_boxes = [&](size_t begin, size_t end, Bounds& outer) {
+    for (size_t i = begin; i < end; ++i) {
+      boxes[i] = instances_[i].box;
+      outer.extend(outer_box(instances_[i]));
+    }
+  };
+  for (const Bounds& outer : make_parts(count, kInstanceChunk, options.thread_count, Bounds(), take_boxes)) {
+    upper.bounds.extend(outer);
   }
   std::ranges::copy(own_boxes_, boxes.begin() + static_cast<std::ptrdiff_t>(count));
   Bvh bvh = build_bvh("sah", {boxes}, options);
@@ -285,10 +310,10 @@ UpperNodes UpperLevel::build(const BuildOptions& options) {
 
 UnsetVector<Node> UpperLevel::join(const TwoLevels& input, const UpperNodes& upper) {
   UnsetVector<Node> nodes;
-  nodes.resize(upper.first_record + upper.record_count());
+  nodes.resize(upper.first_record);
   nodes[0] = upper.root;
   std::ranges::copy(own_nodes_, nodes.begin() + 1);
-  own_nodes_ = {};
+  std::exchange(own_nodes_, {});
   uint32_t reference = input.own_reference_count;
   for (size_t i = 0; i < meshes_.size(); ++i) {
     const UnsetVector<Node>& below = input.meshes[i].nodes;
@@ -300,25 +325,60 @@ UnsetVector<Node> UpperLevel::join(const TwoLevels& input, const UpperNodes& upp
     reference += static_cast<uint32_t>(input.meshes[i].primitives.size());
   }
   std::ranges::copy(upper.nodes, nodes.begin() + first_node_);
-  std::fill(nodes.begin() + first_node_ + static_cast<std::ptrdiff_t>(upper.nodes.size()),
-            nodes.begin() + upper.first_record, Node{});
-  put_records(upper.order, std::span(nodes).subspan(upper.first_record));
+  std::fill(nodes.begin() + first_node_ + static_cast<std::ptrdiff_t>(upper.nodes.size()), nodes.end(), Node{});
   return nodes;
 }
 
 void UpperLevel::move(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const BuildOptions& options) {
   for_each_chunk(world_from_object.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
     for (const auto& [object, transform] : world_from_object.subspan(begin, end - begin)) {
-      const size_t i = find(object);
-      if (i < instances_.size()) place(instances_[i], glm::dmat4x3(transform));
+      move(object, world::map_of(transform));
     }
   });
 }
 
+void UpperLevel::move(std::span<const world::Instance> instances, const BuildOptions& options) {
+  for_each_chunk(instances.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
+    for (const world::Instance& instance : instances.subspan(begin, end - begin)) move(instance.object, instance.map);
+  });
+}
+
+void UpperLevel::move(uint32_t object, const world::InstanceMap& map) {
+  const size_t i = find(object);
+  if (i < instances_.size()) place(instances_[i], map);
+}
+
+void UpperLevel::forget() {
+  std::exchange(instances_, {});
+  is_forgotten_ = true;
+}
+
+void UpperLevel::restore(std::span<const Node> records, std::span<const uint32_t> first_order,
+                         const BuildOptions& options) {
+  instances_.resize(records.size() / INSTANCE_RECORDS);
+  for_each_chunk(instances_.size(), kInstanceChunk, options.thread_count, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Node& to_object = records[INSTANCE_RECORDS * i];
+      PlacedInstance& instance = instances_[i];
+      instance.first_order = to_object.children.z;
+      instance.material = records[INSTANCE_RECORDS * i + 1].frame.w;
+      // The last of the objects that begin with this number has the primitives.
+      const auto next = std::ranges::upper_bound(first_order, instance.first_order);
+      instance.source.object = static_cast<uint32_t>(next - first_order.begin()) - 1;
+      const auto mesh = std::ranges::lower_bound(meshes_, to_object.children.y, {}, &SharedMesh::root);
+      instance.source.mesh = static_cast<uint32_t>(mesh - meshes_.begin());
+      place(instance, map_of_record(to_object));
+    }
+  });
+  std::ranges::sort(instances_, {}, [](const PlacedInstance& instance) { return instance.source.object; });
+  is_forgotten_ = false;
+}
+
 size_t UpperLevel::find(uint32_t object) const {
-  const auto found = std::ranges::lower_bound(instances_, object, {}, &PlacedInstance::object);
-  return found == instances_.end() || found->object != object ? instances_.size()
-                                                              : static_cast<size_t>(found - instances_.begin());
+  const auto object_of = [](const PlacedInstance& instance) { return instance.source.object; };
+  const auto found = std::ranges::lower_bound(instances_, object, {}, object_of);
+  return found == instances_.end() || object_of(*found) != object ? instances_.size()
+                                                                  : static_cast<size_t>(found - instances_.begin());
 }
 
 }  // namespace promin

@@ -92,16 +92,26 @@ class UpperLevel {
 
   /// Builds the nodes for the current transforms.
   UpperNodes build(const BuildOptions& options = {});
-  /// Returns all nodes of both levels. Call it once, with the input of the constructor.
+  /// Returns all nodes of both levels, without the records. Call it once, with the input of the constructor.
   UnsetVector<layout::Node> join(const TwoLevels& input, const UpperNodes& upper);
 
   /// Writes the records of instances (UpperNodes::order), which fill `records`.
   void put_records(std::span<const uint32_t> order, std::span<layout::Node> records,
                    const BuildOptions& options = {}) const;
+  UnsetVector<layout::Node> make_records(std::span<const uint32_t> order) const;
 
   /// Replaces the transforms of different objects. Objects that are not instances, or whose mesh no ray can hit, are
   /// ignored.
   void move(std::span<const std::pair<uint32_t, dmat4>> world_from_object, const BuildOptions& options = {});
+  void move(std::span<const world::Instance> instances, const BuildOptions& options = {});
+
+  /// Frees the data of the instances. Only restore() may be called next.
+  void forget();
+  /// Returns whether the data of the instances must be restored before any other call.
+  bool is_forgotten() const { return is_forgotten_; }
+  /// Restores the data of the instances from their records. `first_order` is that of TwoLevels.
+  void restore(std::span<const layout::Node> records, std::span<const uint32_t> first_order,
+               const BuildOptions& options = {});
 
   uint32_t first_node() const { return first_node_; }
   /// Returns the index of the root of a mesh's tree.
@@ -111,7 +121,7 @@ class UpperLevel {
   /// Returns the bounds of the mesh of an object; empty if it is not an instance or if no ray can hit its mesh.
   Bounds mesh_box(uint32_t object) const {
     const size_t i = find(object);
-    return i < instances_.size() ? meshes_[instances_[i].mesh].box : Bounds();
+    return i < instances_.size() ? meshes_[instances_[i].source.mesh].box : Bounds();
   }
 
  private:
@@ -122,26 +132,24 @@ class UpperLevel {
     uint32_t root = 0;
   };
   struct PlacedInstance {
-    uint32_t object;
-    uint32_t mesh;
+    world::Instance source;
     /// The number of its first primitive.
     uint32_t first_order;
     /// The material of all triangles, or NO_INSTANCE_MATERIAL.
     uint32_t material;
-    /// R and c (world::InstanceMap).
-    glm::mat3 object_from_world;
-    vec3 origin;
     /// A box that contains the instance.
     Bounds box;
-    /// A box that does not depend on the tree of the mesh, because the bits of t depend on it.
-    Bounds outer;
   };
   /// The records of an instance, as layout.h describes them.
   using Records = std::array<layout::Node, layout::INSTANCE_RECORDS>;
   static_assert(layout::INSTANCE_RECORDS == 2);
   Records records_of(const PlacedInstance& instance) const;
 
-  void place(PlacedInstance& instance, const glm::dmat4x3& world_from_object) const;
+  void place(PlacedInstance& instance, const world::InstanceMap& map) const;
+  void move(uint32_t object, const world::InstanceMap& map);
+  /// Returns a box that contains an instance. It does not depend on the tree of the mesh, because the bits of t depend
+  /// on it.
+  Bounds outer_box(const PlacedInstance& instance) const;
   void collect_own(const TwoLevels& input);
   /// Returns the index of an object's instance; instance_count() for an object without an instance.
   size_t find(uint32_t object) const;
@@ -149,6 +157,7 @@ class UpperLevel {
   std::vector<SharedMesh> meshes_;
   /// The instances that a ray can hit, in the order of their objects.
   UnsetVector<PlacedInstance> instances_;
+  bool is_forgotten_ = false;
   Bounds own_bounds_;
   /// The subtrees of the scene's own primitives: their boxes, and the words of the nodes that contain them.
   std::vector<Bounds> own_boxes_;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "bvh/pack_tree.h"
 #include "core/file.h"
@@ -46,10 +47,10 @@ uint32_t count_solids(const Collected& collected) {
 
 /// Packs all parts of a scene except its tree and its images. The tree's references must exist.
 void pack_contents(PackedScene& packed, const world::Scene& scene, Collected& collected) {
-  packed.numbers = std::move(collected.numbers);
   packed.features = geometry_features(scene);
   packed.shown_materials = find_shown_materials(scene);
   packed.mask_cutoffs = find_mask_cutoffs(scene);
+  packed.numbers = std::move(collected.numbers);
   packed.degenerate_count = collected.degenerate_count;
   const std::span<const uint32_t> references = packed.references;
   UnsetVector<SurfaceRecord>& surfaces = packed.surfaces.surfaces;
@@ -246,8 +247,8 @@ void insert_meshes(PackedScene& packed, std::vector<PackedMesh>& meshes, size_t 
       surfaces.push_back(surface);
     }
     packed.shared_triangle_count += mesh.primitives.size() + mesh.degenerate_count;
-    mesh.primitives = {};
-    mesh.surfaces = {};
+    std::exchange(mesh.primitives, {});
+    std::exchange(mesh.surfaces, {});
     mesh.vertices = {};
   }
   const auto at = static_cast<std::ptrdiff_t>(own_count);
@@ -276,9 +277,19 @@ BvhStats stats_of(const BvhStats& upper, const BvhStats& own, const std::vector<
   return stats;
 }
 
+/// Adds the numbers of instances.
+void number_instances(PackedScene& packed, const world::Scene& scene, const std::vector<PackedMesh>& meshes) {
+  packed.numbers.mesh_of_object.assign(scene.objects.size(), PrimitiveNumbers::kNoMesh);
+  for (const world::Instance& instance : scene.instances) {
+    packed.numbers.mesh_of_object[instance.object] = instance.mesh;
+    packed.degenerate_count += meshes[instance.mesh].degenerate_count;
+  }
+}
+
 /// Packs a scene with instances and its trees (make_trees), without its images.
-PackedScene pack_two_levels(const world::Scene& scene, Geometries geometries, std::vector<GeometryTree> trees,
+PackedScene pack_two_levels(const SceneToPack& to_pack, Geometries geometries, std::vector<GeometryTree> trees,
                             const BuildOptions& options) {
+  const world::Scene& scene = *to_pack;
   const Stopwatch packing;
   std::vector<PackedMesh> meshes;
   for (size_t i = 0; i < geometries.meshes.size(); ++i) {
@@ -301,18 +312,25 @@ PackedScene pack_two_levels(const world::Scene& scene, Geometries geometries, st
                 ", or use the builder sah", Setting::kBuilder);
   Bounds own_bounds;
   for (const Bounds& box : collected.boxes) own_bounds.extend(box);
+  packed.references = std::move(own.references);
+  pack_contents(packed, scene, collected);
+  packed.numbers.are_instances_whole = geometries.are_instances_whole;
+  number_instances(packed, scene, meshes);
+  for (PackedMesh& mesh : meshes) packed.numbers.mesh_parts.push_back(std::move(mesh.parts));
   const TwoLevels levels{
-      scene, own.binary, own_bounds, static_cast<uint32_t>(own_count), meshes, collected.numbers.first_order};
+      scene, own.binary, own_bounds, static_cast<uint32_t>(own_count), meshes, packed.numbers.first_order};
   packed.upper = std::make_shared<UpperLevel>(levels, options);
-  const UpperNodes upper = packed.upper->build(options);
+  // The upper level has its own data of instances.
+  to_pack.free_geometry();
+  UpperNodes upper = packed.upper->build(options);
   check_at_most(MAX_NODES, upper.first_record, scene, "the scene's tree has", "nodes");
   check_at_most(CHILD_INSTANCE_INDEX, upper.first_record + upper.record_count(), scene, "the scene's tree has",
                 "nodes and instances");
   packed.nodes = packed.upper->join(levels, upper);
   packed.bvh_ms = packing.ms();
   packed.bvh = stats_of(upper.stats, own.stats, meshes);
-  packed.bvh.bytes = packed.nodes.size() * sizeof(Node);
-  packed.references = std::move(own.references);
+  packed.instance_order = std::move(upper.order);
+  packed.bvh.bytes = packed.nodes.size() * sizeof(Node) + packed.record_bytes();
   packed.stack_size = upper.stack_size + kSpareStack;
   packed.instance_count = packed.upper->instance_count();
   packed.first_instance = upper.first_record;
@@ -322,17 +340,7 @@ PackedScene pack_two_levels(const world::Scene& scene, Geometries geometries, st
     packed.mesh_ranges.push_back({packed.upper->root_of(i), first, end});
     first = end;
   }
-  pack_contents(packed, scene, collected);
   packed.tree_bounds = center_and_radius(upper.bounds);
-  packed.numbers.are_instances_whole = geometries.are_instances_whole;
-  packed.numbers.mesh_of_object.assign(scene.objects.size(), PrimitiveNumbers::kNoMesh);
-  for (const world::Instance& instance : scene.instances) {
-    packed.numbers.mesh_of_object[instance.object] = instance.mesh;
-  }
-  for (PackedMesh& mesh : meshes) packed.numbers.mesh_parts.push_back(std::move(mesh.parts));
-  for (const world::Instance& instance : scene.instances) {
-    packed.degenerate_count += meshes[instance.mesh].degenerate_count;
-  }
   insert_meshes(packed, meshes, own_count);
   return packed;
 }
@@ -363,9 +371,9 @@ class TreeSource {
   TreeSource(std::string_view builder, const BuildOptions& options, const std::filesystem::path& file)
       : builder_(builder), options_(options), file_(&file), is_shared_(true) {}
 
-  PackedScene make_packed(const world::Scene& scene, uint64_t texture_bytes) const {
-    PackedScene packed = scene.instances.empty() ? pack_without_instances(scene) : pack_with_instances(scene);
-    add_images(packed, scene, texture_bytes);
+  PackedScene make_packed(const SceneToPack& scene, uint64_t texture_bytes) const {
+    PackedScene packed = scene->instances.empty() ? pack_without_instances(*scene) : pack_with_instances(scene);
+    add_images(packed, *scene, texture_bytes);
     return packed;
   }
 
@@ -382,15 +390,15 @@ class TreeSource {
     });
   }
 
-  PackedScene pack_with_instances(const world::Scene& scene) const {
-    Geometries geometries = collect_geometries(scene);
+  PackedScene pack_with_instances(const SceneToPack& scene) const {
+    Geometries geometries = collect_geometries(*scene);
     std::vector<GeometryTree> trees;
     std::vector<Problem> warnings;
     bool is_built = false;
     const double trees_ms = get(
         geometries.bounded_count(), warnings, [&] { trees = read_trees(geometries, *file_); },
         [&] {
-          trees = build_trees(geometries, scene, builder_, options_);
+          trees = build_trees(geometries, *scene, builder_, options_);
           is_built = true;
           return views_of(trees);
         });
@@ -488,10 +496,11 @@ uint64_t PackedSurfaces::size_bytes() const {
 }
 
 uint64_t PackedScene::size_bytes() const {
-  return tree().nodes.size_bytes() + std::as_bytes(std::span(primitives)).size() + surfaces.size_bytes();
+  return tree().nodes.size_bytes() + record_bytes() + std::as_bytes(std::span(primitives)).size() +
+         surfaces.size_bytes();
 }
 
-PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options,
+PackedScene pack_scene(const SceneToPack& scene, std::string_view builder, const BuildOptions& options,
                        uint64_t texture_bytes) {
   return TreeSource(builder, options).make_packed(scene, texture_bytes);
 }
@@ -548,11 +557,11 @@ uint64_t hash_instanced(const world::Scene& scene) {
   return hash.value();
 }
 
-PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene, uint64_t texture_bytes) {
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const SceneToPack& scene, uint64_t texture_bytes) {
   return TreeSource(bvh_file).make_packed(scene, texture_bytes);
 }
 
-PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
+PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const SceneToPack& scene,
                                std::string_view builder, const BuildOptions& options, uint64_t texture_bytes) {
   return TreeSource(builder, options, bvh_file).make_packed(scene, texture_bytes);
 }

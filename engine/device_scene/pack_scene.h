@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bvh/builder.h"
@@ -49,7 +50,7 @@ struct MeshRange {
 
 /// Tree, primitives and surfaces, ready to be copied to the device.
 struct PackedScene {
-  /// At least one node; empty if a file contains the nodes.
+  /// At least one node; empty if a file contains the nodes. On the device, the records of instances follow.
   UnsetVector<layout::Node> nodes;
   /// The BVH file with the nodes, and these nodes; null if the tree was built. A scene with instances copies its nodes
   /// from the file.
@@ -67,13 +68,15 @@ struct PackedScene {
   /// The number of instances in the tree, and the number of triangles of the meshes that they share.
   uint64_t instance_count = 0;
   uint64_t shared_triangle_count = 0;
-  /// The upper level of the tree, which is built again if instances move; null without instances.
+  /// The upper level of the tree, which is built again if instances move; null without instances. It writes the records
+  /// of instances in this order (UpperNodes::order).
   std::shared_ptr<UpperLevel> upper;
+  std::vector<uint32_t> instance_order;
   /// True if the tree was built. It may also be read from a file, or be that of an earlier pose (pack_pose).
   bool is_tree_built = false;
   /// The result of find_mask_cutoffs().
   std::vector<float> mask_cutoffs;
-  /// The meshes that instances share, and the index of the first record of an instance in the nodes.
+  /// The meshes that instances share, and the number of nodes, which is the index of the first record of an instance.
   std::vector<MeshRange> mesh_ranges;
   uint32_t first_instance = 0;
   /// The features that the geometry uses.
@@ -108,21 +111,46 @@ struct PackedScene {
   uint32_t own_primitive_count() const { return mesh_ranges.empty() ? first_unbounded() : mesh_ranges.front().first; }
   /// Returns the number of primitives. A triangle in parts counts once, and degenerate triangles count too.
   uint64_t primitive_count() const { return numbers.first_order.empty() ? 0 : numbers.first_order.back(); }
+  /// Returns the size of the records of instances.
+  uint64_t record_bytes() const { return instance_order.size() * layout::INSTANCE_RECORDS * sizeof(layout::Node); }
   uint64_t size_bytes() const;
+};
+
+/// A scene in world space that a constructor packs and uploads. A temporary scene frees its geometry in between.
+class SceneToPack {
+ public:
+  SceneToPack(const world::Scene& scene) : scene_(&scene) {}  // NOLINT(google-explicit-constructor)
+  SceneToPack(world::Scene&& scene)                           // NOLINT(google-explicit-constructor)
+      : scene_(&scene), temporary_(&scene) {}
+  const world::Scene& operator*() const { return *scene_; }
+  const world::Scene* operator->() const { return scene_; }
+  /// Frees objects, meshes and instances if the scene is temporary.
+  void free_geometry() const {
+    if (temporary_ == nullptr) return;
+    // The assignment of {} would keep the memory.
+    std::exchange(temporary_->objects, {});
+    std::exchange(temporary_->meshes, {});
+    std::exchange(temporary_->instances, {});
+  }
+
+ private:
+  const world::Scene* scene_;
+  world::Scene* temporary_ = nullptr;
 };
 
 /// Returns the center and the max-norm radius of a box: on each axis, no corner is farther from the center than the
 /// radius. An empty box has the radius 0.
 vec4 center_and_radius(const Bounds& box);
 
-/// Packs a checked scene's objects. Throws UsageError for an unknown builder, and RunError if counts exceed the layout
+/// Packs a checked scene's objects. A temporary scene with instances frees its geometry before the upper level of the
+/// tree is built. Throws UsageError for an unknown builder, and RunError if counts exceed the layout
 /// (2^27 primitives, 2^24 - 1 nodes). Throws the same errors as pack_images() for images in `texture_bytes`.
-PackedScene pack_scene(const world::Scene& scene, std::string_view builder, const BuildOptions& options = {},
+PackedScene pack_scene(const SceneToPack& scene, std::string_view builder, const BuildOptions& options = {},
                        uint64_t texture_bytes = kDefaultTextureBytes);
 
 /// Packs a checked scene's objects with the trees of a file, which has a tree for each geometry. Throws InputError for
 /// a file that is damaged or belongs to another scene, and RunError like pack_scene().
-PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const world::Scene& scene,
+PackedScene pack_scene_with(const std::filesystem::path& bvh_file, const SceneToPack& scene,
                             uint64_t texture_bytes = kDefaultTextureBytes);
 
 /// The tree of a scene, which is kept for other poses of the scene.
@@ -173,13 +201,13 @@ inline constexpr size_t kLeastShared = 100'000;
 /// scene, the tree is built again. If the file cannot be written, each process builds the tree, with a warning. A tree
 /// with fewer primitives than kLeastShared is built without a file. Creates the file's folder if it is missing. Throws
 /// the same errors as pack_scene(), and Cancelled if the options' progress returns false, also while waiting.
-PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const world::Scene& scene,
+PackedScene pack_scene_sharing(const std::filesystem::path& bvh_file, const SceneToPack& scene,
                                std::string_view builder, const BuildOptions& options = {},
                                uint64_t texture_bytes = kDefaultTextureBytes);
 
 /// Packs a scene with the tree that the options of a Renderer or a Caster request.
 template <typename Options>
-PackedScene pack_scene_by(const Options& options, const world::Scene& scene,
+PackedScene pack_scene_by(const Options& options, const SceneToPack& scene,
                           uint64_t texture_bytes = kDefaultTextureBytes) {
   if (options.bvh) return pack_scene_with(*options.bvh, scene, texture_bytes);
   const BuildOptions how = {.progress = options.progress};

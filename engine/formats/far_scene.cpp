@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "core/parallel.h"
 #include "scene/framing.h"
 #include "scene/placed_bounds.h"
 #include "shapes/placement.h"
@@ -70,7 +71,7 @@ std::map<uint32_t, PlacedBounds> find_shared(const Scene& scene) {
   std::map<uint32_t, PlacedBounds> shared;
   for (uint32_t i = 0; i < users.size(); ++i) {
     const auto* mesh = std::get_if<Mesh>(&scene.geometries[i]);
-    if (mesh != nullptr && users[i] >= kLeastSharers) shared.emplace(i, mesh->positions);
+    if (mesh != nullptr && users[i] >= kLeastSharers) shared.try_emplace(i, mesh->positions, users[i]);
   }
   return shared;
 }
@@ -87,12 +88,17 @@ std::string to_text(double number) {
 VertexBounds bounds_of_vertices(const Scene& scene) {
   VertexBounds bounds{.of_meshes = bounds_of_meshes(scene), .of_objects = {}, .all = {}};
   const std::map<uint32_t, PlacedBounds> shared = find_shared(scene);
-  for (const Object& object : scene.objects) {
-    const auto found = shared.find(object.geometry);
-    bounds.of_objects.push_back(found != shared.end() ? found->second.of(object.world_from_object)
-                                                      : bounds_of_object(scene, object, bounds.of_meshes));
-    bounds.all.extend(bounds.of_objects.back());
-  }
+  constexpr size_t kObjects = 256;
+  bounds.of_objects.resize(scene.objects.size());
+  for_each_chunk(scene.objects.size(), kObjects, 0, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Object& object = scene.objects[i];
+      const auto found = shared.find(object.geometry);
+      bounds.of_objects[i] = found != shared.end() ? found->second.of(object.world_from_object)
+                                                   : bounds_of_object(scene, object, bounds.of_meshes);
+    }
+  });
+  for (const Bounds& box : bounds.of_objects) bounds.all.extend(box);
   return bounds;
 }
 

@@ -59,7 +59,9 @@ class ScenePose {
       keep(link.geometry);
       keep(link.fallback);
     }
-    for (size_t i = motion_.objects.size(); i < scene_.objects.size(); ++i) keep(scene_.objects[i].geometry);
+    for (size_t i = 0; i < scene_.objects.size(); ++i) {
+      if (i >= motion_.objects.size() || motion_.objects[i].node == kNoIndex) keep(scene_.objects[i].geometry);
+    }
     for (uint32_t i = 0; i < is_kept.size(); ++i) {
       if (!is_kept[i]) free_.insert(i);
     }
@@ -90,8 +92,9 @@ class ScenePose {
   }
 
   void place_object(const ObjectLink& link, Object& object) {
+    if (link.node == kNoIndex) return;
     object.geometry = Object::kNoGeometry;
-    if (link.node == kNoIndex || !pose_.is_visible[link.node]) return;
+    if (!pose_.is_visible[link.node]) return;
     const bool is_skinned = link.skin != kNoIndex;
     const bool is_hidden = is_skinned && find_skin(link.skin).is_hidden;
     dmat4 world = is_skinned ? find_skin(link.skin).world_from_mesh : pose_.world_from_node[link.node];

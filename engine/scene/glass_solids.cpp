@@ -159,10 +159,9 @@ void GlassSolids::add_instances(const world::Scene& scene) {
       shared = std::make_shared<const Mesh>(make_corners(mesh.positions, mesh.triangles));
       boxes[instance.mesh] = BoundsOf()(mesh);
     }
-    const world::InstanceMap map = world::map_of(instance);
     const Bounds& box = boxes[instance.mesh];
-    solids_.push_back(
-        {world::NotDrawn{}, instance.object, material, world::bounds_of(map, {&box, 1}), shared, box, map});
+    solids_.push_back({world::NotDrawn{}, instance.object, material, world::bounds_of(instance.map, {&box, 1}), shared,
+                       box, instance.map});
   }
 }
 
@@ -186,7 +185,7 @@ std::shared_ptr<const GlassSolids> GlassSolids::moved(const std::shared_ptr<cons
   for (Solid& solid : result.solids_) {
     const dmat4* transform = find(solid);
     if (transform == nullptr) continue;
-    solid.map = world::map_of({solid.object, 0, glm::dmat4x3(*transform)});
+    solid.map = world::map_of(*transform);
     solid.bounds = world::bounds_of(solid.map, {&solid.mesh_bounds, 1});
   }
   result.sort();

@@ -14,7 +14,9 @@ namespace promin {
 /// number.
 class PlacedBounds {
  public:
-  explicit PlacedBounds(std::vector<vec3> points);
+  /// `uses` is the expected number of calls of of(). If there are many, it pays to find first the points that may lie
+  /// farthest in some direction.
+  explicit PlacedBounds(std::vector<vec3> points, size_t uses = 0);
 
   /// Returns the bounds of the points, each transformed in double and rounded once. The result has the same bits as
   /// that of a loop over all points.
@@ -30,11 +32,24 @@ class PlacedBounds {
   };
 
   void divide(size_t part, uint32_t begin, uint32_t end, size_t depth);
+  void find_candidates();
+  std::vector<uint32_t> find_candidates(size_t index) const;
+  uint32_t find_farthest(const dvec3& direction, uint32_t start) const;
+  /// Returns the largest coordinates of all points, without their signs.
+  dvec3 reach() const;
   void extend(Bounds& bounds, const dmat4& matrix, int axis, bool is_high) const;
+  /// Calls take(i) for each point i with a value of more than most(). The value of p is dot(row, p) + offset. take()
+  /// may raise most().
+  template <typename Most, typename Take>
+  void visit_beyond(const dvec3& row, double offset, const Most& most, const Take& take) const;
 
   std::vector<vec3> points_;
   std::vector<Part> parts_;
   size_t depth_ = 0;
+  /// The points that may lie farthest in a direction, for each cell of directions on the faces of a cube, one cell
+  /// after the other; empty if they do not pay. Cell i begins at first_candidates_[i].
+  std::vector<uint32_t> candidates_;
+  std::vector<uint32_t> first_candidates_;
 };
 
 /// Returns the positions that the triangles of a mesh use, each once. Throws InputError if one does not exist.

@@ -83,47 +83,40 @@ void SceneHull::add(const Mesh& mesh, const Object& object, size_t number) {
   if (is_whole && part_.centers && !holds(*part_.centers, part_.wholes[number].center())) return;
   if (part_.centers && !is_whole) {
     positions_.push_back(find_corners_within(*part_.centers, mesh, object.world_from_object));
-    const std::span<const Block> blocks = cut(positions_.back());
-    meshes_.push_back({dmat3(1.0), -center_, blocks, box_of(blocks)});
+    parts_.push_back(cut(positions_.back()));
+    meshes_.push_back({nullptr, &parts_.back()});
     return;
   }
   const auto [place, is_new] = blocks_of_.try_emplace(object.geometry);
-  Bounds& bounds = bounds_of_[object.geometry];
-  if (is_new) {
-    place->second = cut(find_used(mesh, positions_.emplace_back()));
-    bounds = box_of(place->second);
-  }
-  const dmat4& matrix = object.world_from_object;
-  meshes_.push_back({dmat3(matrix), dvec3(matrix[3]) - center_, place->second, bounds});
+  if (is_new) place->second = cut(find_used(mesh, positions_.emplace_back()));
+  meshes_.push_back({&object.world_from_object, &place->second});
 }
 
-Bounds SceneHull::box_of(std::span<const Block> blocks) {
-  Bounds bounds;
-  for (const Block& block : blocks) bounds.extend(block.bounds);
-  return bounds;
-}
-
-std::span<const SceneHull::Block> SceneHull::cut(std::span<const vec3> positions) {
+SceneHull::Blocks SceneHull::cut(std::span<const vec3> positions) {
   std::vector<Block>& blocks = blocks_.emplace_back();
   for (size_t begin = 0; begin < positions.size(); begin += kBlockSize) {
     Block block{positions.subspan(begin, std::min(kBlockSize, positions.size() - begin)), {}};
     for (const vec3& position : block.positions) block.bounds.extend(position);
     blocks.push_back(block);
   }
-  return blocks;
+  Bounds bounds;
+  for (const Block& block : blocks) bounds.extend(block.bounds);
+  return {blocks, bounds};
 }
 
 void SceneHull::find_farthest(const PlacedMesh& mesh, const dvec3& direction, Farthest& farthest) const {
-  const dvec3 own = direction * mesh.turn;
-  const double offset = glm::dot(direction, mesh.origin);
+  const dmat3 turn = mesh.world_from_object == nullptr ? dmat3(1.0) : dmat3(*mesh.world_from_object);
+  const dvec3 origin = (mesh.world_from_object == nullptr ? dvec3(0.0) : dvec3((*mesh.world_from_object)[3])) - center_;
+  const dvec3 own = direction * turn;
+  const double offset = glm::dot(direction, origin);
   double most = farthest.value - offset;
   const vec3* found = nullptr;
   const auto may_reach = [&](const Bounds& bounds) {
     const dvec3 half = 0.5 * (dvec3(bounds.hi) - dvec3(bounds.lo));
     return glm::dot(own, middle_of(bounds)) + glm::dot(glm::abs(own), half) > most;
   };
-  if (!may_reach(mesh.bounds)) return;
-  for (const Block& block : mesh.blocks) {
+  if (!may_reach(mesh.of->bounds)) return;
+  for (const Block& block : mesh.of->blocks) {
     if (!may_reach(block.bounds)) continue;
     for (const vec3& position : block.positions) {
       const double value = own.x * double{position.x} + own.y * double{position.y} + own.z * double{position.z};
@@ -132,7 +125,7 @@ void SceneHull::find_farthest(const PlacedMesh& mesh, const dvec3& direction, Fa
       found = &position;
     }
   }
-  if (found != nullptr) farthest = {most + offset, mesh.turn * dvec3(*found) + mesh.origin};
+  if (found != nullptr) farthest = {most + offset, turn * dvec3(*found) + origin};
 }
 
 dvec3 SceneHull::farthest(const dvec3& direction) const {

@@ -36,12 +36,15 @@ class SceneHull {
     std::span<const vec3> positions;
     Bounds bounds;
   };
-  struct PlacedMesh {
-    dmat3 turn;
-    dvec3 origin;
+  struct Blocks {
     std::span<const Block> blocks;
     /// The bounds of all blocks.
     Bounds bounds;
+  };
+  struct PlacedMesh {
+    /// The transform of the object; null for blocks in the world.
+    const dmat4* world_from_object;
+    const Blocks* of;
   };
   using Solid = std::variant<std::monostate
 #define PROMIN_SOLID(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) , world::TYPE
@@ -54,8 +57,7 @@ class SceneHull {
   struct Adder;
 
   void add(const Mesh& mesh, const Object& object, size_t number);
-  static Bounds box_of(std::span<const Block> blocks);
-  std::span<const Block> cut(std::span<const vec3> positions);
+  Blocks cut(std::span<const vec3> positions);
   void find_farthest(const PlacedMesh& mesh, const dvec3& direction, Farthest& farthest) const;
 
   MainPart part_;
@@ -64,8 +66,9 @@ class SceneHull {
   std::vector<PlacedMesh> meshes_;
   std::vector<Solid> solids_;
   /// The blocks of the geometries that were added, by the index of the geometry.
-  std::map<uint32_t, std::span<const Block>> blocks_of_;
-  std::map<uint32_t, Bounds> bounds_of_;
+  std::map<uint32_t, Blocks> blocks_of_;
+  /// The blocks of parts of objects.
+  std::deque<Blocks> parts_;
   std::deque<std::vector<Block>> blocks_;
   std::deque<std::vector<vec3>> positions_;
 };

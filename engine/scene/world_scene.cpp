@@ -109,12 +109,8 @@ Bounds box_to_look_at(const Scene& scene) {
 
 }  // namespace
 
-InstanceMap map_of(const Instance& instance) {
-  InstanceMap map;
-  map.object_from_world = glm::mat3(glm::inverse(dmat3(instance.world_from_object)));
-  map.origin = vec3(instance.world_from_object[3]);
-  map.world_from_object = glm::mat3(glm::inverse(dmat3(map.object_from_world)));
-  return map;
+InstanceMap map_of(const dmat4& world_from_object) {
+  return {glm::mat3(glm::inverse(dmat3(world_from_object))), vec3(world_from_object[3])};
 }
 
 namespace {
@@ -131,7 +127,7 @@ class InstanceAdder {
     const auto [mesh, is_new] = meshes_.try_emplace(key, static_cast<uint32_t>(result_.meshes.size()));
     if (is_new) result_.meshes.push_back(make_mesh(source));
     result_.objects.push_back({source.name, NotDrawn{}, source.material});
-    result_.instances.push_back({object, mesh->second, glm::dmat4x3(source.world_from_object)});
+    result_.instances.push_back({object, mesh->second, map_of(source.world_from_object)});
   }
 
  private:
@@ -151,6 +147,7 @@ class InstanceAdder {
 }  // namespace
 
 Scene flatten(const promin::Scene& scene, Purpose purpose, Instancing instancing) {
+  const std::vector<bool> is_instance = choose_instances(scene, instancing);
   Scene result;
   result.file = scene.file;
   result.materials = scene.materials;
@@ -165,7 +162,6 @@ Scene flatten(const promin::Scene& scene, Purpose purpose, Instancing instancing
   }
   result.objects.reserve(scene.objects.size());
   PictureMeshes* pictures = meshes ? &*meshes : nullptr;
-  const std::vector<bool> is_instance = choose_instances(scene, instancing);
   result.instances.reserve(static_cast<size_t>(std::ranges::count(is_instance, true)));
   InstanceAdder instances(scene, pictures, result);
   for (uint32_t i = 0; i < scene.objects.size(); ++i) {
@@ -216,7 +212,7 @@ Bounds bounds_of(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) boxes.push_back(BoundsOfShape()(mesh));
   for (const Instance& instance : scene.instances) {
     const Bounds& box = boxes[instance.mesh];
-    if (!box.is_empty()) bounds.extend(bounds_of(map_of(instance), {&box, 1}));
+    if (!box.is_empty()) bounds.extend(bounds_of(instance.map, {&box, 1}));
   }
   return bounds;
 }

@@ -35,26 +35,24 @@ struct Object {
   bool is_rewound = false;
 };
 
-/// An object that shares a mesh. The object's shape is NotDrawn. The device computes with fp32 numbers R and c
-/// (InstanceMap): a point p of the mesh lies at c + R^-1 p. Statements about exact pictures and hits refer to these.
-struct Instance {
-  /// Index into Scene::objects.
-  uint32_t object = 0;
-  /// Index into Scene::meshes.
-  uint32_t mesh = 0;
-  glm::dmat4x3 world_from_object{1.0};
-};
-
-/// The numbers of an instance on the device.
+/// The transform of an instance in the fp32 numbers R and c of the device: a point p of the mesh lies at c + R^-1 p.
+/// Statements about exact pictures and hits refer to these numbers.
 struct InstanceMap {
   /// R, from directions in the world to the space of the mesh: the inverse of the transform, rounded.
   glm::mat3 object_from_world{1.0F};
   /// c, the place of the mesh's origin.
   vec3 origin{0.0F};
-  /// E, the inverse of R, rounded.
-  glm::mat3 world_from_object{1.0F};
 };
-InstanceMap map_of(const Instance& instance);
+InstanceMap map_of(const dmat4& world_from_object);
+
+/// An object that shares a mesh. The object's shape is NotDrawn.
+struct Instance {
+  /// Index into Scene::objects.
+  uint32_t object = 0;
+  /// Index into Scene::meshes.
+  uint32_t mesh = 0;
+  InstanceMap map = {};
+};
 
 struct Scene {
   std::filesystem::path file;

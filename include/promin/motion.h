@@ -162,7 +162,8 @@ struct Animation {
 
 /// The connection of an object with nodes and geometries.
 struct ObjectLink {
-  /// Index of the node that places the object. The joints of `skin` place a skinned mesh instead.
+  /// Index of the node that places the object; kNoIndex if the object rests, so that no other member has an effect. The
+  /// joints of `skin` place a skinned mesh instead.
   uint32_t node = kNoIndex;
   /// Index into Scene::geometries: the geometry when it is shown; kNoIndex if there is none or `mesh` is given.
   uint32_t geometry = kNoIndex;
@@ -247,7 +248,8 @@ struct Motion {
   std::vector<Animation> animations;
   /// Transforms of instances (ObjectLink::place).
   std::vector<dmat4> places;
-  /// The link of each object of the scene. Objects without a link rest.
+  /// The link of each object of the scene. Objects without a link rest. A loader gives no links to objects that no
+  /// animation can change.
   std::vector<ObjectLink> objects;
   /// The link of each light. Lights without a link rest.
   std::vector<LightLink> lights;

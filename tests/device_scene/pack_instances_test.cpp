@@ -80,9 +80,10 @@ TEST(PackInstancesTest, BoxesContainTheInstances) {
   const Scene scene = make_instanced(mesh, 40);
   const world::Scene flat = world::flatten(scene, world::Purpose::kHits, Instancing::kAll);
   const PackedScene packed = pack_instanced(scene);
+  const UnsetVector<Node> records = packed.upper->make_records(packed.instance_order);
   std::map<uint32_t, world::InstanceMap> map_of_order;
   for (const world::Instance& instance : flat.instances) {
-    map_of_order[packed.numbers.first_order[instance.object]] = world::map_of(instance);
+    map_of_order[packed.numbers.first_order[instance.object]] = instance.map;
   }
   size_t found = 0;
   std::vector<std::pair<uint32_t, ExactBounds>> open = {{0, ExactBounds()}};
@@ -98,7 +99,7 @@ TEST(PackInstancesTest, BoxesContainTheInstances) {
         open.emplace_back(child, box);
       } else if ((child & CHILD_INSTANCE_MASK) == CHILD_IS_INSTANCE) {
         ++found;
-        const Node& record = packed.nodes[child & CHILD_INSTANCE_INDEX];
+        const Node& record = records[(child & CHILD_INSTANCE_INDEX) - packed.first_instance];
         const world::InstanceMap& map = map_of_order.at(record.children.z);
         const dmat3 turn = glm::inverse(dmat3(map.object_from_world));
         for (const vec3& p : mesh.positions) {
@@ -139,6 +140,29 @@ TEST(PackInstancesTest, MovedInstancesHaveANewUpperLevel) {
   EXPECT_NE(fresh.tree_bounds, packed.tree_bounds);
   EXPECT_EQ(upper.stats.sah_cost, same.stats.sah_cost);
   EXPECT_EQ(packed.upper->instance_count(), 300U);
+}
+
+/// The records contain everything that is needed to move instances.
+TEST(PackInstancesTest, InstancesAreRestoredFromTheirRecords) {
+  Scene scene = make_instanced(make_wavy_mesh(500), 300);
+  scene.objects.insert(scene.objects.begin() + 5, Object());
+  scene.objects[9].world_from_object[0] *= -1.0;
+  const PackedScene packed = pack_instanced(scene);
+  const UnsetVector<Node> records = packed.upper->make_records(packed.instance_order);
+  const UpperNodes before = packed.upper->build();
+  packed.upper->forget();
+  EXPECT_TRUE(packed.upper->is_forgotten());
+  EXPECT_EQ(packed.upper->instance_count(), 0U);
+  packed.upper->restore(records, packed.numbers.first_order);
+  EXPECT_FALSE(packed.upper->is_forgotten());
+  const UpperNodes after = packed.upper->build();
+  EXPECT_EQ(after.order, before.order);
+  EXPECT_EQ(std::memcmp(&after.root, &before.root, sizeof(Node)), 0);
+  EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span(after.nodes)), std::as_bytes(std::span(before.nodes))));
+  const UnsetVector<Node> again = packed.upper->make_records(after.order);
+  EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span(again)), std::as_bytes(std::span(records))));
+  EXPECT_FALSE(packed.upper->mesh_box(299).is_empty());
+  EXPECT_TRUE(packed.upper->mesh_box(5).is_empty());
 }
 
 /// Numbers of parts count within the mesh of an instance.
@@ -305,7 +329,8 @@ void expect_scene_is_traversable(const PackedScene& packed) {
       const uint32_t word = node.children[static_cast<int>(i)];
       const NodeChild child = child_of(node, i);
       if ((word & CHILD_INSTANCE_MASK) == CHILD_IS_INSTANCE) {
-        ASSERT_LE((word & CHILD_INSTANCE_INDEX) + INSTANCE_RECORDS, packed.nodes.size());
+        ASSERT_LE((word & CHILD_INSTANCE_INDEX) + INSTANCE_RECORDS,
+                  packed.nodes.size() + INSTANCE_RECORDS * packed.instance_order.size());
       } else if (child.kind == ChildKind::kLeaf) {
         ASSERT_LE(child.first + child.count, packed.references.size());
       } else {

@@ -485,7 +485,7 @@ TEST_F(EmittersTest, TexturesOfEmissionHaveTheirClosedForm) {
     world::Scene instanced = scene;
     instanced.objects[1].shape = world::NotDrawn{};
     instanced.meshes = {world::place(make_shown_sheet(), glm::inverse(map))};
-    instanced.instances = {{1, 0, glm::dmat4x3(map)}};
+    instanced.instances = {{1, 0, world::map_of(map)}};
     expect_near_by_channel(mean_of(instanced, view), expected, "instance");
   }
   // A triangle that shows black texels alone is not chosen, and a black lamp lights nothing.

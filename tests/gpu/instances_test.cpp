@@ -189,8 +189,9 @@ TEST_F(InstancesTest, HitsAreThoseOfAFile) {
   const std::vector<Hit> before = built;
   std::vector<std::pair<uint32_t, dmat4>> moved;
   for (const world::Instance& instance : scene.instances) {
-    moved.emplace_back(instance.object, dmat4(instance.world_from_object));
-    moved.back().second[3].y += 0.25;
+    dmat4 place(glm::inverse(dmat3(instance.map.object_from_world)));
+    place[3] = dvec4(instance.map.origin + vec3(0.0F, 0.25F, 0.0F), 1.0);
+    moved.emplace_back(instance.object, place);
   }
   of_built.set_transforms(moved);
   of_file.set_transforms(moved);
@@ -207,7 +208,7 @@ class MovedInstancesTest : public DeviceTest {
     first_ = static_cast<uint32_t>(scene_.objects.size());
     scene_.meshes.push_back(std::get<Mesh>(measure::make_wavy_sphere(300).objects[0].shape));
     for (uint32_t i = 0; i < kBalls; ++i) {
-      scene_.instances.push_back({first_ + i, 0, glm::dmat4x3(1.0)});
+      scene_.instances.push_back({first_ + i, 0});
       scene_.objects.push_back({"ball " + std::to_string(i % 3), world::NotDrawn{}, i % 2});
     }
     for (uint32_t i = 0; i < kBalls; ++i) move(i, 3.0);
@@ -219,7 +220,7 @@ class MovedInstancesTest : public DeviceTest {
     for (int axis = 0; axis < 3; ++axis) map[axis] *= random_.uniform(0.1, 0.4);
     if (random_.uniform(0.0, 1.0) < 0.5) map[1] *= -1.0;
     map[3] = dvec4(random_.uniform(0.0, distance) * random_.direction(), 1.0);
-    scene_.instances[ball].world_from_object = glm::dmat4x3(map);
+    scene_.instances[ball].map = world::map_of(map);
     return {first_ + ball, map};
   }
 

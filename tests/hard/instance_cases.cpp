@@ -120,8 +120,8 @@ struct Instanced {
     scene = scene_of(std::vector<world::Shape>(transforms.size()));
     scene.meshes = {mesh};
     for (uint32_t i = 0; i < transforms.size(); ++i) {
-      scene.instances.push_back({i, 0, glm::dmat4x3(transforms[i])});
-      maps.push_back(world::map_of(scene.instances.back()));
+      maps.push_back(world::map_of(transforms[i]));
+      scene.instances.push_back({i, 0, maps.back()});
     }
   }
 };

@@ -30,7 +30,7 @@ world::Scene make_balls(uint32_t count) {
     scene.objects.push_back({"", world::NotDrawn{}, i});
     dmat4 map = glm::translate(dmat4(1.0), center);
     if (i % 2 == 0) map[0] *= -1.3;
-    scene.instances.push_back({i, 0, glm::dmat4x3(map)});
+    scene.instances.push_back({i, 0, world::map_of(map)});
   }
   return scene;
 }
@@ -47,7 +47,7 @@ TEST(GlassSolidsTest, MovedInstancesAreThoseOfTheMovedScene) {
   for (world::Instance& instance : scene.instances) {
     if (instance.object % 4 == 0) continue;
     const dmat4 map = glm::scale(glm::translate(dmat4(1.0), 2.0 * random.direction()), dvec3(random.uniform(0.5, 2.0)));
-    instance.world_from_object = glm::dmat4x3(map);
+    instance.map = world::map_of(map);
     moved.emplace_back(instance.object, map);
   }
   const std::shared_ptr<const GlassSolids> after = GlassSolids::moved(before, moved);

@@ -35,12 +35,15 @@ TEST(PlacedBoundsTest, HasTheBitsOfALoopOverAllPoints) {
     for (size_t i = 0; i < count; ++i) points.emplace_back(random.direction());
     points.front() = vec3(-0.0F);
     const PlacedBounds placed(points);
+    const PlacedBounds often_placed(points, 1'000'000);
     expect_same_bits(placed.of(dmat4(1.0)), bounds_of_all(points, dmat4(1.0)));
+    expect_same_bits(often_placed.of(dmat4(1.0)), bounds_of_all(points, dmat4(1.0)));
     for (int i = 0; i < 100; ++i) {
       dmat4 matrix = glm::mat4_cast(glm::angleAxis(random.uniform(-3.0, 3.0), random.direction()));
       for (int axis = 0; axis < 3; ++axis) matrix[axis] *= std::pow(10.0, random.uniform(-3.0, 3.0));
       matrix[3] = dvec4(std::pow(10.0, random.uniform(-6.0, 6.0)) * random.direction(), 1.0);
       expect_same_bits(placed.of(matrix), bounds_of_all(points, matrix));
+      expect_same_bits(often_placed.of(matrix), bounds_of_all(points, matrix));
     }
   }
 }

@@ -23,7 +23,7 @@ inline world::Scene with_instances(world::Scene scene) {
     if (i % 2 == 0) map[1] *= -1.0;
     map[3] = dvec4(dvec3(box.center()), 1.0);
     scene.meshes.push_back(world::place(*mesh, glm::inverse(map)));
-    scene.instances.push_back({i, static_cast<uint32_t>(scene.meshes.size() - 1), glm::dmat4x3(map)});
+    scene.instances.push_back({i, static_cast<uint32_t>(scene.meshes.size() - 1), world::map_of(map)});
     scene.objects[i].shape = world::NotDrawn{};
   }
   return scene;

@@ -226,7 +226,8 @@ class Caster final : public EmbreeCaster {
     for (const world::Instance& instance : source_.instances) {
       const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
       rtcSetGeometryInstancedScene(geometry, shared[instance.mesh].get());
-      const glm::mat4x3 place(instance.world_from_object);
+      const glm::mat3 turn(glm::inverse(dmat3(instance.map.object_from_world)));
+      const glm::mat4x3 place(turn[0], turn[1], turn[2], instance.map.origin);
       rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &place);
       rtcCommitGeometry(geometry);
       rtcAttachGeometryByID(scene.get(), geometry, instance.object);

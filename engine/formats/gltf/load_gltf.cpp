@@ -101,8 +101,8 @@ class SceneReader {
     if (*instance_count == 0 || !has_room_for(*instance_count, placed)) return;
     const size_t object_count = *instance_count * document_.meshes[static_cast<size_t>(node.mesh)].primitives.size();
     reserve(scene_.objects, object_count);
-    reserve(motion_.objects, object_count);
-    reserve(motion_.places, *instance_count);
+    const bool is_posed = may_change(placed);
+    if (is_posed) reserve(motion_.places, *instance_count);
     size_t number = 0;
     for (const dmat4& place : place_gltf_instances(document_, placed, report_)) {
       PlacedNode instance = placed;
@@ -114,8 +114,8 @@ class SceneReader {
         return;
       }
       ++number;
-      motion_.places.push_back(place);
-      read_mesh(instance, static_cast<uint32_t>(motion_.places.size() - 1));
+      if (is_posed) motion_.places.push_back(place);
+      read_mesh(instance, is_posed ? static_cast<uint32_t>(motion_.places.size() - 1) : kNoIndex);
     }
   }
 
@@ -187,15 +187,26 @@ class SceneReader {
         object.material = read_material(source.primitives[primitive].material, motion_.meshes[link.mesh]->base);
       }
       scene_.objects.push_back(std::move(object));
-      motion_.objects.push_back(link);
+      // Links take memory, and objects without a link rest.
+      if (!may_change(placed)) continue;
+      motion_.objects.resize(scene_.objects.size());
+      motion_.objects.back() = link;
     }
   }
 
   /// Returns whether an animation may show a hidden node.
   bool may_be_shown(const PlacedNode& placed) const {
-    if (animated_.is_moved[placed.index]) return true;
+    return animated_.is_moved[placed.index] || (placed.is_visible && has_moved_joint(placed));
+  }
+
+  /// Returns whether an animation may change the place, the form or the visibility of a node's mesh.
+  bool may_change(const PlacedNode& placed) const {
+    return animated_.is_moved[placed.index] || animated_.is_morphed[placed.index] || has_moved_joint(placed);
+  }
+
+  bool has_moved_joint(const PlacedNode& placed) const {
     const GltfNode& node = document_.nodes[static_cast<size_t>(placed.node)];
-    if (!is_skinned(node) || !placed.is_visible) return false;
+    if (!is_skinned(node)) return false;
     const json& joints = document_.json["skins"][static_cast<size_t>(node.skin)]["joints"];
     return std::ranges::any_of(joints, [&](const json& joint) { return animated_.is_moved[joint.get<size_t>()]; });
   }

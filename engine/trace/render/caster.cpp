@@ -156,23 +156,24 @@ size_t sort_crossings(std::span<HitRecord> crossings, const Ray& ray) {
 
 // This struct is hidden, although the class around it is not (promin/export.h).
 struct __attribute__((visibility("hidden"))) Caster::Impl {
-  Impl(const gpu::Device& the_device, const world::Scene& the_scene, const TunedCasterOptions& options)
+  Impl(const gpu::Device& the_device, const SceneToPack& the_scene, const TunedCasterOptions& options)
       : device(the_device),
         spirv(options.spirv.begin(), options.spirv.end()),
         builder(options.builder),
         instancing(options.instances),
-        material_count(the_scene.materials.size()) {
+        material_count(the_scene->materials.size()) {
     PackedScene packed = pack_scene_by(options, the_scene);
+    if (packed.numbers.are_instances_whole) throw_too_many(*the_scene);
+    the_scene.free_geometry();
     stats.warnings = packed.warnings;
     const Stopwatch uploading;
     scene = upload_scene(device, packed);
     stats.upload_ms = uploading.ms();
-    take(packed, the_scene);
+    take(packed);
   }
 
   /// Takes the host's data of a packed scene that has been uploaded.
-  void take(PackedScene& packed, const world::Scene& the_scene) {
-    if (packed.numbers.are_instances_whole) throw_too_many(the_scene);
+  void take(PackedScene& packed) {
     stats.bvh = packed.bvh;
     stats.bvh_ms = packed.bvh_ms;
     stats.device_bytes = scene->size_bytes();
@@ -180,6 +181,9 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
     features |= packed.features.common_with(primitive_features());
     stats.features = feature_names(features);
     numbers = std::move(packed.numbers);
+    // The device has the data of instances. They are restored when they move. A copy of the packed scene still needs
+    // them.
+    if (packed.upper.use_count() == 1) packed.upper->forget();
     upper = std::move(packed.upper);
     copies = CopiedHits(packed.copies, numbers);
     cube = cube_of(packed.tree_bounds);
@@ -189,7 +193,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
 
   void set_pose(const world::Scene& posed) {
     const uint64_t version = scene->version();
-    if (!posed.instances.empty() && move_to_pose(posed, copies.empty(), instanced_hash, upper, *scene, {})) {
+    if (!posed.instances.empty() && move_to_pose(posed, copies.empty(), instanced_hash, numbers, upper, *scene, {})) {
       return take_move(version);
     }
     const FeatureMask features_before = features;
@@ -205,7 +209,7 @@ struct __attribute__((visibility("hidden"))) Caster::Impl {
       scene = upload_scene(device, packed);
     }
     stats.upload_ms = uploading.ms();
-    take(packed, posed);
+    take(packed);
     update_kernels(!has_space || scene->version() != version || features != features_before);
   }
 
@@ -536,7 +540,7 @@ void Caster::set_transforms(std::span<const std::pair<uint32_t, dmat4>> world_fr
   gpu::translate_vulkan_errors([&] { impl_->set_transforms(world_from_object); });
 }
 
-Caster CasterAccess::make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options) {
+Caster CasterAccess::make(const gpu::Device& device, const SceneToPack& scene, const TunedCasterOptions& options) {
   return Caster(std::make_unique<Caster::Impl>(device, scene, options));
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device_scene/pack_scene.h"
 #include "promin/caster.h"
 #include "scene/world_scene.h"
 
@@ -18,13 +19,13 @@ struct TunedCasterOptions : CasterOptions {
 
 struct CasterAccess {
   /// Makes a Caster like its constructor, for a valid scene in world space.
-  static Caster make(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options);
+  static Caster make(const gpu::Device& device, const SceneToPack& scene, const TunedCasterOptions& options);
 };
 
-inline Caster make_caster(const gpu::Device& device, const world::Scene& scene, const TunedCasterOptions& options) {
+inline Caster make_caster(const gpu::Device& device, const SceneToPack& scene, const TunedCasterOptions& options) {
   return CasterAccess::make(device, scene, options);
 }
-inline Caster make_caster(const gpu::Device& device, const world::Scene& scene, const CasterOptions& options = {}) {
+inline Caster make_caster(const gpu::Device& device, const SceneToPack& scene, const CasterOptions& options = {}) {
   return CasterAccess::make(device, scene, TunedCasterOptions{options, {}});
 }
 

@@ -46,7 +46,7 @@ struct TunedRendererOptions : RendererOptions {
 
 struct RendererAccess {
   /// Makes a Renderer like its constructor, for a valid scene in world space.
-  static Renderer make(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
+  static Renderer make(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options);
   static SceneOnDevice& scene_of(Renderer& renderer);
   static const SceneOnDevice& scene_of(const Renderer& renderer);
   /// PictureTracer::set_pose() for a valid scene.

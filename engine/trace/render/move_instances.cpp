@@ -60,6 +60,14 @@ std::vector<Transform> sort_by_object(std::span<const Transform> transforms) {
   return sorted;
 }
 
+/// Returns a copy of an upper level that has the data of its instances.
+std::shared_ptr<UpperLevel> copy_level(const UpperLevel& level, const PrimitiveNumbers& numbers,
+                                       const DeviceScene& scene) {
+  auto copy = std::make_shared<UpperLevel>(level);
+  if (copy->is_forgotten()) copy->restore(scene.read_records(), numbers.first_order);
+  return copy;
+}
+
 }  // namespace
 
 void check_same_scene(const Scene& posed, size_t objects, size_t materials) {
@@ -75,15 +83,12 @@ void check_same_scene(const Scene& posed, size_t objects, size_t materials) {
 }
 
 bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
-                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene, const ShadingParts& shading) {
+                  const PrimitiveNumbers& numbers, std::shared_ptr<const UpperLevel>& level, DeviceScene& scene,
+                  const ShadingParts& shading) {
   const std::optional<uint64_t> before = std::exchange(hash, hash_instanced(posed));
   if (!may_move || level == nullptr || before != hash) return false;
-  std::vector<Transform> transforms;
-  for (const world::Instance& instance : posed.instances) {
-    transforms.emplace_back(instance.object, dmat4(instance.world_from_object));
-  }
-  auto moved = std::make_shared<UpperLevel>(*level);
-  moved->move(transforms);
+  std::shared_ptr<UpperLevel> moved = copy_level(*level, numbers, scene);
+  moved->move(posed.instances);
   scene.set_upper_level(*moved, moved->build(), &shading);
   level = std::move(moved);
   return true;
@@ -91,16 +96,16 @@ bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64
 
 void move_instances(std::span<const Transform> world_from_object, const PrimitiveNumbers& numbers,
                     std::shared_ptr<const UpperLevel>& level, DeviceScene& scene) {
+  std::shared_ptr<UpperLevel> moved = level == nullptr ? nullptr : copy_level(*level, numbers, scene);
   std::vector<Problem> problems;
   for (size_t i = 0; i < world_from_object.size(); ++i) {
     std::optional<Problem> problem =
-        find_problem(world_from_object[i], "transforms[" + std::to_string(i) + "]", numbers, level.get());
+        find_problem(world_from_object[i], "transforms[" + std::to_string(i) + "]", numbers, moved.get());
     if (problem) problems.push_back(std::move(*problem));
   }
   if (!problems.empty()) throw InputError(problems);
   if (world_from_object.empty()) return;
   const std::vector<Transform> sorted = sort_by_object(world_from_object);
-  auto moved = std::make_shared<UpperLevel>(*level);
   moved->move(sorted);
   std::shared_ptr<const GlassSolids> solids = GlassSolids::moved(scene.constants().glass_solids, sorted);
   scene.set_upper_level(*moved, moved->build());

@@ -28,6 +28,7 @@ void move_instances(std::span<const std::pair<uint32_t, dmat4>> world_from_objec
 /// other geometry differs and if `may_move`. `hash` is the hash_instanced() of the last pose, if it is known, and
 /// becomes that of this pose. Returns false if other geometry differs; then only the hash changes.
 bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64_t>& hash,
-                  std::shared_ptr<const UpperLevel>& level, DeviceScene& scene, const ShadingParts& shading);
+                  const PrimitiveNumbers& numbers, std::shared_ptr<const UpperLevel>& level, DeviceScene& scene,
+                  const ShadingParts& shading);
 
 }  // namespace promin

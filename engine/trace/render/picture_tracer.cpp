@@ -48,7 +48,7 @@ PixelWindow picture_window(const View& view) {
   return view.crop.value_or(PixelWindow{uvec2(0), view.size});
 }
 
-PictureTracer::PictureTracer(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options)
+PictureTracer::PictureTracer(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options)
     : device_(device),
       options_(options),
       wanted_(options_.with_aovs ? options_.aovs | AovSet::of_surfaces() : options_.aovs),

@@ -36,7 +36,7 @@ ProgressCallback keep_going(const ProgressCallback& progress);
 class PictureTracer {
  public:
   /// Has the arguments and the exceptions of Renderer's constructor.
-  PictureTracer(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options);
+  PictureTracer(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options);
 
   SceneOnDevice& scene() { return scene_; }
   const SceneOnDevice& scene() const { return scene_; }

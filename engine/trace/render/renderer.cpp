@@ -25,7 +25,7 @@ void check_view(const View& view) {
 
 // This struct is hidden, although the class around it is not (promin/export.h).
 struct __attribute__((visibility("hidden"))) Renderer::Impl {
-  Impl(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options)
+  Impl(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options)
       : tracer(device, scene, options) {}
 
   PictureTracer tracer;
@@ -41,7 +41,7 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Renderer RendererAccess::make(const gpu::Device& device, const world::Scene& scene,
+Renderer RendererAccess::make(const gpu::Device& device, const SceneToPack& scene,
                               const TunedRendererOptions& options) {
   std::unique_ptr<Renderer::Impl> impl;
   gpu::translate_vulkan_errors([&] { impl = std::make_unique<Renderer::Impl>(device, scene, options); });

@@ -20,7 +20,7 @@ namespace promin {
 /// A scene on a device and the features that its parts use, which determine the pipeline of a picture.
 class SceneOnDevice {
  public:
-  SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
+  SceneOnDevice(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options,
                 SetupStats& stats);
 
   const std::shared_ptr<DeviceScene>& device_scene() const { return device_scene_; }
@@ -57,8 +57,9 @@ class SceneOnDevice {
   /// Uploads a packed scene. The tree of the scene may have been read from a file.
   void upload(const gpu::Device& device, const world::Scene& scene, const PackedScene& packed,
               const ShadingParts& shading, SetupStats& stats);
+  void take_objects(const world::Scene& scene);
   /// Takes the host's data of a packed scene, and the cost of its tree.
-  void take(const world::Scene& scene, PackedScene& packed, SetupStats& stats);
+  void take(PackedScene& packed, SetupStats& stats);
   /// Takes the features of materials, lights and environment.
   void take_shading(const world::Scene& scene);
   /// Sets the pose if only instances have moved. Returns false if anything else differs.

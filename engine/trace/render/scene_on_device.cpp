@@ -12,7 +12,7 @@
 namespace promin {
 namespace {
 
-PackedScene pack(const world::Scene& scene, const TunedRendererOptions& options) {
+PackedScene pack(const SceneToPack& scene, const TunedRendererOptions& options) {
   PackedScene packed = pack_scene_by(options, scene, options.texture_bytes);
   return options.repack ? options.repack(std::move(packed)) : std::move(packed);
 }
@@ -23,13 +23,16 @@ ShadingParts shading_of(const world::Scene& scene) {
 
 }  // namespace
 
-SceneOnDevice::SceneOnDevice(const gpu::Device& device, const world::Scene& scene, const TunedRendererOptions& options,
+SceneOnDevice::SceneOnDevice(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options,
                              SetupStats& stats)
-    : more_features_(options.more_features), images_(scene.images), textures_(scene.textures) {
+    : more_features_(options.more_features), images_(scene->images), textures_(scene->textures) {
+  const ShadingParts shading = shading_of(*scene);
+  take_objects(*scene);
   PackedScene packed = pack(scene, options);
-  upload(device, scene, packed, shading_of(scene), stats);
-  take(scene, packed, stats);
-  take_shading(scene);
+  scene.free_geometry();
+  upload(device, *scene, packed, shading, stats);
+  take(packed, stats);
+  take_shading(*scene);
 }
 
 void SceneOnDevice::take_shading(const world::Scene& scene) {
@@ -54,14 +57,17 @@ void SceneOnDevice::upload(const gpu::Device& device, const world::Scene& scene,
   mask_cutoffs_ = packed.mask_cutoffs;
 }
 
-void SceneOnDevice::take(const world::Scene& scene, PackedScene& packed, SetupStats& stats) {
+void SceneOnDevice::take_objects(const world::Scene& scene) {
+  object_materials_.resize(scene.objects.size());
+  std::ranges::transform(scene.objects, object_materials_.begin(), &world::Object::material);
+}
+
+void SceneOnDevice::take(PackedScene& packed, SetupStats& stats) {
   if (packed.is_tree_built) ++trees_built_;
   stats.bvh = packed.bvh;
   stats.bvh_ms = packed.bvh_ms;
   stats.degenerate_triangles = packed.degenerate_count;
   stats.device_bytes = device_scene_->size_bytes();
-  object_materials_.clear();
-  for (const world::Object& object : scene.objects) object_materials_.push_back(object.material);
   // Features stay when a pose hides an object, because other kernels would have to be compiled.
   geometry_features_ |= packed.features;
   shown_materials_.resize(packed.shown_materials.size(), false);
@@ -70,6 +76,9 @@ void SceneOnDevice::take(const world::Scene& scene, PackedScene& packed, SetupSt
   }
   primitive_count_ = std::max(primitive_count_, packed.primitive_count());
   numbers_ = std::move(packed.numbers);
+  // The device has the data of instances, of which there may be many. They are restored when they move. A copy of the
+  // packed scene still needs them.
+  if (packed.upper.use_count() == 1) packed.upper->forget();
   upper_ = std::move(packed.upper);
   copied_materials_ = std::move(packed.copies.materials);
 }
@@ -80,7 +89,7 @@ bool SceneOnDevice::has_images_of(const world::Scene& posed, const std::vector<f
 
 bool SceneOnDevice::move_only(const world::Scene& posed, const ShadingParts& shading) {
   const bool may_move = copied_materials_.empty() && has_images_of(posed, find_mask_cutoffs(posed));
-  return move_to_pose(posed, may_move, instanced_hash_, upper_, *device_scene_, shading);
+  return move_to_pose(posed, may_move, instanced_hash_, numbers_, upper_, *device_scene_, shading);
 }
 
 void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& posed, const TunedRendererOptions& options,
@@ -102,7 +111,8 @@ void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& pose
       images_ = posed.images;
       textures_ = posed.textures;
     }
-    take(posed, packed, stats);
+    take_objects(posed);
+    take(packed, stats);
   }
   take_shading(posed);
 }

@@ -96,8 +96,7 @@ class RayPieces : public PieceMaker {
     choose_tree(job.options_.tracing, options);
     options.shared_bvh = shared_tree_file(job.options_.job, options.builder);
     options.progress = progress;
-    const world::Scene scene = world::flatten(job.scene_, world::Purpose::kHits, options.instances);
-    caster_.emplace(make_caster(device, scene, options));
+    caster_.emplace(make_caster(device, world::flatten(job.scene_, world::Purpose::kHits, options.instances), options));
     std::vector<Ray> rays(std::min(kChunkRays, job.ranges_.front().count()));
     job.rays_->read(0, rays, job.scene_.center);
     caster_->prepare(job.options_.query(), rays);

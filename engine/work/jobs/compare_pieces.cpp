@@ -50,7 +50,7 @@ Bounds bounds_of_part(const world::Scene& scene, uint32_t object, uint32_t primi
     const Mesh& mesh = scene.meshes[instance->mesh];
     if (primitive >= mesh.triangles.size()) return {};
     const Bounds box = world::bounds_of_triangle(mesh, primitive);
-    return world::bounds_of(world::map_of(*instance), {&box, 1});
+    return world::bounds_of(instance->map, {&box, 1});
   }
   const auto find = [&](const auto& some) -> Bounds {
     using Some = std::decay_t<decltype(some)>;
