@@ -8,9 +8,11 @@
 #include <optional>
 #include <utility>
 
+#include "core/free_memory.h"
 #include "core/parallel.h"
 #include "core/rounding.h"
 #include "scene/choose_instances.h"
+#include "scene/copies.h"
 #include "scene/framing.h"
 #include "scene/picture_meshes.h"
 #include "shapes/shapes.h"
@@ -148,6 +150,7 @@ class InstanceAdder {
 
 Scene flatten(const promin::Scene& scene, Purpose purpose, Instancing instancing) {
   const std::vector<bool> is_instance = choose_instances(scene, instancing);
+  check_copies(count_copies(scene, is_instance), available_memory(), scene.file);
   Scene result;
   result.file = scene.file;
   result.materials = scene.materials;

@@ -84,7 +84,8 @@ enum class Purpose {
 };
 
 /// Returns all objects in world space, in their order. The scene must be valid. Objects that become instances
-/// (scene/choose_instances.h) are not drawn, and are in Scene::instances.
+/// (scene/choose_instances.h) are not drawn, and are in Scene::instances. Throws RunError if the copies of the other
+/// objects are too many or do not fit into memory (scene/copies.h).
 Scene flatten(const promin::Scene& scene, Purpose purpose = Purpose::kPictures,
               Instancing instancing = Instancing::kNone);
 

@@ -19,6 +19,7 @@
 #include "promin/motion_vectors.h"
 #include "promin/validate.h"
 #include "rays/npy.h"
+#include "scene/copies.h"
 #include "scene/world_scene.h"
 #include "support/bvh_bytes.h"
 #include "support/valid_scene.h"
@@ -197,6 +198,9 @@ std::vector<MessageCase> cases_of_scenes() {
          scene.file = "a.ply";
          check_at_most(1, 2, scene, "the scene has", "primitives");
        }},
+      {"scene.size.limit", [] { check_copies({.triangles = 1'200'000'000}, std::nullopt, "a.glb"); }},
+      {"scene.memory.short",
+       [] { check_copies({.triangles = 120'000'000, .bytes = 14'000'000'000}, 8'000'000'000, "a.glb"); }},
       {"textures.memory.short",
        [] {
          std::vector<std::shared_ptr<const TextureImage>> images(
