@@ -5,13 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
-#include "core/divide_up.h"
 #include "device/device.h"
 #include "formats/source_file.h"
 #include "promin/error.h"
 #include "promin/motion.h"
 #include "promin/validate.h"
+#include "scene/choose_instances.h"
 #include "scene/features.h"
 #include "work/pictures/load_posed.h"
 #include "work/pictures/view_setup.h"
@@ -25,6 +27,10 @@ constexpr double kLookInterval = 0.1;
 /// The longest side, in pixels, of the picture from which an average exposure is computed.
 constexpr float kMeteredSide = 320.0F;
 
+/// The number of scenes of poses on the device: the one that is shown, the next one, and one that is no longer shown
+/// but still in use.
+constexpr size_t kMostPoses = 3;
+
 /// Returns the indices of lights that the scene has.
 std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scene) {
   std::erase_if(lights, [&](uint32_t light) { return light >= scene.lights.size(); });
@@ -35,6 +41,29 @@ std::vector<uint32_t> keep_known(std::vector<uint32_t> lights, const Scene& scen
 std::shared_ptr<const Scene> put_into_pose(const Scene& scene, const MotionOptions& motion) {
   if (scene.motion == nullptr) return std::make_shared<const Scene>(scene);
   return std::make_shared<const Scene>(scene_at(scene, choose_pose(scene, motion)));
+}
+
+/// Returns the objects whose transforms differ in another pose, if nothing else of the geometry differs and if they are
+/// instances, which move without a new tree. Otherwise returns nullopt.
+std::optional<std::vector<std::pair<uint32_t, dmat4>>> find_moved(const ShownScene& shown, const Scene& posed) {
+  if (posed.motion == nullptr) return {};
+  const Scene& before = *shown.scene;
+  const promin::Motion& motion = *posed.motion;
+  if (!motion.meshes.empty() || !motion.materials.empty() || before.objects.size() != posed.objects.size()) return {};
+  std::vector<std::pair<uint32_t, dmat4>> moved;
+  for (uint32_t i = 0; i < posed.objects.size(); ++i) {
+    const Object& object = posed.objects[i];
+    const bool is_linked = i < motion.objects.size() && motion.objects[i].node != kNoIndex;
+    // A pose may give an object another geometry, which takes the number of an earlier one.
+    const bool is_own = !is_linked || object.geometry == motion.objects[i].geometry;
+    if (object.geometry != before.objects[i].geometry || !is_own) return {};
+    if (object.world_from_object == before.objects[i].world_from_object) continue;
+    const std::vector<uint32_t>& meshes = shown.on_device->numbers().mesh_of_object;
+    if (i >= meshes.size() || meshes[i] == PrimitiveNumbers::kNoMesh) return {};
+    if (!is_fit_for_instance(object.world_from_object)) return {};
+    moved.emplace_back(i, object.world_from_object);
+  }
+  return moved;
 }
 
 /// Returns the features without those that compile slowly, with as little visible effect as possible.
@@ -105,14 +134,25 @@ void ShownScene::put() const {
   });
 }
 
+std::shared_ptr<const HostScene> ShownScene::make_host() const {
+  auto data = std::make_shared<HostScene>();
+  data->scene = world::flatten(*scene, world::Purpose::kPictures, choice.instances);
+  data->scene.environment = environment();
+  data->glass_solids = std::make_shared<const GlassSolids>(data->scene);
+  data->packed = pack_scene(data->scene, choice.builder, {}, texture_bytes);
+  data->packed.stack_size = std::max(data->packed.stack_size, first.scene->stack_size());
+  return data;
+}
+
 SceneOn ShownScene::set_apart() const {
   // Some copies of a scene of this size in bytes need little memory.
   constexpr uint64_t kMostBytes = 256U << 20;
   if (!sets_apart(*first.device) || first.scene->size_bytes() > kMostBytes) return first;
   SceneOn apart{open_same_device(*first.device), nullptr};
-  const world::Scene& in_world = host->scene;
-  apart.scene = upload_scene(*apart.device, host->packed,
-                             {in_world.materials, in_world.textures, lights(), environment(), host->glass_solids});
+  const std::shared_ptr<const HostScene> data = host ? host : make_host();
+  const world::Scene& in_world = data->scene;
+  apart.scene = upload_scene(*apart.device, data->packed,
+                             {in_world.materials, in_world.textures, lights(), environment(), data->glass_solids});
   copies->add(apart);
   return apart;
 }
@@ -195,11 +235,14 @@ void ScenePreparer::pack(std::shared_ptr<const Scene> scene, bool is_posed) {
 void ScenePreparer::pose(const ShownScene& shown, std::shared_ptr<const gpu::Device> device) {
   step_ = Step::kBuilding;
   is_posing_ = true;
-  // Kernels are compiled for multiples of this number of entries.
-  constexpr uint32_t kStackStep = 8;
-  stack_size_ = std::max(stack_size_, next_multiple(shown.host->packed.stack_size, kStackStep));
+  stack_size_ = std::max(stack_size_, shown.first.scene->stack_size());
   work_.start([this, device = std::move(device), request = asked_] {
-    ReadyPicture ready = make_first(put_into_pose(*base_, request.motion), request, device);
+    const std::shared_ptr<const Scene> scene = put_into_pose(*base_, request.motion);
+    std::shared_ptr<ShownScene> posed = reuse(scene, request, device);
+    if (posed == nullptr) posed = put_on_device(scene, request, device);
+    poses_.push_back(posed);
+    SceneOn first = posed->first;
+    ReadyPicture ready = make(std::move(posed), std::move(first), request);
     ready.scene->put();
     ready.has_lights = true;
     return ready;
@@ -257,17 +300,8 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   shown.display = choose_display(*base_, look_, DebugView::kNone);
   shown.first.device = device ? std::move(device) : open_same_device(*device_);
   shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
-  TunedRendererOptions options;
-  options.builder = request.choice.builder;
-  if (request.motion == motion_) options.bvh = request.choice.bvh;
-  options.more_features = features_;
-  options.instances = request.choice.instances;
-  options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
-  options.progress = [this](double fraction) {
-    built_ = fraction;
-    if (fraction == 1.0) step_ = Step::kUploading;
-    return !is_given_up_;
-  };
+  TunedRendererOptions options = options_for(request);
+  shown.texture_bytes = options.texture_bytes;
   throw_if_invalid(*scene);
   auto host = std::make_shared<HostScene>();
   host->scene = world::flatten(*scene, world::Purpose::kPictures, options.instances);
@@ -289,6 +323,77 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   shown.first.scene = shown.on_device->device_scene();
   if (look_.averages_exposure) shown.display.exposure_ev = meter_exposure(shown, options, request.mode);
   return std::make_shared<ShownScene>(std::move(shown));
+}
+
+TunedRendererOptions ScenePreparer::options_for(const PictureRequest& request) {
+  TunedRendererOptions options;
+  options.builder = request.choice.builder;
+  if (request.motion == motion_) options.bvh = request.choice.bvh;
+  options.more_features = features_;
+  options.instances = request.choice.instances;
+  options.texture_bytes = uint64_t{look_.texture_memory_mib} << 20;
+  options.progress = [this](double fraction) {
+    built_ = fraction;
+    if (fraction == 1.0) step_ = Step::kUploading;
+    return !is_given_up_;
+  };
+  return options;
+}
+
+std::shared_ptr<ShownScene> ScenePreparer::find_unused(const PictureRequest& request, const gpu::Device& device) {
+  std::erase_if(poses_, [&](const std::shared_ptr<ShownScene>& pose) {
+    return pose->base != base_ || pose->first.device.get() != &device ||
+           pose->choice.builder != request.choice.builder || pose->choice.instances != request.choice.instances;
+  });
+  // A picture that is no longer shown may still be traced for some frames.
+  constexpr std::chrono::milliseconds kPause{1};
+  constexpr int kMostPauses = 100;
+  for (int pause = 0; poses_.size() >= kMostPoses - 1 && pause < kMostPauses; ++pause) {
+    for (size_t i = 0; i < poses_.size(); ++i) {
+      const std::shared_ptr<ShownScene>& pose = poses_[i];
+      // Films have further references to the scene on the device, and queries of pixels to the shown scene.
+      if (pose.use_count() > 1 || pose->on_device.use_count() > 1 || pose->first.scene.use_count() > 2) continue;
+      std::atomic_thread_fence(std::memory_order_acquire);
+      std::shared_ptr<ShownScene> unused = pose;
+      poses_.erase(poses_.begin() + static_cast<std::ptrdiff_t>(i));
+      return unused;
+    }
+    enter(Step::kBuilding);
+    std::this_thread::sleep_for(kPause);
+  }
+  if (poses_.size() >= kMostPoses) poses_.pop_front();
+  return nullptr;
+}
+
+std::shared_ptr<ShownScene> ScenePreparer::reuse(const std::shared_ptr<const Scene>& scene,
+                                                 const PictureRequest& request,
+                                                 const std::shared_ptr<const gpu::Device>& device) {
+  // Steps show the tree, and the exposure is measured with a renderer.
+  if (look_.averages_exposure || request.mode.debug_view == DebugView::kSteps) return nullptr;
+  std::shared_ptr<ShownScene> shown = find_unused(request, *device);
+  if (shown == nullptr) return nullptr;
+  if (const auto moved = find_moved(*shown, *scene)) {
+    gpu::translate_vulkan_errors([&] { shown->on_device->set_transforms(*moved); });
+  } else {
+    throw_if_invalid(*scene);
+    const world::Scene flat = world::flatten(*scene, world::Purpose::kPictures, request.choice.instances);
+    TunedRendererOptions options = options_for(request);
+    options.repack = [least = stack_size_](PackedScene packed) {
+      packed.stack_size = std::max(packed.stack_size, least);
+      return packed;
+    };
+    gpu::translate_vulkan_errors(
+        [&] { shown->on_device->set_pose(*device, flat, options, TreeOfPose::kRefitted, shown->setup_stats); });
+    shown->first.scene = shown->on_device->device_scene();
+    features_ |= shown->on_device->features_with({}, {}, {DebugView::kNone, false});
+  }
+  shown->scene = scene;
+  shown->motion = request.motion;
+  shown->choice.lights_off = keep_known(request.choice.lights_off, *scene);
+  shown->surroundings = request.surroundings;
+  shown->host = nullptr;
+  shown->copies = std::make_shared<SceneCopies>();
+  return shown;
 }
 
 float ScenePreparer::meter_exposure(const ShownScene& shown, TunedRendererOptions options,
@@ -325,7 +430,7 @@ ReadyPicture ScenePreparer::make(std::shared_ptr<ShownScene> scene, SceneOn on, 
   if (request.is_draft) mode.integrator = Integrator::kWhitted;
   gpu::translate_vulkan_errors([&] {
     FeatureMask features =
-        scene->on_device->features_with(light_features(lights), environment_features(environment), mode);
+        scene->on_device->features_with(light_features(lights), environment_features(environment), mode) | features_;
     if (shows_unlit(features, mode.debug_view) &&
         shows_unlit_apart(*scene->scene, environment, look_, scene->display)) {
       features |= layout::FEATURE_UNLIT_SHARE;

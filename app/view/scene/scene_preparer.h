@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -87,7 +88,9 @@ struct ShownScene {
   SceneOn first;
   std::shared_ptr<SceneOnDevice> on_device;
   SetupStats setup_stats;
-  /// The data that was copied to the device.
+  /// RendererOptions::texture_bytes.
+  uint64_t texture_bytes = kDefaultTextureBytes;
+  /// The data that was copied to the device; null if the scene on the device was put into another pose since then.
   std::shared_ptr<const HostScene> host;
   /// The copies that set_apart() has made.
   std::shared_ptr<SceneCopies> copies = std::make_shared<SceneCopies>();
@@ -96,6 +99,9 @@ struct ShownScene {
   /// driver of a CPU device compiles in its queue; on a separate device this blocks no other work. Otherwise returns
   /// the scene on the first device. Throws DeviceError, RunError.
   SceneOn set_apart() const;
+
+  /// Returns the data for another device.
+  std::shared_ptr<const HostScene> make_host() const;
 
   // Returns the lights as the devices have them.
   std::vector<Light> lights() const;
@@ -184,6 +190,12 @@ class ScenePreparer {
   void enter(Step step);
   std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request,
                                             std::shared_ptr<const gpu::Device> device);
+  TunedRendererOptions options_for(const PictureRequest& request);
+  /// Puts a scene of an earlier pose, which nothing shows any more, into another pose. Returns null if there is none,
+  /// or if the picture needs a new scene.
+  std::shared_ptr<ShownScene> reuse(const std::shared_ptr<const Scene>& scene, const PictureRequest& request,
+                                    const std::shared_ptr<const gpu::Device>& device);
+  std::shared_ptr<ShownScene> find_unused(const PictureRequest& request, const gpu::Device& device);
   /// Returns the average exposure, computed for the first view.
   float meter_exposure(const ShownScene& shown, TunedRendererOptions options, const RenderMode& mode) const;
   /// Returns the picture of a scene, on a new device if `device` is null.
@@ -209,6 +221,8 @@ class ScenePreparer {
   /// The size of the traversal stack and the features of all poses so far, so that poses share kernels.
   uint32_t stack_size_ = 0;
   FeatureMask features_;
+  /// The last scenes of poses. While one is shown, another one is put into the next pose. Only the work uses them.
+  std::deque<std::shared_ptr<ShownScene>> poses_;
   /// True if the current work is another pose.
   std::atomic<bool> is_posing_ = false;
   std::atomic<Step> step_ = Step::kReading;
