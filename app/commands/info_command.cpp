@@ -226,6 +226,7 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
 /// A scene as `promin render` renders it, with added lights.
 struct LitScene {
   AssumedLight assumed;
+  DisplayTransform display;
   FeatureMask features;
   /// The packed scene, without texels.
   PackedScene packed;
@@ -234,7 +235,10 @@ struct LitScene {
 LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
   LookOptions look;
   look.light = choose_light(scene, look.light, usual_integrator(scene, look.light));
-  LitScene lit{.assumed = light_up(scene, look, surroundings), .features = {}, .packed = {}};
+  LitScene lit{.assumed = light_up(scene, look, surroundings),
+               .display = display_of(scene, look.light),
+               .features = {},
+               .packed = {}};
   world::Scene flat = world::flatten(scene, world::Purpose::kPictures, Instancing::kAuto);
   for (auto& image : flat.images) {
     image = std::make_shared<const TextureImage>(TextureImage{image->name, image->size, {}, image->use});
@@ -248,11 +252,10 @@ LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
 void print_scene_json(Scene scene, const EnvironmentChoice& surroundings) {
   nlohmann::json json = json_of(scene);
   const LitScene lit = light_and_pack(scene, surroundings);
-  const DisplayTransform display = display_of(scene);
   json["counts"]["degenerate_triangles"] = lit.packed.degenerate_count;
   json["environment"] = json_of(scene.environment);
-  json["display"] = json_of(display);
-  json["assumed"] = list_assumptions(scene, {}, lit.assumed, usual_integrator(scene, LightChoice::kAuto), display);
+  json["display"] = json_of(lit.display);
+  json["assumed"] = list_assumptions(scene, {}, lit.assumed, usual_integrator(scene, LightChoice::kAuto), lit.display);
   json["counts"]["instances"] = lit.packed.instance_count;
   json["features"] = feature_names(lit.features);
   json["warnings"] = scene.warnings;
@@ -301,7 +304,7 @@ void print_table(Scene scene, const std::filesystem::path& file, const Environme
   print_row("lights", lights);
   print_row("background", describe_background(scene.environment, lit.assumed));
   print_row("sky", describe_sky(scene.environment));
-  print_row("display", describe_display(display_of(scene)));
+  print_row("display", describe_display(lit.display));
   print_rows("cameras", describe_cameras(scene));
   print_motion(scene);
   print_row("bounds", describe_bounds(bounds_of(scene), scene.center));

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <variant>
 
 #include "scene/framing.h"
+#include "scene/glow.h"
 #include "scene/light_kinds.h"
 #include "scene/upright.h"
 
@@ -69,7 +71,12 @@ double luminance_of(const vec3& color) {
 }
 
 /// Returns the illuminance in the middle of the scene, as exposure_of() defines it.
-double illuminance_of(const Scene& scene) {
+double illuminance_of(const Scene& scene, LightChoice choice) {
+  const bool adds_no_light = choice == LightChoice::kFill || choice == LightChoice::kNone;
+  if (adds_no_light && scene.lights.empty()) {
+    const std::optional<Glow> glow = find_glow(scene);
+    return glow ? glow->illuminance() : 0.0;
+  }
   dvec3 center(0.0);
   double least_distance = 0.0;
   // Computing the bounds of a large scene takes time, so the function does this only if a light needs the bounds.
@@ -114,13 +121,13 @@ std::span<const std::string_view> light_choice_names() {
 
 AssumedLight light_scene(Scene& scene, LightChoice choice) {
   if (choice == LightChoice::kAuto) choice = scene.is_classic ? LightChoice::kHeadlight : LightChoice::kStudio;
+  const float unexposed = std::exp2(-exposure_of(scene, choice));
   const bool is_soft = choice == LightChoice::kSoft;
   const bool is_fill = choice == LightChoice::kFill || !scene.lights.empty();
   if (is_soft || choice == LightChoice::kFill) choice = LightChoice::kStudio;
   AssumedLight assumed;
   Environment& environment = scene.environment;
   const bool had_sky = is_surrounded(environment);
-  const float unexposed = std::exp2(-exposure_of(scene));
 
   if (!scene.is_classic && !had_sky && environment.background == vec3(0.0F) && !environment.backdrop) {
     environment.background = vec3(0.5F * (kStudioBackdropTop + kStudioBackdropBottom) * unexposed);
@@ -173,8 +180,8 @@ Light make_studio_light(float front, float power) {
   return light;
 }
 
-float exposure_of(const Scene& scene) {
-  const double illuminance = illuminance_of(scene);
+float exposure_of(const Scene& scene, LightChoice choice) {
+  const double illuminance = illuminance_of(scene, choice);
   if (!(illuminance > 0.0) || (illuminance >= kLeastIlluminance && illuminance <= kMostIlluminance)) return 0.0F;
   // The powers are floats and the distances are at least about 1e-15, so the logarithm is finite unless the illuminance
   // is infinite.
@@ -184,7 +191,7 @@ float exposure_of(const Scene& scene) {
 
 DisplayTransform display_of(const Scene& scene, LightChoice choice) {
   if (scene.is_classic || (choice == LightChoice::kHeadlight && is_of_phong(scene)) || is_all_unlit(scene)) return {};
-  return {exposure_of(scene), ToneMapping::kNeutral};
+  return {exposure_of(scene, choice), ToneMapping::kNeutral};
 }
 
 bool mixes_unlit(const Scene& scene) {

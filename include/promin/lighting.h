@@ -82,9 +82,10 @@ PROMIN_EXPORT Light make_studio_light(float front, float power = kStudioLightPow
 /// exposure changes E to about pi. E is the sum of the luminance of the diffuse power of all lights, including lights
 /// that are off. For lights with attenuation, the power is divided by the square of the distance, which is at least
 /// half the scene's radius. If there are Phong materials and no metallic-roughness materials, the power is multiplied
-/// by pi, because a power of 1 in the Phong model corresponds to a power of pi in the other model. Throws InputError as
+/// by pi, because a power of 1 in the Phong model corresponds to a power of pi in the other model. With
+/// LightChoice::kFill and kNone, E of a scene without lights is that from its emissive surfaces. Throws InputError as
 /// bounds_of() does.
-PROMIN_EXPORT float exposure_of(const Scene& scene);
+PROMIN_EXPORT float exposure_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
 
 /// Returns the display transform for a scene: exposure_of() and Khronos PBR Neutral. The transform changes nothing for
 /// classic scenes, for scenes with only unlit objects, and for scenes of Phong materials if the headlight is chosen.

@@ -68,6 +68,25 @@ TEST(UsualIntegratorTest, LampsHaveAFluxThatDependsOnTheScene) {
   EXPECT_TRUE(lights_itself(scaled)) << "sizes are those in the world, and only their ratios count";
 }
 
+// The lamp is nearer to the middle than half the radius, so a lamp of 1 by 1 gives 100 / (8.25 / 4) = 48.5 lux.
+TEST(GlowTest, ChoosesTheExposureIfThereIsNoOtherLight) {
+  Scene scene = make_room(100.0F, 1.0F);
+  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), -4.0F);
+  EXPECT_EQ(exposure_of(scene, LightChoice::kNone), -4.0F);
+  EXPECT_EQ(exposure_of(scene, LightChoice::kStudio), 0.0F) << "the studio has the light of usual pictures";
+  EXPECT_EQ(exposure_of(make_room(100.0F, 100.0F), LightChoice::kFill), -6.5F) << "at most 100 pi lux";
+  EXPECT_EQ(exposure_of(make_room(4.0F, 1.0F), LightChoice::kFill), 0.0F) << "1.9 lux";
+  std::swap(std::get<Mesh>(scene.geometries[1]).triangles[0].x, std::get<Mesh>(scene.geometries[1]).triangles[0].y);
+  std::swap(std::get<Mesh>(scene.geometries[1]).triangles[1].x, std::get<Mesh>(scene.geometries[1]).triangles[1].y);
+  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), 0.0F) << "a lamp that faces away counts a quarter: 12.1 lux";
+  scene.objects[1].world_from_object = glm::dmat4(glm::dmat3(dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)));
+  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), -4.0F) << "a mirrored lamp faces the other way";
+  scene.lights.resize(1);
+  scene.lights[0].kind = LightKind::kDirectional;
+  scene.lights[0].diffuse = vec3(3.0F);
+  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), 0.0F) << "lights alone count";
+}
+
 TEST(UsualIntegratorTest, ALargeFloorHidesNoLamp) {
   Scene scene = make_room(10.0F, 0.5F);
   scene.geometries[0] = make_square(0.0F, 1000.0F);

@@ -311,7 +311,7 @@ def mirrors():
 
 
 def emissive():
-    """Lanterns that show their own colour in the dark; emission does not light other objects."""
+    """Lanterns that show their own colour in the dark. They are too weak to light other objects."""
     g = _stage(floor=(0.4, 0.4, 0.42), background=(0.03, 0.035, 0.05), ambient=0.25, key=0.15)
     pole = g.cylinder("pole", 0.6, 0.06, g.material("pole", STONE))
     for i, (name, color) in enumerate(PALETTE.items()):

@@ -109,7 +109,7 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   lit_look.light = choose_light(scene, view.look.light, integrator);
   AssumedLight assumed = light_up(scene, lit_look, surroundings, upward_direction(scene, view));
   if (options.aovs.alpha) assumed.has_background = false;  // With alpha, no picture shows a background.
-  stats.display = choose_display(scene, view.look, view.debug_view);
+  stats.display = choose_display(scene, lit_look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
   // If errors are measured as displayed, the display also affects the bits of an EXR.
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||
