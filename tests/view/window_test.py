@@ -401,6 +401,27 @@ def plays_an_animation(bin_folder, scenes, folder):
         session.quit()
 
 
+def moves_instances(bin_folder, scenes, folder):
+    write_moving(folder / "moving.gltf")
+    work = folder / "work"
+    work.mkdir()
+    session = Session(bin_folder, folder, work, "-v", "--instances", "all", files=("moving.gltf",))
+    with session as viewer:
+        viewer.press("Tab")
+        viewer.wait_for_line("shown: a picture", 1, "picture")
+        viewer.press("p")
+        viewer.press("space")
+        time.sleep(1.5)
+        viewer.press("space")
+        line = viewer.wait_for_line(r"played \d+ poses", 1, "report of the animation")
+        expect(int(re.search(r"played (\d+)", line).group(1)) >= 3, f"too few poses to use a scene again: {line}")
+        stopped = session.expect_shown(1, "--instances all")
+        viewer.press("Right")
+        wait_for(lambda: time_of(session.print_command()) != time_of(stopped), "step")
+        session.expect_shown(2, "--instances all")
+        session.quit()
+
+
 def stops_at_a_signal(bin_folder, scenes, folder):
     session = Session(bin_folder, scenes, folder, "--record", "flight.json", files=Session.SMALL)
     with session as viewer:
