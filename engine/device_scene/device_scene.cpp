@@ -293,6 +293,15 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   replace(parts);
 }
 
+void DeviceScene::pad_vertices(PackedScene& packed) const {
+  VertexRecords& vertices = packed.surfaces.vertices;
+  size_t part = 1;  // The first one has no vertices, but the surfaces.
+  for (std::vector<vec4>* records : {&vertices.normals, &vertices.colors, &vertices.uvs, &vertices.tangents}) {
+    const size_t space = head_sizes_[part++] / sizeof(vec4);
+    if (!records->empty() && records->size() < space) records->resize(space);
+  }
+}
+
 bool DeviceScene::has_space_for(const PackedScene& packed) const {
   return packed.upper == nullptr && std::as_bytes(std::span(packed.primitives)).size() == primitives_.size_bytes() &&
          place_head(packed.surfaces).sizes() == head_sizes_ &&

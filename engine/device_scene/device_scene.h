@@ -44,6 +44,8 @@ class DeviceScene {
   void set_materials(std::span<const Material> materials);
   void set_lights(std::span<const Light> lights);
   void set_environment(const Environment& environment);
+  /// Adds vertices that nothing uses, so that a packed scene has as many as there is space for.
+  void pad_vertices(PackedScene& packed) const;
   /// Returns whether set_geometry() can replace the geometry by that of another pose: there is space for as many
   /// primitives and vertices, and no instances.
   bool has_space_for(const PackedScene& packed) const;

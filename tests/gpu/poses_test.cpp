@@ -98,6 +98,33 @@ TEST_F(PosesTest, PicturesAreThoseOfANewRenderer) {
   EXPECT_EQ(renderer.work_done().trees_built - before.trees_built, 5U) << "two poses have fitted trees";
 }
 
+/// Turned normals need further vertices, whose number changes from pose to pose. The scene on the device has space for
+/// them after the first change.
+TEST_F(PosesTest, OtherNumbersOfVerticesNeedNoNewScene) {
+  const auto pose_with = [&](uint32_t turned) {
+    Scene scene = pose(0.1F * static_cast<float>(turned));
+    Mesh& mesh = std::get<Mesh>(scene.geometries[0]);
+    mesh.normals.clear();
+    for (const vec3& p : mesh.positions) mesh.normals.push_back(glm::normalize(p));
+    for (uint32_t i = 0; i < turned; ++i) {
+      for (int corner = 0; corner < 3; ++corner) mesh.normals[mesh.triangles[100 * i][corner]] *= -1.0F;
+    }
+    return scene;
+  };
+  TunedRendererOptions options;
+  options.more_features = features_of(make_scene_of_everything(50)) | layout::FEATURE_INSTANCES;
+  const View view = make_view({48, 32});
+  Renderer renderer = make_renderer(device(), pose_with(0), options);
+  renderer.set_pose(pose_with(3));
+  const auto scene = RendererAccess::scene_of(renderer).device_scene();
+  for (const uint32_t turned : {5U, 0U, 2U}) {
+    renderer.set_pose(pose_with(turned));
+    EXPECT_EQ(RendererAccess::scene_of(renderer).device_scene(), scene) << turned;
+    const RenderResult fresh = make_renderer(device(), pose_with(turned), options).render(view);
+    EXPECT_TRUE(has_same_bits(renderer.render(view).image, fresh.image)) << turned;
+  }
+}
+
 /// A pose uploads only the shading that changes, and each part of it once.
 TEST_F(PosesTest, OnlyChangedShadingIsUploaded) {
   TunedRendererOptions options;

@@ -21,6 +21,15 @@ ShadingParts shading_of(const world::Scene& scene) {
   return {scene.materials, scene.textures, scene.lights, scene.environment, std::make_shared<const GlassSolids>(scene)};
 }
 
+/// Adds space for some more vertices. Turned normals take vertices of their own (scene/turned_normals.h), so other
+/// poses may have more.
+void add_spare_vertices(VertexRecords& vertices) {
+  constexpr size_t kShare = 16;
+  for (std::vector<vec4>* records : {&vertices.normals, &vertices.colors, &vertices.uvs, &vertices.tangents}) {
+    if (!records->empty()) records->resize(records->size() + records->size() / kShare + kShare);
+  }
+}
+
 }  // namespace
 
 SceneOnDevice::SceneOnDevice(const gpu::Device& device, const SceneToPack& scene, const TunedRendererOptions& options,
@@ -101,12 +110,14 @@ void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& pose
     if (options.repack) packed = options.repack(std::move(packed));
     packed.stack_size = std::max(packed.stack_size, device_scene_->stack_size());
     const Stopwatch uploading;
+    device_scene_->pad_vertices(packed);
     if (has_images_of(posed, packed.mask_cutoffs) && device_scene_->has_space_for(packed)) {
       device_scene_->set_geometry(packed, shading);
       stats.upload_ms = uploading.ms();
     } else {
       if (posed.instances.empty()) add_images(packed, posed, options.texture_bytes);
       earlier_uploads_ = uploads();
+      add_spare_vertices(packed.surfaces.vertices);
       upload(device, posed, packed, shading, stats);
       images_ = posed.images;
       textures_ = posed.textures;
