@@ -20,6 +20,7 @@ BIN, TOOLS, SCENES = map(pathlib.Path, sys.argv[2:5])
 sys.path[:0] = [str(TOOLS / "lab"), str(TOOLS)]
 sys.dont_write_bytecode = True
 
+import honesty_plot
 import processes
 from figures import gap_text, number
 from stats import figures_of_times, fit_doublings, median_interval, read_figures
@@ -47,6 +48,22 @@ def run_python(script, *words, environment=None):
 
 def read_json(file):
     return json.loads(file.read_text(encoding="utf-8"))
+
+
+def draws_claims(folder):
+    """Checks the points of the plot of claims, and its data as promin-lab honesty writes them."""
+    pixels = [(0.25, error / 1000.0) for error in range(1, 201)] + [(0.01, 0.5)] * 99 + [(0.0, 0.0)] * 200
+    points = honesty_plot.quantiles(pixels)
+    expect(len(points) == 1 and points[0][1] == 0.19, f"not the error of 95 in 100 pixels: {points}")
+    expect(0.25 <= points[0][0] < 0.25 * math.sqrt(2.0), f"not the middle of the range of claims: {points}")
+    file = folder / "pixels.csv"
+    words = ("--size", "125x125", "--truth", 64, "--most", 2, "--runs", 1, "--pixels", file)
+    run_lab("honesty", SCENES / "box.gltf", *words)
+    lines = file.read_text().splitlines()
+    expect(lines[0] == "scene,target,claim,error" and len(lines) > 10, f"{lines[:2]}")
+    expect(all(line.startswith("box,") for line in lines[1:]), "another scene")
+    measured = honesty_plot.read_pixels(file)
+    expect(len(measured) == len(lines) - 1 and all(claim >= 0.0 for claim, _ in measured), "other pixels")
 
 
 def computes_figures(folder):
@@ -311,7 +328,15 @@ def writes_a_report(folder):
     expect(done.returncode == 1 and "no such scene" in done.stderr, f"a scene that is not there: {done}")
 
 
-TESTS = (computes_figures, measures_processes, names_gaps, names_the_gap_of_mitsuba, makes_tables, writes_a_report)
+TESTS = (
+    computes_figures,
+    draws_claims,
+    measures_processes,
+    names_gaps,
+    names_the_gap_of_mitsuba,
+    makes_tables,
+    writes_a_report,
+)
 TESTS = {test.__name__: test for test in TESTS}
 
 with tempfile.TemporaryDirectory() as name:

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -36,6 +37,7 @@ struct HonestyOptions {
   uint32_t runs = 3;
   /// True if errors and claims are those of the shown picture.
   bool is_shown = false;
+  std::optional<std::string> pixels;
   LightChoice light = LightChoice::kAuto;
   Integrator integrator = Integrator::kWhitted;
 };
@@ -79,6 +81,10 @@ class HonestyBench {
     const float aspect_ratio = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
     view_.camera = scene.cameras.empty() ? frame_scene(scene, aspect_ratio) : scene.cameras.front();
     view_.size = options.size;
+    if (options.pixels) {
+      pixels_.emplace(*options.pixels);
+      *pixels_ << "scene,target,claim,error\n";
+    }
     if (options.is_shown) display_ = display_of(scene);
     view_.max_depth = default_max_depth(scene);
     view_.mode.integrator = options.integrator;
@@ -189,9 +195,17 @@ class HonestyBench {
         const vec3 claim = display_ ? shown_claim(result.aovs.error[i], written, *display_) : result.aovs.error[i];
         const vec3 error = glm::abs(shown(written) - shown(truth_[w].pixels[i]));
         honest += glm::all(glm::lessThanEqual(error, claim)) ? 1 : 0;
+        write_pixel(view.error_target->error, claim, error);
       }
     }
     return static_cast<double>(honest) / static_cast<double>(std::max<size_t>(refined, 1));
+  }
+
+  /// Writes the claim and the error of a pixel's channel with the largest error.
+  void write_pixel(float target, const vec3& claim, const vec3& error) {
+    if (!pixels_) return;
+    const int worst = error.y > error.x ? (error.z > error.y ? 2 : 1) : (error.z > error.x ? 2 : 0);
+    *pixels_ << fmt::format("{},{:.9g},{:.9g},{:.9g}\n", name_, target, claim[worst], error[worst]);
   }
 
   /// Returns the ratio of a picture's time to the time of an unrefined picture with the same error. That time is
@@ -225,6 +239,8 @@ class HonestyBench {
   std::optional<Renderer> renderer_;
   std::optional<Renderer> plain_renderer_;
   std::vector<Image> truth_;
+  /// The table of pixels, if one is requested.
+  std::optional<std::ofstream> pixels_;
 };
 
 void measure_honesty(const HonestyOptions& options) {
@@ -259,6 +275,8 @@ app::Command add_honesty_command(CLI::App& program) {
   table.add("--integrator", fmt::format("{}", fmt::join(integrator_names(), "|")),
             "Method that computes light [whitted]",
             [=](const OptionValues& words) { options->integrator = words.name<Integrator>(integrator_names()); });
+  table.add("--pixels", "FILE.csv", "Write the claim and the error of each refined pixel, for honesty_plot.py",
+            [=](const OptionValues& words) { options->pixels = words.text(); });
   table.add_flag("--shown", "Measure errors in the displayed picture (--error-in display) instead of linear light",
                  options->is_shown);
   return {&command, [options] { measure_honesty(*options); }};
