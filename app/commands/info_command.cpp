@@ -233,10 +233,11 @@ struct LitScene {
 };
 
 LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
+  surroundings.replace_sky(scene);
   LookOptions look;
-  look.light = choose_light(scene, look.light, usual_integrator(scene, look.light));
+  settle_light(scene, usual_integrator(scene, look.light), look);
   LitScene lit{.assumed = light_up(scene, look, surroundings),
-               .display = display_of(scene, look.light),
+               .display = choose_display(scene, look, DebugView::kNone),
                .features = {},
                .packed = {}};
   world::Scene flat = world::flatten(scene, world::Purpose::kPictures, Instancing::kAuto);

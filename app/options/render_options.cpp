@@ -137,7 +137,7 @@ void add_look_options(OptionTable& table, LookOptions& look) {
   table.add("--light", fmt::format("{}", fmt::join(lights.subspan(1), "|")),
             "Light that is added if the scene has no light or no sky. soft is the studio with soft shadows: a sun 10 "
             "degrees wide, --integrator direct and --ground. fill is the studio without its sun, and darker [studio; "
-            "files that their own surfaces light: fill; classic scenes: headlight]",
+            "files that their own surfaces light strongly: fill; classic scenes: headlight]",
             [&look, lights](const OptionValues& w) { look.light = w.name<LightChoice>(lights, 1); });
   table.add(
       "--ground", "on|off",

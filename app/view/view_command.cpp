@@ -113,11 +113,12 @@ OpenedScene open_scene(const WindowOptions& options, const Console& console) {
   opened.usual_integrator =
       view_options.integrator ? usual_integrator(*scene, view_options.look.light) : opened.view.mode.integrator;
   if (!options.replay) warn_of_empty_pictures(*scene, {&opened.view.camera, 1}, opened.view.size, console);
-  opened.light = choose_light(*scene, options.view.look.light, opened.view.mode.integrator);
-  LookOptions look = options.view.look;
-  look.light = opened.light;
-  const AssumedLight assumed = light_up(*scene, look, opened.environment, upward_direction(*scene, view_options));
-  const DisplayTransform display = choose_display(*scene, look, opened.view.mode.debug_view);
+  opened.look = options.view.look;
+  opened.environment.replace_sky(*scene);
+  settle_light(*scene, opened.view.mode.integrator, opened.look);
+  const AssumedLight assumed =
+      light_up(*scene, opened.look, opened.environment, upward_direction(*scene, view_options));
+  const DisplayTransform display = choose_display(*scene, opened.look, opened.view.mode.debug_view);
   const std::string assumptions =
       describe_assumptions(*scene, view_options, assumed, opened.view.mode.integrator, display);
   if (!assumptions.empty()) console.note(assumptions);

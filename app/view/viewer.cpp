@@ -175,11 +175,9 @@ void Viewer::show_scene(OpenedScene opened) {
     switches_.surroundings = {.light_rotation_deg = start_.environment.light_rotation_deg};
   }
   keep_camera();
-  LookOptions look = start_.look;
-  look.light = opened_.light;
   preparer_ = std::make_unique<ScenePreparer>(device_, target_ms_, opened_.file, opened_.load, opened_.motion,
-                                              opened_.sources, look, opened_.environment, view);
-  preparer_->begin(opened_.scene, request());
+                                              opened_.sources, start_.look, opened_.environment, view);
+  preparer_->begin(opened_.scene, opened_.look, request());
   draw_again();
 }
 
@@ -287,11 +285,13 @@ void Viewer::move_time(double now_s) {
   clock_.advance(now_s);
   if (clock_.is_playing() == playing_since_s_.has_value()) return;
   if (playing_since_s_) {
-    console_.detail(fmt::format("played {} poses in {:.1f} s", played_poses_, now_s - *playing_since_s_));
+    console_.detail(fmt::format("played {} poses in {:.1f} s, {} of them with a scene that was on the device",
+                                played_poses_, now_s - *playing_since_s_, reused_scenes_));
     playing_since_s_.reset();
   } else {
     playing_since_s_ = now_s;
     played_poses_ = 0;
+    reused_scenes_ = 0;
   }
 }
 
@@ -318,7 +318,10 @@ void Viewer::show_picture(ReadyPicture ready) {
   const bool is_new = scene_ && scene_->base != ready.scene->base;
   if (is_new && scene_->base != opened_.scene) move_cameras(scene_->scene->center - ready.scene->scene->center);
   if (scene_ != ready.scene) explanation_.close();
-  if (scene_ && scene_->motion != ready.scene->motion) ++played_poses_;
+  if (scene_ && scene_->motion != ready.scene->motion) {
+    ++played_poses_;
+    if (ready.is_reused) ++reused_scenes_;
+  }
   if (traced_ && !is_new) ready.picture->picture().take_pace(traced_->picture());
   if (traced_) retired_.push_back(std::move(traced_));
   traced_ = std::move(ready.picture);
@@ -581,7 +584,8 @@ View Viewer::current_view() const {
 View Viewer::reproducible_view() const {
   View view = current_view();
   const ProgressivePicture& picture = traced_->picture();
-  if (picture.is_complete() && shows_same(view, picture.wanted())) return picture.shown()->view_of(view);
+  // The view may have another error target than the shown picture.
+  if (picture.is_complete() && shows_same(view, picture.wanted())) return picture.shown()->view_of(picture.wanted());
   view.error_target.reset();
   return view;
 }

@@ -204,9 +204,10 @@ class Viewer {
   bool is_of_middle_ = false;
   CameraControl control_{Camera(), Bounds(), vec3(0.0F, 1.0F, 0.0F)};
   AnimationClock clock_;
-  /// The number of poses that were shown since the clock began to play, and the time in seconds of the first one. It is
-  /// empty while the clock stands.
+  /// The number of poses that were shown since the clock began to play, the number of those that reused a scene on the
+  /// device, and the time in seconds of the first one. The time is empty while the clock stands.
   int played_poses_ = 0;
+  int reused_scenes_ = 0;
   std::optional<double> playing_since_s_;
   Background<Camera> framing_;
   int camera_index_ = -1;

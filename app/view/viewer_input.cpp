@@ -202,7 +202,7 @@ void Viewer::print_command() {
 DescribedScene Viewer::described_scene(const View& view) const {
   const SceneChoice& on = scene_->choice;
   LookOptions look = start_.look;
-  look.light = opened_.light;
+  look.light = scene_->light;
   // The automatic exposure is that of the pose in which the scene was opened.
   const bool has_other_pose = scene_->motion != opened_.motion;
   const Surroundings& surroundings = scene_->surroundings;

@@ -21,10 +21,24 @@ std::optional<uint64_t> available_memory() {
   }
   if (!available) return std::nullopt;
   *available += swap;
+  return std::min(*available, available_in_group("/sys/fs/cgroup").value_or(*available));
+}
+
+std::optional<uint64_t> available_in_group(const std::filesystem::path& folder) {
   uint64_t most = 0;
   // The file contains the word "max" if there is no limit.
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> most) *available = std::min(*available, most);
-  return available;
+  if (!(std::ifstream(folder / "memory.max") >> most)) return std::nullopt;
+  uint64_t used = 0;
+  std::ifstream(folder / "memory.current") >> used;
+  uint64_t files = 0;
+  std::ifstream stat(folder / "memory.stat");
+  std::string name;
+  uint64_t bytes = 0;
+  while (stat >> name >> bytes) {
+    if (name == "active_file" || name == "inactive_file") files += bytes;
+  }
+  used -= std::min(used, files);
+  return most - std::min(most, used);
 }
 
 }  // namespace promin

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "device_scene/cut_triangles.h"
 #include "promin/error.h"
+#include "scene/facets.h"
 #include "shapes/shapes.h"
 
 namespace promin {
@@ -128,10 +129,6 @@ class Collector {
     }
   }
 
-  uint32_t material_of(const Mesh& mesh, uint32_t triangle) const {
-    return mesh.triangle_materials.empty() ? material_ : mesh.triangle_materials[triangle];
-  }
-
   /// Adds the triangles of a mesh in which no triangle has several parts, so that the position of each is known in
   /// advance.
   void add_whole(const Mesh& mesh, uint32_t flags) {
@@ -157,8 +154,8 @@ class Collector {
         primitive.c.y = result_.order + triangle;
         primitive.c.w = hashes_of(object_, triangle);
         result_.bounded[place] = primitive;
-        result_.bounded_surfaces[place] = {
-            uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0), material_of(mesh, triangle) | flags)};
+        result_.bounded_surfaces[place] = {uvec4(flags != 0 ? first_vertex_ + corners : uvec3(0),
+                                                 triangle_material(mesh, triangle, material_) | flags)};
         result_.boxes[place] = bounds_of(whole);
       }
     });
@@ -182,7 +179,8 @@ class Collector {
           vertices[corner] = first_vertex_ + vertex_of(mesh, mesh.triangles[i], part[static_cast<size_t>(corner)]);
         }
         if (parts_.size() > 1) add_part(part, &part == parts_.data());
-        add_bounded(pack_part(part), i, bounds_of(part), uvec4(vertices, material_of(mesh, i) | flags));
+        add_bounded(pack_part(part), i, bounds_of(part),
+                    uvec4(vertices, triangle_material(mesh, i, material_) | flags));
       }
     }
   }

@@ -293,22 +293,19 @@ void DeviceScene::set_upper_level(const UpperLevel& level, const UpperNodes& upp
   replace(parts);
 }
 
-void DeviceScene::pad_vertices(PackedScene& packed) const {
-  VertexRecords& vertices = packed.surfaces.vertices;
-  size_t part = 1;  // The first one has no vertices, but the surfaces.
-  for (std::vector<vec4>* records : {&vertices.normals, &vertices.colors, &vertices.uvs, &vertices.tangents}) {
-    const size_t space = head_sizes_[part++] / sizeof(vec4);
-    if (!records->empty() && records->size() < space) records->resize(space);
-  }
-}
-
 bool DeviceScene::has_space_for(const PackedScene& packed) const {
+  const auto fits = [](uint64_t size, uint64_t space) { return size == space || (size > 0 && size < space); };
   return packed.upper == nullptr && std::as_bytes(std::span(packed.primitives)).size() == primitives_.size_bytes() &&
-         place_head(packed.surfaces).sizes() == head_sizes_ &&
+         std::ranges::equal(place_head(packed.surfaces).sizes(), head_sizes_, fits) &&
          (packed.solid_count > packed.bounded_count / 2) == is_mostly_solids_;
 }
 
-void DeviceScene::set_geometry(const PackedScene& packed, const ShadingParts& shading) {
+void DeviceScene::set_geometry(PackedScene& packed, const ShadingParts& shading) {
+  VertexRecords& vertices = packed.surfaces.vertices;
+  size_t part = 1;  // The first one has no vertices, but the surfaces.
+  for (std::vector<vec4>* records : {&vertices.normals, &vertices.colors, &vertices.uvs, &vertices.tangents}) {
+    records->resize(head_sizes_[part++] / sizeof(vec4));
+  }
   const TreeView tree = packed.tree();
   reserve_nodes(tree.nodes.size(), 0);
   reserve_stack(packed.stack_size);

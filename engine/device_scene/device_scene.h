@@ -44,13 +44,12 @@ class DeviceScene {
   void set_materials(std::span<const Material> materials);
   void set_lights(std::span<const Light> lights);
   void set_environment(const Environment& environment);
-  /// Adds vertices that nothing uses, so that a packed scene has as many as there is space for.
-  void pad_vertices(PackedScene& packed) const;
-  /// Returns whether set_geometry() can replace the geometry by that of another pose: there is space for as many
-  /// primitives and vertices, and no instances.
+  /// Returns whether set_geometry() can replace the geometry by that of another pose: it has as many primitives, no
+  /// instances, and at most as many vertices as there is space for.
   bool has_space_for(const PackedScene& packed) const;
-  /// Replaces the geometry, for which there is space, and the shading. Images and textures stay.
-  void set_geometry(const PackedScene& packed, const ShadingParts& shading);
+  /// Replaces the geometry, for which there is space, and the shading. Images and textures stay. The packed scene gets
+  /// vertices that nothing uses, so that it has as many as there is space for.
+  void set_geometry(PackedScene& packed, const ShadingParts& shading);
   /// Returns the records of the instances (UpperLevel::put_records).
   UnsetVector<layout::Node> read_records() const;
   /// Replaces the upper level after instances have moved, and the shading; null keeps it. Textures stay.

@@ -116,7 +116,9 @@ struct PackedScene {
   uint64_t size_bytes() const;
 };
 
-/// A scene in world space that a constructor packs and uploads. A temporary scene frees its geometry in between.
+/// A scene in world space that a constructor packs and uploads. It is only a parameter of functions: it refers to the
+/// scene, so it must not be stored. A temporary scene, or one that a caller gives with std::move(), frees its geometry
+/// in between: after packing, it has no objects, meshes or instances.
 class SceneToPack {
  public:
   SceneToPack(const world::Scene& scene) : scene_(&scene) {}  // NOLINT(google-explicit-constructor)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/luminance.h"
 #include "promin/aovs.h"
 
 namespace promin {
@@ -30,11 +31,9 @@ dvec3 map_aces(const dvec3& c) {
   return c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14);
 }
 
-const dvec3 kLuminance(0.2126, 0.7152, 0.0722);
-
 /// Maps a colour with equation 4 of Reinhard et al. 2002. A luminance of 4 is displayed as white.
 dvec3 map_reinhard(const dvec3& c) {
-  const double luminance = glm::dot(kLuminance, c);
+  const double luminance = luminance_of(c);
   return c * ((1.0 + luminance / 16.0) / (1.0 + luminance));
 }
 
@@ -110,7 +109,7 @@ float average_exposure_ev(std::span<const vec3> pixels, std::span<const uint32_t
     const vec4 of_unlit = unlit.empty() ? vec4(0.0F) : unlit[i];
     const double lit = lit_share(of_unlit);
     if (lit == 0.0) continue;
-    const double luminance = glm::dot(kLuminance, lit_radiance(pixels[i], of_unlit));
+    const double luminance = luminance_of(lit_radiance(pixels[i], of_unlit));
     if (!std::isfinite(luminance)) continue;
     sum += lit * std::log(1e-4 + std::max(luminance, 0.0));
     count += lit;

@@ -12,6 +12,11 @@
 
 namespace promin {
 
+/// Returns the material of a triangle of a mesh whose object has the material `of_object`.
+inline uint32_t triangle_material(const Mesh& mesh, size_t triangle, uint32_t of_object) {
+  return mesh.triangle_materials.empty() ? of_object : mesh.triangle_materials[triangle];
+}
+
 /// A triangle in the world, counterclockwise as seen from outside. Solids are represented by the facets of their
 /// bounds.
 struct Facet {
@@ -54,7 +59,7 @@ struct FacetFinder {
 #include "promin/kinds/primitives.def"
 
   bool shows_back(const Mesh& mesh, size_t triangle) const {
-    const uint32_t material = mesh.triangle_materials.empty() ? object.material : mesh.triangle_materials[triangle];
+    const uint32_t material = triangle_material(mesh, triangle, object.material);
     return material >= scene.materials.size() || shows_backs(scene.materials[material]);
   }
 

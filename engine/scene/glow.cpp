@@ -8,8 +8,10 @@
 #include <utility>
 #include <variant>
 
+#include "core/luminance.h"
 #include "core/rounding.h"
 #include "core/srgb.h"
+#include "scene/facets.h"
 #include "scene/glass.h"
 #include "scene/placed_bounds.h"
 
@@ -45,37 +47,41 @@ dvec3 mean_texel(const Scene& scene, const TextureSlot& slot) {
   return sum / count;
 }
 
-/// The mean radiance of each material, twice if both sides shine; 0 for materials that do not count.
+/// The light of a material that counts as a lamp.
+struct Emission {
+  /// The mean radiance of one side: the mean of the channels, and the luminance. 0 for other materials.
+  double radiance = 0.0;
+  double luminance = 0.0;
+  bool shines_back = false;
+};
+
+/// The emissions of a scene's materials.
 class Emissions {
  public:
-  explicit Emissions(std::vector<double> values) : values_(std::move(values)) {}
-  double at(uint32_t material) const { return material < values_.size() ? values_[material] : 0.0; }
+  explicit Emissions(std::vector<Emission> values) : values_(std::move(values)) {}
+  Emission of(uint32_t material) const { return material < values_.size() ? values_[material] : Emission(); }
+  bool shines(uint32_t material) const { return of(material).radiance > 0.0; }
   bool are_all_dark() const {
-    return std::ranges::all_of(values_, [](double emission) { return emission == 0.0; });
+    return std::ranges::all_of(values_, [](const Emission& emission) { return emission.radiance == 0.0; });
   }
 
  private:
-  std::vector<double> values_;
+  std::vector<Emission> values_;
 };
 
 Emissions find_emissions(const Scene& scene) {
-  std::vector<double> emissions;
+  std::vector<Emission> emissions;
   for (const Material& material : scene.materials) {
     const bool counts =
         !std::holds_alternative<Unlit>(material.model) && max_component(material.emissive) > kLeastEmission;
-    double emission = 0.0;
+    Emission emission;
     if (counts) {
       const dvec3 light = dvec3(material.emissive) * mean_texel(scene, material.emissive_texture);
-      emission = (light.x + light.y + light.z) / 3.0 * (shows_backs(material) ? 2.0 : 1.0);
+      emission = {(light.x + light.y + light.z) / 3.0, luminance_of(light), shows_backs(material)};
     }
     emissions.push_back(emission);
   }
   return Emissions(std::move(emissions));
-}
-
-/// Returns the material of a triangle of an object's mesh.
-uint32_t material_of(const Mesh& mesh, size_t triangle, const Object& object) {
-  return mesh.triangle_materials.empty() ? object.material : mesh.triangle_materials[triangle];
 }
 
 /// Returns whether a condition holds for a material of an object.
@@ -86,32 +92,37 @@ bool any_material(const Geometry& geometry, const Object& object, const Conditio
   return std::ranges::any_of(mesh->triangle_materials, condition);
 }
 
+/// Adds a surface of an area to a lamp. `normal` has the length of the area, or is 0 for a closed body.
+void add_surface(GlowingObject& lamp, const Emission& emission, double area, const dvec3& normal) {
+  lamp.area += area;
+  lamp.flux += emission.radiance * area * (emission.shines_back ? 2.0 : 1.0);
+  lamp.intensity += emission.luminance * area;
+  lamp.facing += emission.luminance * normal;
+  lamp.shines_back = lamp.shines_back || emission.shines_back;
+}
+
 /// Returns the light that an object emits.
 GlowingObject glow_of(const Scene& scene, const Object& object, const Bounds& box, const Emissions& emissions) {
-  GlowingObject glow{.center = middle_of(box)};
+  GlowingObject lamp{.center = middle_of(box)};
   const auto* mesh = std::get_if<Mesh>(&scene.geometries[object.geometry]);
   if (mesh == nullptr) {
     // The box of a shape has about the area of the shape. The box of a plane is empty.
-    glow.area = 2.0 * box.half_area();
-    glow.flux = emissions.at(object.material) * glow.area;
-    return glow;
+    add_surface(lamp, emissions.of(object.material), 2.0 * box.half_area(), dvec3(0.0));
+    return lamp;
   }
   const glm::dmat3 turn(object.world_from_object);
   const double side = glm::determinant(turn) < 0.0 ? -1.0 : 1.0;
   for (size_t i = 0; i < mesh->triangles.size(); ++i) {
-    const double emission = emissions.at(material_of(*mesh, i, object));
-    if (emission == 0.0) continue;
+    const Emission emission = emissions.of(triangle_material(*mesh, i, object.material));
+    if (emission.radiance == 0.0) continue;
     const uvec3& corners = mesh->triangles[i];
     const dvec3 a(mesh->positions[corners.x]);
     const dvec3 b(mesh->positions[corners.y]);
     const dvec3 c(mesh->positions[corners.z]);
     const dvec3 normal = 0.5 * side * glm::cross(turn * (b - a), turn * (c - a));
-    const double area = glm::length(normal);
-    glow.area += area;
-    glow.flux += emission * area;
-    glow.facing += emission * normal;
+    add_surface(lamp, emission, glm::length(normal), normal);
   }
-  return glow;
+  return lamp;
 }
 
 }  // namespace
@@ -133,10 +144,10 @@ std::optional<Glow> find_glow(const Scene& scene) {
     if (box.is_empty()) continue;
     whole.extend(box);
     const Geometry& geometry = scene.geometries[object.geometry];
-    if (any_material(geometry, object, [&](uint32_t material) { return emissions.at(material) == 0.0; })) {
+    if (any_material(geometry, object, [&](uint32_t material) { return !emissions.shines(material); })) {
       glow.receivers.push_back(box);
     }
-    if (!any_material(geometry, object, [&](uint32_t material) { return emissions.at(material) > 0.0; })) continue;
+    if (!any_material(geometry, object, [&](uint32_t material) { return emissions.shines(material); })) continue;
     if (const auto* mesh = std::get_if<Mesh>(&geometry)) triangle_count += mesh->triangles.size();
     if (triangle_count > kMostTriangles) return {};
     glow.lamps.push_back(glow_of(scene, object, box, emissions));
@@ -152,13 +163,15 @@ std::optional<Glow> find_glow(const Scene& scene) {
 double Glow::illuminance() const {
   double sum = 0.0;
   for (const GlowingObject& lamp : lamps) {
+    if (!(lamp.area > 0.0)) continue;
     const dvec3 way = center - lamp.center;
     const double distance = glm::length(way);
-    const double ahead = distance > 0.0 ? glm::dot(lamp.facing, way) / distance : 0.0;
+    const double along = distance > 0.0 ? glm::dot(lamp.facing, way) / distance : 0.0;
+    const double ahead = lamp.shines_back ? std::abs(along) : along;
     const double limit = std::max(distance, 0.5 * radius);
     // A convex body shows a quarter of its area in the mean. No lamp fills more than a half space.
-    const double arriving = std::max(ahead, 0.25 * lamp.flux) / (limit * limit);
-    if (lamp.area > 0.0) sum += std::min(arriving, std::numbers::pi * lamp.flux / lamp.area);
+    const double arriving = std::max(ahead, 0.25 * lamp.intensity) / (limit * limit);
+    sum += std::min(arriving, std::numbers::pi * lamp.intensity / lamp.area);
   }
   return sum;
 }

@@ -15,8 +15,11 @@ struct GlowingObject {
   double area = 0.0;
   /// The sum of area times mean radiance; both sides count if both shine.
   double flux = 0.0;
-  /// The sum of area times mean radiance times the normal. It is about 0 for a closed body, and for shapes.
+  /// The sum of area times luminance of one side.
+  double intensity = 0.0;
+  /// The same sum with the normals as factors. It is about 0 for a closed body, and 0 for shapes.
   dvec3 facing{0.0};
+  bool shines_back = false;
   dvec3 center{0.0};
 };
 

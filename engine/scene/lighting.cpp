@@ -6,11 +6,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <variant>
 
+#include "core/luminance.h"
 #include "scene/framing.h"
-#include "scene/glow.h"
 #include "scene/light_kinds.h"
 #include "scene/upright.h"
 
@@ -66,17 +65,8 @@ double power_per_lux(const Scene& scene) {
   return is_of_phong(scene) ? 1.0 / kPi : 1.0;
 }
 
-double luminance_of(const vec3& color) {
-  return glm::dot(dvec3(color), dvec3(0.2126, 0.7152, 0.0722));
-}
-
 /// Returns the illuminance in the middle of the scene, as exposure_of() defines it.
-double illuminance_of(const Scene& scene, LightChoice choice) {
-  const bool adds_no_light = choice == LightChoice::kFill || choice == LightChoice::kNone;
-  if (adds_no_light && scene.lights.empty()) {
-    const std::optional<Glow> glow = find_glow(scene);
-    return glow ? glow->illuminance() : 0.0;
-  }
+double illuminance_of(const Scene& scene) {
   dvec3 center(0.0);
   double least_distance = 0.0;
   // Computing the bounds of a large scene takes time, so the function does this only if a light needs the bounds.
@@ -97,7 +87,7 @@ double illuminance_of(const Scene& scene, LightChoice choice) {
                           (light.kind == LightKind::kDisk ? 0.25 * kPi : 1.0);
       share = std::min(area * share, kPi);
     }
-    sum += luminance_of(light.diffuse) * share;
+    sum += luminance_of(dvec3(light.diffuse)) * share;
   }
   return sum / power_per_lux(scene);
 }
@@ -119,9 +109,9 @@ std::span<const std::string_view> light_choice_names() {
   return kNames;
 }
 
-AssumedLight light_scene(Scene& scene, LightChoice choice) {
+AssumedLight light_scene(Scene& scene, LightChoice choice, double surface_lux) {
   if (choice == LightChoice::kAuto) choice = scene.is_classic ? LightChoice::kHeadlight : LightChoice::kStudio;
-  const float unexposed = std::exp2(-exposure_of(scene, choice));
+  const float unexposed = std::exp2(-exposure_of(scene, surface_lux));
   const bool is_soft = choice == LightChoice::kSoft;
   const bool is_fill = choice == LightChoice::kFill || !scene.lights.empty();
   if (is_soft || choice == LightChoice::kFill) choice = LightChoice::kStudio;
@@ -180,8 +170,8 @@ Light make_studio_light(float front, float power) {
   return light;
 }
 
-float exposure_of(const Scene& scene, LightChoice choice) {
-  const double illuminance = illuminance_of(scene, choice);
+float exposure_of(const Scene& scene, double surface_lux) {
+  const double illuminance = illuminance_of(scene) + surface_lux;
   if (!(illuminance > 0.0) || (illuminance >= kLeastIlluminance && illuminance <= kMostIlluminance)) return 0.0F;
   // The powers are floats and the distances are at least about 1e-15, so the logarithm is finite unless the illuminance
   // is infinite.
@@ -189,9 +179,9 @@ float exposure_of(const Scene& scene, LightChoice choice) {
   return std::isfinite(stops) ? static_cast<float>(stops) : 0.0F;
 }
 
-DisplayTransform display_of(const Scene& scene, LightChoice choice) {
+DisplayTransform display_of(const Scene& scene, LightChoice choice, double surface_lux) {
   if (scene.is_classic || (choice == LightChoice::kHeadlight && is_of_phong(scene)) || is_all_unlit(scene)) return {};
-  return {exposure_of(scene, choice), ToneMapping::kNeutral};
+  return {exposure_of(scene, surface_lux), ToneMapping::kNeutral};
 }
 
 bool mixes_unlit(const Scene& scene) {

@@ -149,8 +149,11 @@ class InstanceAdder {
 }  // namespace
 
 Scene flatten(const promin::Scene& scene, Purpose purpose, Instancing instancing) {
+  // Copies that take at most these bytes are made without a look at the free memory.
+  constexpr uint64_t kFewBytes = uint64_t{256} << 20;
   const std::vector<bool> is_instance = choose_instances(scene, instancing);
-  check_copies(count_copies(scene, is_instance), available_memory(), scene.file);
+  const Copies copies = count_copies(scene, is_instance);
+  check_copies(copies, copies.bytes > kFewBytes ? available_memory() : std::nullopt, scene.file);
   Scene result;
   result.file = scene.file;
   result.materials = scene.materials;

@@ -30,7 +30,7 @@ enum class LightChoice : uint32_t {
   /// Integrator::kDirect, and add a ground that shows the shadow of the scene.
   kSoft,
   /// Adds the weaker studio of scenes with lights, and no light. The programs choose it for kAuto if the surfaces of a
-  /// file light it.
+  /// file light it strongly, and if the integrator lets them.
   kFill,
 };
 
@@ -54,9 +54,10 @@ struct AssumedLight {
 /// Adds the chosen light to a scene that has no sky (neither a sky of Environment nor ambient light) or no lights. A
 /// scene without a sky also gets the studio's backdrop, unless it is classic or has a background. After the exposure,
 /// the backdrop is as bright behind glass, in mirrors and with Aovs::alpha as elsewhere. In the studio, Phong materials
-/// without ambient factors use their diffuse factors. The studio and its light stand on Environment::up. Throws
+/// without ambient factors use their diffuse factors. The studio and its light stand on Environment::up. The
+/// backdrop and the weaker studio are divided by 2^E, with the exposure E for `surface_lux` (exposure_of()). Throws
 /// InputError as bounds_of() does.
-PROMIN_EXPORT AssumedLight light_scene(Scene& scene, LightChoice choice = LightChoice::kAuto);
+PROMIN_EXPORT AssumedLight light_scene(Scene& scene, LightChoice choice = LightChoice::kAuto, double surface_lux = 0.0);
 
 /// Grey at the top of the studio's backdrop, in linear light. The backdrop is a gradient for scenes without a
 /// background.
@@ -82,15 +83,15 @@ PROMIN_EXPORT Light make_studio_light(float front, float power = kStudioLightPow
 /// exposure changes E to about pi. E is the sum of the luminance of the diffuse power of all lights, including lights
 /// that are off. For lights with attenuation, the power is divided by the square of the distance, which is at least
 /// half the scene's radius. If there are Phong materials and no metallic-roughness materials, the power is multiplied
-/// by pi, because a power of 1 in the Phong model corresponds to a power of pi in the other model. With
-/// LightChoice::kFill and kNone, E of a scene without lights is that from its emissive surfaces. Throws InputError as
-/// bounds_of() does.
-PROMIN_EXPORT float exposure_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
+/// by pi, because a power of 1 in the Phong model corresponds to a power of pi in the other model. `surface_lux` is
+/// the illuminance from emissive surfaces, which adds to E. Throws InputError as bounds_of() does.
+PROMIN_EXPORT float exposure_of(const Scene& scene, double surface_lux = 0.0);
 
 /// Returns the display transform for a scene: exposure_of() and Khronos PBR Neutral. The transform changes nothing for
 /// classic scenes, for scenes with only unlit objects, and for scenes of Phong materials if the headlight is chosen.
 /// Throws as exposure_of() does.
-PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice = LightChoice::kAuto);
+PROMIN_EXPORT DisplayTransform display_of(const Scene& scene, LightChoice choice = LightChoice::kAuto,
+                                          double surface_lux = 0.0);
 
 /// Returns whether a scene has unlit materials or a backdrop in addition to lit materials. In pictures with Aovs::unlit
 /// (promin/aovs.h), exposure and tone mapping do not change the colours of the unlit materials and the backdrop.

@@ -40,12 +40,15 @@ struct PictureError {
   uint64_t unmet_pixels = 0;
   /// Number of samples, summed over all pixels.
   uint64_t samples = 0;
+  /// Number of samples that each pixel takes first. It may be larger than ErrorTarget::min_samples.
+  uint32_t first_samples = 0;
 
   /// Adds the result of another part of the picture, or of another picture. The target does not change.
   PictureError& operator+=(const PictureError& other) {
     largest_claim = largest_claim < other.largest_claim ? other.largest_claim : largest_claim;
     unmet_pixels += other.unmet_pixels;
     samples += other.samples;
+    first_samples = first_samples < other.first_samples ? other.first_samples : first_samples;
     return *this;
   }
 };

@@ -135,20 +135,25 @@ LightChoice read_choice(const std::string& name) {
   return static_cast<LightChoice>(find_name(light_choice_names(), name, "light"));
 }
 
-/// Returns a copy of the scene with the light that `choice` adds, and with the background and the surroundings of this
-/// specification. The file of the panorama has an argument of its own, because its name need not be UTF-8.
-Scene light(const Scene& scene, const std::string& choice, const std::string& spec,
-            const std::optional<std::filesystem::path>& panorama) {
+/// Returns a copy of the scene with the light that `choice` adds for pictures of an integrator, and with the background
+/// and the surroundings of this specification; and the display transform of its pictures. The file of the panorama has
+/// an argument of its own, because its name need not be UTF-8.
+nb::tuple light(const Scene& scene, const std::string& choice, const std::string& integrator, const std::string& spec,
+                const std::optional<std::filesystem::path>& panorama) {
   work::ViewOptions options = read_spec(spec).view;
   options.look.light = read_choice(choice);
+  const auto settled = static_cast<Integrator>(find_name(names_of(Integrator()), integrator, "integrator"));
   options.environment.panorama = panorama;
   Scene lit = scene;
   run_watched(nb::none(), [&](const ProgressCallback&) {
     const work::EnvironmentChoice surroundings(options.environment);
+    surroundings.replace_sky(lit);
+    work::settle_light(lit, settled, options.look);
     work::light_up(lit, options.look, surroundings, work::upward_direction(lit, options));
     lit.warnings = surroundings.warnings();
   });
-  return lit;
+  const DisplayTransform display = work::choose_display(lit, options.look, DebugView::kNone);
+  return nb::make_tuple(std::move(lit), write(display));
 }
 
 template <typename T, typename Read>
@@ -243,24 +248,12 @@ void bind_scene(nb::module_& module) {
       .def("validate", &check)
       .def("copy", [](const Scene& s) { return Scene(s); })
       .def("set_center", [](Scene& s, double x, double y, double z) { s.center = dvec3(x, y, z); })
-      .def("lit", &light, nb::arg("choice"), nb::arg("spec"), nb::arg("panorama").none())
+      .def("lit", &light, nb::arg("choice"), nb::arg("integrator"), nb::arg("spec"), nb::arg("panorama").none())
       .def("choose_camera", &choose_camera, nb::arg("spec"), nb::arg("given").none(), nb::arg("sides").none(),
            nb::arg("aspect_ratio"))
       .def("describe_empty_picture", &describe_empty_picture, nb::arg("camera"), nb::arg("width"), nb::arg("height"))
       .def("default_max_depth", [](const Scene& s) { return default_max_depth(s); })
       .def("mixes_unlit", [](const Scene& s) { return mixes_unlit(s); })
-      .def(
-          "display",
-          [](const Scene& s, const std::string& choice) { return write(display_of(s, read_choice(choice))); },
-          nb::arg("choice"))
-      .def(
-          "choose_light",
-          [](const Scene& s, const std::string& choice, const std::string& integrator) {
-            const auto chosen = static_cast<Integrator>(find_name(names_of(Integrator()), integrator, "integrator"));
-            const LightChoice light = work::choose_light(s, read_choice(choice), chosen);
-            return std::string(light_choice_names()[static_cast<size_t>(light)]);
-          },
-          nb::arg("choice"), nb::arg("integrator"))
       .def(
           "usual_integrator",
           [](const Scene& s, const std::string& choice) {

@@ -126,6 +126,8 @@ class _Opened:
     native: _promin.Renderer
     lit: _promin.Scene
     """The scene with its lights."""
+    display: dict[str, Any]
+    """The display transform of its pictures."""
     aovs: tuple[str, ...]
     """The AOVs of the renderer's pictures."""
 
@@ -165,15 +167,16 @@ class Renderer:
         and "cryptomatte" (see Frame.matte). `render` may request other AOVs; the tree is then built again. scene: a
         Scene, or the path of its file. view: the default view of `render`; the constructor compiles the kernels for it.
         If this view frames the scene, the light that is added and the ground stand on its `up`. light: the light that
-        is added to a scene without light: "auto", "studio", "headlight", "none", "soft" or "fill". The soft light is the
-        studio with soft shadows of its lamps and its sky, and with a ground. The fill is a weaker studio without its
-        directional light. "auto" chooses it for a scene that its own surfaces light. ground: True if a ground under the scene shows
-        its shadow, False if not; None: only with soft light. background: the background, as in `promin render
-        --background`. Three sRGB numbers from 0 to 1, a name such as "white", or "#80a0ff" are a colour that pictures
-        show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone mapped. "environment" shows the environment
-        that lights the scene. None: the scene's background, or a grey gradient. environment: the file of an
-        equirectangular panorama, which replaces the scene's sky. environment_rotation: degrees by which the sky is
-        rotated about its `up`, from +Z towards +X. light_rotation: the same rotation for the sky and the directional
+        is added to a scene without light: "auto", "studio", "headlight", "none", "soft" or "fill". The soft light is
+        the studio with soft shadows of its lamps and its sky, and with a ground. The fill is a weaker studio without
+        its directional light. "auto" chooses it for a scene that its own surfaces light strongly, if the view's
+        integrator is not "whitted". Another integrator of `render` does not change the light. ground: True if a ground
+        under the scene shows its shadow, False if not; None: only with soft light. background: the background, as in
+        `promin render --background`. Three sRGB numbers from 0 to 1, a name such as "white", or "#80a0ff" are a colour
+        that pictures show exactly. "linear:0.2,0.4,1" is light, which is exposed and tone mapped. "environment" shows
+        the environment that lights the scene. None: the scene's background, or a grey gradient. environment: the file
+        of an equirectangular panorama, which replaces the scene's sky. environment_rotation: degrees by which the sky
+        is rotated about its `up`, from +Z towards +X. light_rotation: the same rotation for the sky and the directional
         lights. environment_intensity: factor of the sky's radiance. exposure: stops by which pictures are displayed
         brighter, -64 to 64; "auto": an exposure that suits the scene's light, 0 for most scenes. texture_memory: the
         largest number of bytes for textures. expected_samples: the approximate number of samples of all pixels of all
@@ -186,7 +189,7 @@ class Renderer:
         # The light stands on the view's `up`, unless a Camera replaces the scene's framing.
         self._view = of_view(view)
         integrator = self._usual_integrator if self._view.integrator is None else str(self._view.integrator)
-        self._light = self._scene.native().choose_light(str(light), integrator)
+        self._light, self._lit_for = str(light), integrator
         framing = {} if isinstance(self._view.camera, Camera) else pose_of(self._view)
         self._surroundings = to_spec(
             {
@@ -248,7 +251,7 @@ class Renderer:
     @property
     def display(self) -> Display:
         """The transform with which 8-bit pictures of the scene are displayed."""
-        shown = from_dict(Display, self._lit().display(self._light))
+        shown = from_dict(Display, self._open().display)
         return shown if self._exposure is None else replace(shown, exposure_ev=self._exposure)
 
     def camera(self, camera: CameraLike = None, aspect_ratio: float = _ASPECT_RATIO) -> Camera:
@@ -516,7 +519,7 @@ class Renderer:
         self, aovs: tuple[str, ...], view: View, progress: Progress, changes: dict[str, Any] | None = None
     ) -> _Opened:
         device = find_device(self._chosen)
-        lit = self._scene.native().lit(self._light, self._surroundings, self._panorama)
+        lit, display = self._scene.native().lit(self._light, self._lit_for, self._surroundings, self._panorama)
         changes = dict(self._changes if changes is None else changes)
         transforms = changes.pop("transforms", {})
         posed = changes.pop("pose", None)
@@ -541,7 +544,7 @@ class Renderer:
         )
         for name, value in changes.items():
             self._apply(native, name, value)
-        return _Opened(device, native, lit, aovs)
+        return _Opened(device, native, lit, display, aovs)
 
     def _moves(self, aovs: tuple[str, ...]) -> bool:
         """Returns whether positions must be moved by the scene's center. The AOV `object` is then needed too, because a

@@ -519,6 +519,7 @@ void trace_pixels() {
       // If surfaces blend, shadow rays also need the nearest hit.
       trace_packet(!is_first_turn && PASSES == 0u);
       passes_backs = false;
+      if (has(FEATURE_SHADOW_CATCHERS)) passes_catchers = !SHOWS_OCCLUSION;
       sight_width = 0.0;
       sight_spread = 0.0;
       if (!is_first_turn) {

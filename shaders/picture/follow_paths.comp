@@ -150,6 +150,7 @@ vec3 add_sources(uint path, ShadingPoint point, vec3 to_eye, vec3 seen) {
       if (has(FEATURE_SHADOWS) && TRACES_SHADOWS != 0u) {
         packet[0].tmax = -1.0;
         passes_backs = false;
+        if (has(FEATURE_SHADOW_CATCHERS)) passes_catchers = true;
         sight_width = 0.0;
         sight_spread = 0.0;
         if (max_abs(contribution) > 0.0) {
@@ -444,6 +445,7 @@ void follow_scattered(uint number) {
   step_counts = uvec2(0u);
   packet[0] = ray;
   passes_backs = true;
+  if (has(FEATURE_SHADOW_CATCHERS)) passes_catchers = false;
   if (has(FEATURE_HOLES)) {
     sight_width = path.cone_width;
     sight_spread = path.cone_spread;
@@ -458,6 +460,7 @@ void follow_scattered(uint number) {
 // Sets the properties of the path's ray, except its origin and direction.
 void prepare_sight(uint number) {
   passes_backs = true;
+  if (has(FEATURE_SHADOW_CATCHERS)) passes_catchers = false;
   if (has(FEATURE_HOLES)) {
     sight_width = load_record(record_of_path(number) + RECORD_RADIANCE).w;
     sight_spread = load_record(record_of_path(number) + RECORD_SEEN).w;

@@ -62,6 +62,7 @@ bool begin_packet() {
                     LOG_CAMERA, PART_BACKGROUND);          // kind and part
   }
   passes_backs = true;
+  if (has(FEATURE_SHADOW_CATCHERS)) passes_catchers = false;
   sight_width = CAMERA.look.w;
   sight_spread = CAMERA.right.w;
   return is_any_inside;

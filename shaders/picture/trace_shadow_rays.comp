@@ -76,6 +76,7 @@ void main() {
     ray = shadow_ray(load_record(record_of_path(path) + origin).xyz, light);
   }
   step_counts = uvec2(0u);
+  if (has(FEATURE_SHADOW_CATCHERS)) passes_catchers = true;
   packet[0] = ray;
   Hit blocker;
   if (PASSES != 0u) {

@@ -17,9 +17,10 @@ float shifts[PACKET_SIZE];
 // The inverse direction of one of the traced rays. All traced rays have the same signs. The callers of descend set it.
 vec3 octant;
 
-// The visibility of surfaces for the packet's rays, set by the entry point. Shadow rays also hit the backs of surfaces,
-// use the finest level of textures, and pass planes that catch shadows.
-bool passes_backs = false;  // false for shadow rays; with FEATURE_ONE_SIDED, the others ignore backs that are not shown
+// The visibility of surfaces for the packet's rays, set by the entry point. Rays to light also hit the backs of
+// surfaces, use the finest level of textures, and pass planes that catch shadows.
+bool passes_backs = false;  // with FEATURE_ONE_SIDED: whether rays ignore backs that are not shown
+bool passes_catchers = false;  // with FEATURE_SHADOW_CATCHERS: whether rays ignore planes that catch shadows
 float sight_width = 0.0;    // width of a ray's cone at its origin, with FEATURE_HOLES
 float sight_spread = 0.0;   // growth of this width per distance
 // State of rays that pass through surfaces (PASSES). Hits with a smaller t have been passed and do not count. Neither
@@ -60,7 +61,7 @@ const uint MAY_BE_CUT_OUT =
     FEATURE_BIT(FEATURE_HOLES) | FEATURE_BIT(FEATURE_ONE_SIDED) | PASSES;
 bool is_cut_out(vec3 direction, Primitive p, uint index, Crossing crossing, bool is_on_open_edge);
 bool may_have_holes(uint index);
-// Returns whether an unbounded primitive catches shadows (Unlit::catches_shadows). Shadow rays pass it.
+// Returns whether an unbounded primitive catches shadows (Unlit::catches_shadows).
 bool is_catcher(uint index);
 
 // Counts of the invocation: x = node steps, y = primitive tests. The entry point sets them to 0.

@@ -155,18 +155,20 @@ void intersect_leaf(bool asks_for_any) {
   }
 }
 
-const uint NO_KIND = 0xFFFFFFFFu;
-
 // Intersects the unbounded primitives, which follow the primitives of the tree.
 void intersect_unbounded(bool asks_for_any) {
   uint index = first_unbounded();
   do {
     if (index < end_unbounded()) {
+      if (has(FEATURE_SHADOW_CATCHERS)) {
+        if (passes_catchers && is_catcher(index)) {
+          ++index;
+          continue;
+        }
+      }
       Primitive p = load_primitive(index);
-      uint kind = kind_of(p);
-      if (has(FEATURE_SHADOW_CATCHERS) && !passes_backs && is_catcher(index)) kind = NO_KIND;
 #define PROMIN_UNBOUNDED(KIND, TYPE, PREFIX, NUMBER, FEATURE, BIT, NAME) \
-  if (kind == NUMBER) intersect_packet_with_##PREFIX(p, index, asks_for_any);
+  if (kind_of(p) == NUMBER) intersect_packet_with_##PREFIX(p, index, asks_for_any);
 #include "promin/kinds/primitives.def"
       ++index;
     }

@@ -17,6 +17,7 @@
 namespace promin {
 namespace {
 
+using testing::AllOf;
 using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -111,6 +112,9 @@ TEST_F(JobCliTest, FilesThatGlowLightThemselves) {
   write("lamps.obj", lamps);
   expect_done(run({"render", "lamps.obj", "--size", "24", "18", "-o", "lamps.exr", "--target-error", "1/8"}));
   expect_entry("lamps.exr", "promin:min_spp", "16");
+  expect_done(run({"render", "lamps.obj", "--size", "24", "18", "-o", "cut_lamps.exr", "--target-error", "1/8", "--job",
+                   "lamps", "--pieces", "3"}));
+  expect_entry("cut_lamps.exr", "promin:min_spp", "16");
   render_glow({"-o", "old.exr", "--integrator", "whitted"});
   expect_entry("old.exr", "promin:spp", "8");
   render_glow({"-o", "sun.exr", "--integrator", "whitted", "--light", "studio"});
@@ -156,7 +160,9 @@ TEST_F(JobCliTest, FilmsHaveOneIntegrator) {
   const std::string note = "light from emissive surfaces (--integrator direct)";
   write_lamp("fade.gltf", 0.5F, "/materials/1/extensions/KHR_materials_emissive_strength/emissiveStrength", {0, 1},
              {0, 9}, "SCALAR");
-  EXPECT_THAT(make_film("fade.gltf", {"-o", "fade_#.exr"}), HasSubstr(note));
+  // The lamp lights the last frame strongly, so no frame gets the studio's sun.
+  const std::string fill = "weak studio light";
+  EXPECT_THAT(make_film("fade.gltf", {"-o", "fade_#.exr"}), AllOf(HasSubstr(note), HasSubstr(fill)));
   for (const char* frame : {"fade_0.exr", "fade_1.exr"}) {
     EXPECT_THAT(read(frame), HasSubstr("promin:integrator")) << frame;
   }
@@ -172,6 +178,9 @@ TEST_F(JobCliTest, FilmsHaveOneIntegrator) {
   }
   write_lamp("dim.gltf", 0.05F, "/nodes/1/translation", times, places, "VEC3");
   EXPECT_THAT(make_film("dim.gltf", {"-o", "dim_#.exr"}), Not(HasSubstr(note)));
+  // This lamp is not strong, although its places together are.
+  write_lamp("slide.gltf", 0.3F, "/nodes/1/translation", times, places, "VEC3");
+  EXPECT_THAT(make_film("slide.gltf", {"-o", "slide_#.exr"}), AllOf(HasSubstr(note), Not(HasSubstr(fill))));
 }
 
 TEST_F(JobCliTest, SharesAreMergedWhereverTheyWereMade) {

@@ -127,6 +127,10 @@ TEST_F(GroundTest, TheGroundBlocksNoLight) {
       EXPECT_GT(expected.pixels[15 * 16 + 8].x, expected.pixels[8].x + 0.1F);
     }
   }
+  // The ground occludes what is above it nevertheless.
+  view.mode = {.debug_view = DebugView::kOcclusion};
+  const Image occluded = make_renderer(device(), scene).render(view).image;
+  EXPECT_LT(occluded.pixels[15 * 16 + 8].x, occluded.pixels[8].x - 0.1F);
 }
 
 // With Whitted's integrator only lights cast shadows.

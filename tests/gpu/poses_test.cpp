@@ -125,6 +125,38 @@ TEST_F(PosesTest, OtherNumbersOfVerticesNeedNoNewScene) {
   }
 }
 
+/// Poses in turn that need a new scene on the device: because it has instances and other geometry, or because an object
+/// is hidden and shown. The spare vertices of one scene must not add to those of the next.
+TEST_F(PosesTest, NewScenesDoNotGrow) {
+  const auto pose_of = [&](bool has_instances, bool is_second) {
+    Scene scene = pose(is_second ? 0.3F : 0.1F);
+    Mesh& mesh = std::get<Mesh>(scene.geometries[0]);
+    mesh.normals.clear();
+    for (const vec3& p : mesh.positions) mesh.normals.push_back(glm::normalize(p));
+    if (has_instances) {
+      add_instances(scene, 0, std::vector<dmat4>(3, glm::translate(dmat4(1.0), dvec3(0.0, 3.0, 0.0))));
+    } else if (is_second) {
+      scene.objects[2].geometry = Object::kNoGeometry;
+    }
+    return scene;
+  };
+  for (const bool has_instances : {true, false}) {
+    TunedRendererOptions options;
+    options.instances = has_instances ? Instancing::kAll : Instancing::kNone;
+    options.more_features = features_of(make_scene_of_everything(50)) | layout::FEATURE_INSTANCES;
+    Renderer renderer = make_renderer(device(), pose_of(has_instances, false), options);
+    std::vector<uint64_t> sizes = {RendererAccess::scene_of(renderer).device_scene()->size_bytes()};
+    for (int i = 1; i <= 20; ++i) {
+      const auto before = RendererAccess::scene_of(renderer).device_scene();
+      renderer.set_pose(pose_of(has_instances, i % 2 == 1));
+      EXPECT_NE(RendererAccess::scene_of(renderer).device_scene(), before) << i;
+      sizes.push_back(RendererAccess::scene_of(renderer).device_scene()->size_bytes());
+    }
+    EXPECT_LT(sizes[2], sizes[0] + sizes[0] / 10);
+    for (size_t i = 3; i < sizes.size(); ++i) EXPECT_EQ(sizes[i], sizes[i - 2]) << i << " " << has_instances;
+  }
+}
+
 /// A pose uploads only the shading that changes, and each part of it once.
 TEST_F(PosesTest, OnlyChangedShadingIsUploaded) {
   TunedRendererOptions options;

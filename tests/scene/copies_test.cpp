@@ -5,13 +5,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "core/free_memory.h"
 #include "promin/error.h"
 #include "scene/world_scene.h"
 #include "support/problems.h"
+#include "support/temp_folder.h"
 
 namespace promin {
 namespace {
+
+class ControlGroupTest : public TempFolder {
+ protected:
+  void write(const char* file, const char* text) const { std::ofstream(folder_ / file) << text; }
+};
 
 /// Returns a scene of objects that share a mesh.
 Scene make_herd(size_t triangles, size_t objects) {
@@ -54,6 +62,31 @@ TEST(FreeMemoryTest, SomeMemoryIsAvailable) {
   const std::optional<uint64_t> bytes = available_memory();
   ASSERT_TRUE(bytes.has_value());
   EXPECT_GT(*bytes, uint64_t{1} << 20);
+}
+
+TEST_F(ControlGroupTest, WithoutALimitNothingIsKnown) {
+  EXPECT_EQ(available_in_group(folder_), std::nullopt);
+  write("memory.current", "1000\n");
+  write("memory.max", "max\n");
+  EXPECT_EQ(available_in_group(folder_), std::nullopt);
+}
+
+TEST_F(ControlGroupTest, UsedMemoryIsNotAvailable) {
+  write("memory.max", "5000\n");
+  EXPECT_EQ(available_in_group(folder_), 5000U);
+  write("memory.current", "3000\n");
+  EXPECT_EQ(available_in_group(folder_), 2000U);
+  write("memory.current", "6000\n");
+  EXPECT_EQ(available_in_group(folder_), 0U);
+}
+
+TEST_F(ControlGroupTest, CopiesOfFilesAreAvailable) {
+  write("memory.max", "5000\n");
+  write("memory.current", "4000\n");
+  write("memory.stat", "anon 500\nfile 3500\ninactive_file 2000\nactive_file 1000\n");
+  EXPECT_EQ(available_in_group(folder_), 4000U);
+  write("memory.current", "100\n");
+  EXPECT_EQ(available_in_group(folder_), 5000U);
 }
 
 }  // namespace

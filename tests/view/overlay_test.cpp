@@ -150,16 +150,18 @@ TEST(OverlayWordsTest, SayHowAccurateAPictureIs) {
   ShownPicture shown;
   shown.size = uvec2(100, 50);
   shown.error = PictureError{.target = 0.125F, .largest_claim = 1.0F / 9.0F, .unmet_pixels = 0, .samples = 64500};
+  shown.wanted_error = 1.0F / 64.0F;
   shown.finished_pixels = 4999;
-  EXPECT_EQ(describe_accuracy(shown, 1.0F / 64.0F, false),
+  EXPECT_EQ(describe_accuracy(shown, false),
             "sharpening: 99.9 % of pixels within 1/64\n12.9 samples per pixel, largest error 1/9");
   shown.finished_pixels = 5000;
   shown.error->largest_claim = 0.0F;
-  EXPECT_EQ(describe_accuracy(shown, 0.02F, true),
+  shown.wanted_error = 0.02F;
+  EXPECT_EQ(describe_accuracy(shown, true),
             "done: 100 % of pixels within 1/50\n12.9 samples per pixel, largest error 0");
   shown.error->largest_claim = 3.0F;
-  EXPECT_THAT(describe_accuracy(shown, 2.0F, true),
-              testing::EndsWith(" within 2\n12.9 samples per pixel, largest error 3"));
+  shown.wanted_error = 2.0F;
+  EXPECT_THAT(describe_accuracy(shown, true), testing::EndsWith(" within 2\n12.9 samples per pixel, largest error 3"));
 }
 
 TEST_F(OverlayTest, GrowsWithTheDisplaysScale) {

@@ -115,6 +115,9 @@ TEST_F(ProgressivePictureTest, EveryErrorIsWhatTheRendererGives) {
     EXPECT_EQ(error.largest_claim, expected.error->largest_claim);
     EXPECT_EQ(error.unmet_pixels, expected.error->unmet_pixels);
     EXPECT_EQ(error.samples, expected.error->samples);
+    EXPECT_EQ(error.first_samples, 4U);
+    EXPECT_EQ(expected.error->first_samples, 4U);
+    EXPECT_EQ(picture.shown()->wanted_error, view.error_target->error);
     const uint64_t area = uint64_t{kPictureSize.x} * kPictureSize.y;
     if (error.target == view.error_target->error) {
       EXPECT_EQ(picture.shown()->finished_pixels, area - error.unmet_pixels);
@@ -150,6 +153,10 @@ TEST_F(ProgressivePictureTest, SoftLightIsRefinedToWhatTheRendererGives) {
     EXPECT_TRUE(test::has_same_bits(read(picture), expected.image)) << static_cast<int>(integrator);
     EXPECT_EQ(picture.shown()->error->samples, expected.error->samples);
     EXPECT_EQ(picture.shown()->error->largest_claim, expected.error->largest_claim);
+    EXPECT_EQ(picture.shown()->error->first_samples, expected.error->first_samples);
+    if (integrator == Integrator::kPath) {
+      EXPECT_EQ(expected.error->first_samples, 16U);
+    }
   }
 }
 
@@ -207,6 +214,23 @@ TEST_F(ProgressivePictureTest, AChangedViewIsRefinedFromItsOwnSamples) {
   picture.pause(false);
   while (!picture.is_settled()) picture.trace();
   EXPECT_TRUE(test::has_same_bits(read(picture), make_renderer(device(), scene_).render(view).image));
+}
+
+// While an animation plays, views have no error target, but the refined picture stays until the next one is traced.
+TEST_F(ProgressivePictureTest, ARefinedPictureKnowsItsErrorWhenTheNextViewHasNone) {
+  ProgressivePicture picture = make_picture();
+  View view = with_target(test::make_view(kPictureSize), 1.0F / 8.0F);
+  picture.want(view);
+  while (!picture.is_settled()) picture.trace();
+  ASSERT_TRUE(picture.shown()->error);
+  view.error_target.reset();
+  picture.want(view);
+  EXPECT_FALSE(picture.wanted().error_target);
+  ASSERT_TRUE(picture.shown()->error);
+  EXPECT_EQ(picture.shown()->wanted_error, 1.0F / 8.0F);
+  while (!picture.is_settled()) picture.trace();
+  EXPECT_FALSE(picture.shown()->error);
+  EXPECT_EQ(picture.shown()->wanted_error, 0.0F);
 }
 
 // If only the background is visible, the first samples are exact. The picture then reports only the final error.

@@ -376,6 +376,26 @@ def write_moving(file):
     file.write_text(json.dumps(document))
 
 
+def play(session, count):
+    """Plays the animation until the window has shown this number of poses. Returns the numbers that it reports at the
+    end: the poses, and how many of them used a scene again."""
+    times = set()
+
+    def has_shown():
+        command = session.print_command()
+        if " --time " in command:
+            times.add(time_of(command))
+        return len(times) >= count
+
+    session.viewer.press("space")
+    wait_for(has_shown, f"{count} poses")
+    session.viewer.press("space")
+    line = session.viewer.wait_for_line(r"played \d+ poses", 1, "report of the animation")
+    poses, reused = re.search(r"played (\d+) poses in \S+ s, (\d+) of them", line).groups()
+    expect(int(poses) >= count, f"{count} poses were seen, but: {line}")
+    return int(poses), int(reused)
+
+
 def plays_an_animation(bin_folder, scenes, folder):
     write_moving(folder / "moving.gltf")
     work = folder / "work"
@@ -386,11 +406,7 @@ def plays_an_animation(bin_folder, scenes, folder):
         viewer.wait_for_line("shown: a picture", 1, "picture")
         expect("--time" not in session.print_command(), "it does not begin with the pose of the nodes")
         viewer.press("p")  # without refinement, a screenshot and the command after it have the same samples
-        viewer.press("space")
-        time.sleep(1.5)
-        viewer.press("space")
-        line = viewer.wait_for_line(r"played \d+ poses", 1, "report of the animation")
-        expect(int(re.search(r"played (\d+)", line).group(1)) >= 2, line)
+        play(session, 2)
         stopped = session.expect_shown(1, "--animation 'slide'")
         viewer.press("Right")
         wait_for(lambda: time_of(session.print_command()) != time_of(stopped), "step")
@@ -410,11 +426,9 @@ def moves_instances(bin_folder, scenes, folder):
         viewer.press("Tab")
         viewer.wait_for_line("shown: a picture", 1, "picture")
         viewer.press("p")
-        viewer.press("space")
-        time.sleep(1.5)
-        viewer.press("space")
-        line = viewer.wait_for_line(r"played \d+ poses", 1, "report of the animation")
-        expect(int(re.search(r"played (\d+)", line).group(1)) >= 3, f"too few poses to use a scene again: {line}")
+        # The first poses get new scenes, up to three.
+        poses, reused = play(session, 8)
+        expect(reused > 0, f"none of {poses} poses used a scene again")
         stopped = session.expect_shown(1, "--instances all")
         viewer.press("Right")
         wait_for(lambda: time_of(session.print_command()) != time_of(stopped), "step")
@@ -673,6 +687,26 @@ def reads_a_changed_scene(bin_folder, scenes, folder):
         binary = session.scene.with_suffix(".bin")
         binary.write_bytes(binary.read_bytes())
         wait_for(lambda: viewer.err.count("note: read showcase.gltf") == 3, "scene with its changed buffer")
+        session.quit()
+
+
+def lights_a_changed_scene(bin_folder, scenes, folder):
+    """Adds a strong lamp to a file without light, which then gets less other light."""
+    (folder / "room.mtl").write_text("newmtl wall\nKd 0.8 0.8 0.8\nnewmtl lamp\nKd 0 0 0\nKe 12 9 6\n")
+    (folder / "room.obj").write_text(
+        "mtllib room.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -.5 1 -.5\nv .5 1 -.5\nv .5 1 .5\nv -.5 1 .5\n"
+        "v -2 1 -2\nv 2 1 -2\nusemtl wall\nf 4 3 2 1\nf 1 2 10 9\n"
+    )
+    work = folder / "work"
+    work.mkdir()
+    session = Session(bin_folder, folder, work, "--integrator", "direct", files=("room.obj", "room.mtl"))
+    with session as viewer:
+        viewer.press("Tab", "p")
+        command = session.expect_shown(1, " --integrator direct ")
+        expect(" --light " not in command, f"a light was chosen without a lamp: {command}")
+        session.scene.write_text(session.scene.read_text() + "usemtl lamp\nf 5 6 7 8\n")
+        viewer.wait_for_line("note: read room.obj", 1, "scene with a lamp")
+        session.expect_shown(2, " --light fill ")
         session.quit()
 
 

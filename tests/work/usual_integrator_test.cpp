@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "promin/lighting.h"
 #include "promin/materials.h"
 #include "promin/shapes.h"
 
@@ -68,23 +69,42 @@ TEST(UsualIntegratorTest, LampsHaveAFluxThatDependsOnTheScene) {
   EXPECT_TRUE(lights_itself(scaled)) << "sizes are those in the world, and only their ratios count";
 }
 
+/// Returns the exposure of pictures with `light` after settle_light().
+float settled_exposure(const Scene& scene, LightChoice light, Integrator integrator = Integrator::kDirect) {
+  LookOptions look{.light = light};
+  settle_light(scene, integrator, look);
+  return exposure_of(scene, look.surface_lux);
+}
+
 // The lamp is nearer to the middle than half the radius, so a lamp of 1 by 1 gives 100 / (8.25 / 4) = 48.5 lux.
 TEST(GlowTest, ChoosesTheExposureIfThereIsNoOtherLight) {
   Scene scene = make_room(100.0F, 1.0F);
-  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), -4.0F);
-  EXPECT_EQ(exposure_of(scene, LightChoice::kNone), -4.0F);
-  EXPECT_EQ(exposure_of(scene, LightChoice::kStudio), 0.0F) << "the studio has the light of usual pictures";
-  EXPECT_EQ(exposure_of(make_room(100.0F, 100.0F), LightChoice::kFill), -6.5F) << "at most 100 pi lux";
-  EXPECT_EQ(exposure_of(make_room(4.0F, 1.0F), LightChoice::kFill), 0.0F) << "1.9 lux";
-  std::swap(std::get<Mesh>(scene.geometries[1]).triangles[0].x, std::get<Mesh>(scene.geometries[1]).triangles[0].y);
-  std::swap(std::get<Mesh>(scene.geometries[1]).triangles[1].x, std::get<Mesh>(scene.geometries[1]).triangles[1].y);
-  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), 0.0F) << "a lamp that faces away counts a quarter: 12.1 lux";
+  for (const LightChoice light : {LightChoice::kAuto, LightChoice::kFill, LightChoice::kNone}) {
+    EXPECT_EQ(settled_exposure(scene, light), -4.0F);
+    EXPECT_EQ(settled_exposure(scene, light, Integrator::kWhitted), 0.0F) << "its lamps light nothing";
+  }
+  EXPECT_EQ(settled_exposure(scene, LightChoice::kStudio), 0.0F) << "the studio has the light of usual pictures";
+  EXPECT_EQ(settled_exposure(make_room(100.0F, 100.0F), LightChoice::kFill), -6.5F) << "at most 100 pi lux";
+  EXPECT_EQ(settled_exposure(make_room(4.0F, 1.0F), LightChoice::kFill), 0.0F) << "1.9 lux";
+  Scene both_sides = scene;
+  both_sides.materials[kGlow].is_double_sided = true;
+  EXPECT_EQ(settled_exposure(both_sides, LightChoice::kFill), -4.0F) << "one side is visible";
+  const auto turn = [](Scene& turned) {
+    for (uvec3& corners : std::get<Mesh>(turned.geometries[1]).triangles) std::swap(corners.x, corners.y);
+  };
+  turn(both_sides);
+  EXPECT_EQ(settled_exposure(both_sides, LightChoice::kFill), -4.0F);
+  turn(scene);
+  EXPECT_EQ(settled_exposure(scene, LightChoice::kFill), 0.0F) << "a lamp that faces away counts a quarter: 12.1 lux";
   scene.objects[1].world_from_object = glm::dmat4(glm::dmat3(dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)));
-  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), -4.0F) << "a mirrored lamp faces the other way";
+  EXPECT_EQ(settled_exposure(scene, LightChoice::kFill), -4.0F) << "a mirrored lamp faces the other way";
+  Scene under_sky = scene;
+  under_sky.environment.ambient = vec3(1.0F);
+  EXPECT_EQ(settled_exposure(under_sky, LightChoice::kNone), 0.0F) << "a scene with a sky keeps its exposure";
   scene.lights.resize(1);
   scene.lights[0].kind = LightKind::kDirectional;
   scene.lights[0].diffuse = vec3(3.0F);
-  EXPECT_EQ(exposure_of(scene, LightChoice::kFill), 0.0F) << "lights alone count";
+  EXPECT_EQ(settled_exposure(scene, LightChoice::kFill), 0.0F) << "lights alone count";
 }
 
 TEST(UsualIntegratorTest, ALargeFloorHidesNoLamp) {
@@ -132,8 +152,11 @@ TEST(UsualIntegratorTest, MeshesOfSeveralMaterialsAndShapesAreLamps) {
 
 // The least flux is 4 pi 8.25 / 32 = 3.24.
 TEST(UsualIntegratorTest, FilesWithStrongLampsGetNoSun) {
-  const auto choose = [](const Scene& scene, Integrator integrator = Integrator::kDirect) {
-    return choose_light(scene, LightChoice::kAuto, integrator);
+  const auto choose = [](const Scene& scene, Integrator integrator = Integrator::kDirect,
+                         LightChoice light = LightChoice::kAuto) {
+    LookOptions look{.light = light};
+    settle_light(scene, integrator, look);
+    return look.light;
   };
   const Scene strong = make_room(10.0F, 0.57F);
   EXPECT_EQ(choose(strong), LightChoice::kFill);
@@ -142,7 +165,7 @@ TEST(UsualIntegratorTest, FilesWithStrongLampsGetNoSun) {
   EXPECT_EQ(choose(make_room(10.0F, 0.56F)), LightChoice::kAuto) << "a small display needs other light";
   EXPECT_EQ(choose(make_room(1.0F, 4.0F)), LightChoice::kAuto);
   for (const LightChoice choice : {LightChoice::kStudio, LightChoice::kNone, LightChoice::kSoft}) {
-    EXPECT_EQ(choose_light(strong, choice, Integrator::kDirect), choice);
+    EXPECT_EQ(choose(strong, Integrator::kDirect, choice), choice);
   }
   Scene other = strong;
   other.is_classic = true;

@@ -24,6 +24,8 @@
 #include "promin/renderer.h"
 #include "trace/film/pixel_estimate.h"
 #include "trace/film/refinement.h"
+#include "work/pictures/usual_integrator.h"
+#include "work/pictures/view_setup.h"
 #include "work/spec/value_words.h"
 
 namespace promin::lab {
@@ -77,7 +79,9 @@ class HonestyBench {
   HonestyBench(const gpu::Device& device, const std::string& file, const HonestyOptions& options)
       : options_(options), windows_(choose_windows(options.size)), name_(std::filesystem::path(file).stem()) {
     Scene scene = load_scene(file);
-    light_scene(scene, options.light);
+    work::LookOptions look{.light = options.light};
+    work::settle_light(scene, options.integrator, look);
+    work::light_up(scene, look);
     const float aspect_ratio = static_cast<float>(options.size.x) / static_cast<float>(options.size.y);
     view_.camera = scene.cameras.empty() ? frame_scene(scene, aspect_ratio) : scene.cameras.front();
     view_.size = options.size;
@@ -85,7 +89,7 @@ class HonestyBench {
       pixels_.emplace(*options.pixels);
       *pixels_ << "scene,target,claim,error\n";
     }
-    if (options.is_shown) display_ = display_of(scene);
+    if (options.is_shown) display_ = work::choose_display(scene, look, DebugView::kNone);
     view_.max_depth = default_max_depth(scene);
     view_.mode.integrator = options.integrator;
     renderer_.emplace(device, scene, RendererOptions{.with_aovs = true});

@@ -67,7 +67,7 @@ std::string describe_quality(const ProgressivePicture& picture) {
   if (!shown) return "making the first picture";
   if (shown->size != picture.full_size()) return "coarse so far";
   if (!shown->error) return picture.is_settled() ? "done" : "sharpening";
-  return describe_accuracy(*shown, picture.wanted().error_target->error, picture.is_settled());
+  return describe_accuracy(*shown, picture.is_settled());
 }
 
 void show_state(const OverlayContent& content) {
@@ -262,12 +262,12 @@ void for_each_help(const Use& use) {
 
 }  // namespace
 
-std::string describe_accuracy(const ShownPicture& shown, float target, bool is_settled) {
+std::string describe_accuracy(const ShownPicture& shown, bool is_settled) {
   const double pixels = static_cast<double>(shown.size.x) * shown.size.y;
   // The percentage is rounded down, so 100 % are all pixels.
   const double percent = std::floor(1000.0 * static_cast<double>(shown.finished_pixels) / pixels) / 10.0;
   return fmt::format("{}: {:g} % of pixels within {}\n{:.3g} samples per pixel, largest error {}",
-                     is_settled ? "done" : "sharpening", percent, describe_error(target),
+                     is_settled ? "done" : "sharpening", percent, describe_error(shown.wanted_error),
                      static_cast<double>(shown.error->samples) / pixels, describe_error(shown.error->largest_claim));
 }
 

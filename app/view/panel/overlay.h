@@ -87,9 +87,9 @@ struct OverlayContent {
   PathEntry* entry = nullptr;
 };
 
-/// Returns two lines about a picture with an error target: the share of pixels whose claimed error is within `target`,
-/// which is the window's own target, the mean number of samples and the largest claimed error.
-std::string describe_accuracy(const ShownPicture& shown, float target, bool is_settled);
+/// Returns two lines about a picture with an error target: the share of pixels whose claimed error is within
+/// ShownPicture::wanted_error, the mean number of samples and the largest claimed error.
+std::string describe_accuracy(const ShownPicture& shown, bool is_settled);
 
 /// Returns the distance between a new panel and the window's edges, in the interface's units.
 float overlay_margin();

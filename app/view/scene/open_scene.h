@@ -15,6 +15,7 @@
 #include "work/pictures/camera_path.h"
 #include "work/pictures/run_stats.h"
 #include "work/spec/environment_choice.h"
+#include "work/spec/render_spec.h"
 
 namespace promin::app {
 
@@ -31,8 +32,9 @@ struct OpenedScene {
   View view;
   /// The integrator of a picture whose options name none.
   Integrator usual_integrator = Integrator::kWhitted;
-  /// The light that was chosen for the scene, which it keeps with every integrator.
-  LightChoice light = LightChoice::kAuto;
+  /// The options for lighting and showing the scene, with the light that was chosen for it (settle_light()). The scene
+  /// keeps this light with every integrator.
+  LookOptions look;
   /// The flight to play.
   std::optional<PathPictures> replay;
   RunStats stats;

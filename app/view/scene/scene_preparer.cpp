@@ -16,6 +16,7 @@
 #include "scene/choose_instances.h"
 #include "scene/features.h"
 #include "work/pictures/load_posed.h"
+#include "work/pictures/usual_integrator.h"
 #include "work/pictures/view_setup.h"
 
 namespace promin::app {
@@ -170,7 +171,7 @@ ScenePreparer::ScenePreparer(std::shared_ptr<const gpu::Device> device, double b
       file_(std::move(file)),
       load_(std::move(load)),
       motion_(std::move(motion)),
-      look_(look),
+      asked_look_(look),
       environment_(std::move(environment)),
       first_view_(std::move(first_view)),
       watch_(std::move(sources)) {}
@@ -180,8 +181,9 @@ ScenePreparer::~ScenePreparer() {
   work_.wait();
 }
 
-void ScenePreparer::begin(std::shared_ptr<const Scene> scene, const PictureRequest& request) {
+void ScenePreparer::begin(std::shared_ptr<const Scene> scene, const LookOptions& look, const PictureRequest& request) {
   asked_ = request;
+  look_ = look;
   base_ = scene;
   pack(std::move(scene), true);
 }
@@ -218,7 +220,11 @@ void ScenePreparer::read() {
   is_posing_ = false;
   work_.start([this, request = asked_, up = base_->environment.up] {
     const auto scene = std::make_shared<Scene>(load_posed(file_, load_, request.motion, sources_));
-    light_up(*scene, look_, environment_, up);
+    LookOptions look = asked_look_;
+    environment_.replace_sky(*scene);
+    settle_light(*scene, first_view_.mode.integrator, look);
+    light_up(*scene, look, environment_, up);
+    look_ = look;
     base_ = scene;
     return make_first(scene, request);
   });
@@ -239,12 +245,14 @@ void ScenePreparer::pose(const ShownScene& shown, std::shared_ptr<const gpu::Dev
   work_.start([this, device = std::move(device), request = asked_] {
     const std::shared_ptr<const Scene> scene = put_into_pose(*base_, request.motion);
     std::shared_ptr<ShownScene> posed = reuse(scene, request, device);
-    if (posed == nullptr) posed = put_on_device(scene, request, device);
+    const bool is_reused = posed != nullptr;
+    if (!is_reused) posed = put_on_device(scene, request, device);
     poses_.push_back(posed);
     SceneOn first = posed->first;
     ReadyPicture ready = make(std::move(posed), std::move(first), request);
     ready.scene->put();
     ready.has_lights = true;
+    ready.is_reused = is_reused;
     return ready;
   });
 }
@@ -297,6 +305,7 @@ std::shared_ptr<ShownScene> ScenePreparer::put_on_device(std::shared_ptr<const S
   shown.motion = request.motion;
   shown.choice = request.choice;
   shown.surroundings = request.surroundings;
+  shown.light = look_.light;
   shown.display = choose_display(*base_, look_, DebugView::kNone);
   shown.first.device = device ? std::move(device) : open_same_device(*device_);
   shown.choice.lights_off = keep_known(request.choice.lights_off, *scene);
@@ -345,10 +354,11 @@ std::shared_ptr<ShownScene> ScenePreparer::find_unused(const PictureRequest& req
     return pose->base != base_ || pose->first.device.get() != &device ||
            pose->choice.builder != request.choice.builder || pose->choice.instances != request.choice.instances;
   });
-  // A picture that is no longer shown may still be traced for some frames.
+  // A picture that is no longer shown may still be traced for some frames. The work waits for its end only if there may
+  // be no further scene.
   constexpr std::chrono::milliseconds kPause{1};
   constexpr int kMostPauses = 100;
-  for (int pause = 0; poses_.size() >= kMostPoses - 1 && pause < kMostPauses; ++pause) {
+  for (int pause = 0; pause < kMostPauses; ++pause) {
     for (size_t i = 0; i < poses_.size(); ++i) {
       const std::shared_ptr<ShownScene>& pose = poses_[i];
       // Films have further references to the scene on the device, and queries of pixels to the shown scene.
@@ -358,10 +368,12 @@ std::shared_ptr<ShownScene> ScenePreparer::find_unused(const PictureRequest& req
       poses_.erase(poses_.begin() + static_cast<std::ptrdiff_t>(i));
       return unused;
     }
+    if (poses_.size() < kMostPoses) return nullptr;
     enter(Step::kBuilding);
     std::this_thread::sleep_for(kPause);
   }
-  if (poses_.size() >= kMostPoses) poses_.pop_front();
+  // The users of the scene keep it, so for some time there is one more.
+  poses_.pop_front();
   return nullptr;
 }
 

@@ -82,6 +82,8 @@ struct ShownScene {
   /// The scene of the file, of which this is a pose.
   std::shared_ptr<const Scene> base = nullptr;
   MotionOptions motion = {};
+  /// The light that was chosen for the scene of the file (settle_light()).
+  LightChoice light = LightChoice::kAuto;
   /// The display transform of the scene.
   DisplayTransform display;
   /// The first device that has the scene.
@@ -123,6 +125,8 @@ struct ReadyPicture {
   std::unique_ptr<TracedPicture> picture;
   /// True if the devices have the lights.
   bool has_lights = false;
+  /// True if the scene is one of an earlier pose that was put into this pose on the device.
+  bool is_reused = false;
 
   /// Copies the lights that are on to the devices, if they do not have them. Nothing may be traced there meanwhile.
   void take_lights();
@@ -148,16 +152,17 @@ struct PictureRequest {
 class ScenePreparer {
  public:
   /// Creates a preparer. The arguments are: a device, which is opened again; a scene's file, the options for reading it
-  /// and its pose; the files from which it was read; the options for lighting and showing it; the changes of its
-  /// environment; and the view from which an average exposure is computed.
+  /// and its pose; the files from which it was read; the user's options for lighting and showing it; the changes of its
+  /// environment; and the view from which an average exposure is computed, with the integrator for which the light is
+  /// chosen.
   ScenePreparer(std::shared_ptr<const gpu::Device> device, double budget_ms, std::filesystem::path file,
                 LoadOptions load, MotionOptions motion, std::vector<SourceFile> sources, LookOptions look,
                 EnvironmentChoice environment, View first_view);
   /// Abandons the current work. It does not wait for a tree that is being built.
   ~ScenePreparer();
 
-  /// Prepares the first picture of a scene that is read and lit.
-  void begin(std::shared_ptr<const Scene> scene, const PictureRequest& request);
+  /// Prepares the first picture of a scene that is read and lit. `look` has the light that was chosen for it.
+  void begin(std::shared_ptr<const Scene> scene, const LookOptions& look, const PictureRequest& request);
   /// Starts to prepare another picture if the request differs from the last one, or if files of the scene have changed.
   /// Returns whether it has started. Work that failed is not repeated. Another pose is put on the device of the shown
   /// picture, which has the kernels.
@@ -212,6 +217,8 @@ class ScenePreparer {
   std::shared_ptr<const Scene> base_;
   /// The pose in which the scene was opened. The file of a tree fits this pose.
   MotionOptions motion_;
+  /// The user's options, and the options with the light that was chosen for base_.
+  LookOptions asked_look_;
   LookOptions look_;
   EnvironmentChoice environment_;
   View first_view_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/luminance.h"
+
 namespace promin {
 namespace {
 
@@ -15,7 +17,7 @@ dvec4 channels_of(uint32_t texel) {
 
 double height_of(uint32_t texel, int channel) {
   const dvec4 rgba = channels_of(texel);
-  return channel < 4 ? rgba[channel] : glm::dot(dvec3(rgba), dvec3(0.2126, 0.7152, 0.0722));
+  return channel < 4 ? rgba[channel] : luminance_of(dvec3(rgba));
 }
 
 uint32_t encode(const dvec3& normal) {

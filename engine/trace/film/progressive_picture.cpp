@@ -161,7 +161,7 @@ void ProgressivePicture::begin(const vk::raii::CommandBuffer& commands, const Vi
   const size_t film = shown_ ? 1 - shown_->film : 0;
   is_first_ = !shown_ || shown_version_ != wanted_version_;
   picture_ = films_[film].cut(view, {uvec2(0), view.size}, films_[film].piece_options(view.max_depth));
-  picture_when_done_ = {film, view.size, view.samples_per_pixel, std::nullopt, 0};
+  picture_when_done_ = {film, view.size, view.samples_per_pixel, std::nullopt, 0.0F, 0};
   picture_version_ = wanted_version_;
   films_[film].record_begin(commands, *picture_);
 }
@@ -241,7 +241,7 @@ void ProgressivePicture::show_refined() {
   // The device has finished all frames that used the hidden film before it traced the samples of this picture.
   const size_t film = 1 - shown_->film;
   films_[film].put_pixels(refined_->take_pixels(), full_size_);
-  picture_when_done_ = {film, full_size_, 1, refined_->error(), refined_->count_finished()};
+  picture_when_done_ = {film, full_size_, 1, refined_->error(), refined_->wanted_error(), refined_->count_finished()};
   picture_version_ = refined_version_;
   refined_fraction_ = 0.0;
   finish();

@@ -30,12 +30,14 @@ struct ShownPicture {
   uint32_t samples_per_pixel = 1;
   /// The accuracy; set for a picture with an error target.
   std::optional<PictureError> error;
-  /// The number of pixels whose claim is within the error that the user requested, which may be smaller than that of
-  /// the picture.
+  /// The error that was requested when the picture was traced, which may be smaller than that of the picture; 0 for a
+  /// picture without an error target.
+  float wanted_error = 0.0F;
+  /// The number of pixels whose claim is within `wanted_error`.
   uint64_t finished_pixels = 0;
 
   /// Returns `view` with the number of samples, or the error, that the picture has reached. A complete picture of the
-  /// returned view equals this picture.
+  /// returned view equals this picture. If the picture has an error, the view must have an error target.
   View view_of(View view) const;
 };
 inline constexpr size_t kFilmCount = 2;

@@ -242,6 +242,7 @@ uint64_t Refinement::count_within(float error) const {
 }
 
 void Refinement::add_to(PictureError& whole) const {
+  whole.first_samples = rule_.first_samples;
   for (size_t pixel = 0; pixel < pixel_count(); ++pixel) {
     whole.largest_claim = std::max(whole.largest_claim, errors_[pixel]);
     whole.unmet_pixels += is_near_enough(pixel) ? 0 : 1;

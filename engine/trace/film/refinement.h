@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "device_scene/scrambled_points.h"
@@ -48,9 +47,6 @@ PixelWindow with_neighbors(const PixelWindow& window, const uvec2& size, uint32_
 /// Returns the parts in which a picture is refined one after the other, row by row. Refining each part separately gives
 /// the same result and needs the same work as refining the whole picture.
 std::vector<PixelWindow> parts_to_refine(const PixelWindow& window);
-
-/// The name in SetupStats::features for pictures whose samples each choose one of many sources of light.
-inline constexpr std::string_view kManySources = "many sources of light";
 
 /// The points that samples choose besides their places in the pixel. The rule of claims depends on them.
 struct SampledPoints {

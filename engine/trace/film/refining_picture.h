@@ -31,12 +31,14 @@ class RefiningPicture {
   /// Records the tracing of these samples in pieces of at most `most_units`. Returns the number of units.
   double record(const vk::raii::CommandBuffer& commands, double most_units) const;
 
+  /// Returns the view's own error.
+  float wanted_error() const { return view_.error_target->error; }
   /// Returns whether the picture has reached the view's own error.
-  bool is_done() const { return done_ && view_.error_target->error == done_->target; }
+  bool is_done() const { return done_ && wanted_error() == done_->target; }
   /// Returns the accuracy of the last complete picture.
   const std::optional<PictureError>& error() const { return done_; }
   /// Returns the number of pixels whose claim is within the view's own error.
-  uint64_t count_finished() const { return refinement_.count_within(view_.error_target->error); }
+  uint64_t count_finished() const { return refinement_.count_within(wanted_error()); }
   /// Returns the picture's pixels in the form of a film with one sample. May be called once after prepare() has found
   /// no samples.
   std::vector<uvec4> take_pixels() { return std::exchange(pixels_, {}); }

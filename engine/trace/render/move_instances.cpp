@@ -17,9 +17,9 @@ namespace {
 
 using Transform = std::pair<uint32_t, dmat4>;
 
-/// Returns the problem of a transform; nullopt for a valid one.
+/// Returns the problem of a transform, whatever the size of the mesh; nullopt if there is none.
 std::optional<Problem> find_problem(const Transform& transform, const std::string& where,
-                                    const PrimitiveNumbers& numbers, const UpperLevel* level) {
+                                    const PrimitiveNumbers& numbers) {
   const auto& [object, matrix] = transform;
   const size_t count = numbers.first_order.size() - 1;
   if (object >= count) {
@@ -32,7 +32,7 @@ std::optional<Problem> find_problem(const Transform& transform, const std::strin
     problem->where = where;
     return problem;
   }
-  if (level == nullptr || numbers.mesh_of_object[object] == PrimitiveNumbers::kNoMesh) {
+  if (numbers.mesh_of_object.empty() || numbers.mesh_of_object[object] == PrimitiveNumbers::kNoMesh) {
     return Problem{
         "scene.move.copied",
         "object " + std::to_string(object) + " is not an instance, so its triangles cannot move without a new tree",
@@ -43,12 +43,26 @@ std::optional<Problem> find_problem(const Transform& transform, const std::strin
     return Problem{"scene.move.sheared", "the transform shears or scales an instance too strongly", where,
                    "create a renderer or caster of the moved scene"};
   }
-  const Bounds box = level->mesh_box(object);
-  if (!box.is_empty() && !is_in_range(box, matrix)) {
-    return Problem{"scene.position.far", "the mesh extends beyond 1e15 in the world", where,
-                   "use a smaller translation or scale"};
-  }
   return std::nullopt;
+}
+
+/// Returns the problem of a transform of an instance that moves its mesh too far; nullopt if it does not.
+std::optional<Problem> find_far_mesh(const Transform& transform, const std::string& where, const UpperLevel& level) {
+  const Bounds box = level.mesh_box(transform.first);
+  if (box.is_empty() || is_in_range(box, transform.second)) return std::nullopt;
+  return Problem{"scene.position.far", "the mesh extends beyond 1e15 in the world", where,
+                 "use a smaller translation or scale"};
+}
+
+/// Throws InputError with all problems that `find` returns for a transform and its name.
+template <typename Find>
+void refuse_problems(std::span<const Transform> transforms, const Find& find) {
+  std::vector<Problem> problems;
+  for (size_t i = 0; i < transforms.size(); ++i) {
+    std::optional<Problem> problem = find(transforms[i], "transforms[" + std::to_string(i) + "]");
+    if (problem) problems.push_back(std::move(*problem));
+  }
+  if (!problems.empty()) throw InputError(problems);
 }
 
 /// Returns the transforms sorted by object. Only the last one of each object remains.
@@ -96,15 +110,14 @@ bool move_to_pose(const world::Scene& posed, bool may_move, std::optional<uint64
 
 void move_instances(std::span<const Transform> world_from_object, const PrimitiveNumbers& numbers,
                     std::shared_ptr<const UpperLevel>& level, DeviceScene& scene) {
-  std::shared_ptr<UpperLevel> moved = level == nullptr ? nullptr : copy_level(*level, numbers, scene);
-  std::vector<Problem> problems;
-  for (size_t i = 0; i < world_from_object.size(); ++i) {
-    std::optional<Problem> problem =
-        find_problem(world_from_object[i], "transforms[" + std::to_string(i) + "]", numbers, moved.get());
-    if (problem) problems.push_back(std::move(*problem));
-  }
-  if (!problems.empty()) throw InputError(problems);
   if (world_from_object.empty()) return;
+  refuse_problems(world_from_object, [&](const Transform& transform, const std::string& where) {
+    return find_problem(transform, where, numbers);
+  });
+  std::shared_ptr<UpperLevel> moved = copy_level(*level, numbers, scene);
+  refuse_problems(world_from_object, [&](const Transform& transform, const std::string& where) {
+    return find_far_mesh(transform, where, *moved);
+  });
   const std::vector<Transform> sorted = sort_by_object(world_from_object);
   moved->move(sorted);
   std::shared_ptr<const GlassSolids> solids = GlassSolids::moved(scene.constants().glass_solids, sorted);

@@ -67,7 +67,6 @@ PictureTracer::PictureTracer(const gpu::Device& device, const SceneToPack& scene
   }
   stats_.pipeline_ms = compiling.ms();
   stats_.features = feature_names(film_features_);
-  if (film_features_.has_any(layout::FEATURE_CHOSEN_LIGHTS)) stats_.features.emplace_back(kManySources);
 }
 
 void PictureTracer::prepare_film(const RenderMode& mode, bool has_lens) {

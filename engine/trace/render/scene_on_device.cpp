@@ -110,14 +110,16 @@ void SceneOnDevice::set_pose(const gpu::Device& device, const world::Scene& pose
     if (options.repack) packed = options.repack(std::move(packed));
     packed.stack_size = std::max(packed.stack_size, device_scene_->stack_size());
     const Stopwatch uploading;
-    device_scene_->pad_vertices(packed);
     if (has_images_of(posed, packed.mask_cutoffs) && device_scene_->has_space_for(packed)) {
       device_scene_->set_geometry(packed, shading);
       stats.upload_ms = uploading.ms();
     } else {
-      if (posed.instances.empty()) add_images(packed, posed, options.texture_bytes);
+      // With instances, space has no use: every pose with other geometry uploads a new scene.
+      if (posed.instances.empty()) {
+        add_images(packed, posed, options.texture_bytes);
+        add_spare_vertices(packed.surfaces.vertices);
+      }
       earlier_uploads_ = uploads();
-      add_spare_vertices(packed.surfaces.vertices);
       upload(device, posed, packed, shading, stats);
       images_ = posed.images;
       textures_ = posed.textures;

@@ -27,6 +27,7 @@ PixelWindow read_window(const Json& json) {
           uvec2(json.at(2).get<uint32_t>(), json.at(3).get<uint32_t>())};
 }
 
+/// Returns an accuracy without the number of first samples, which is in the part's metadata.
 Json json_of(const PictureError& error) {
   return {{"target", error.target},
           {"largest_claim", error.largest_claim},

@@ -3,11 +3,13 @@
 #include "work/pictures/moving_scene.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <variant>
 
 #include "motion/envelope.h"
 #include "scene/features.h"
+#include "scene/glow.h"
 #include "scene/layers.h"
 #include "scene/world_scene.h"
 #include "work/pictures/usual_integrator.h"
@@ -59,17 +61,36 @@ void MovingScene::take_light(const Scene& lit_envelope, const std::vector<uint32
   for (const double time_s : times_) features_ |= find_features(at(time_s));
 }
 
-bool MovingScene::lights_itself() const {
+bool MovingScene::may_emit() const {
   const auto moves_emission = [](const AnimationChannel& channel) {
     return channel.property == AnimatedProperty::kEmissive || channel.property == AnimatedProperty::kEmissiveStrength;
   };
-  const bool may_emit = std::ranges::any_of(scene_.materials, emits_light) ||
-                        std::ranges::any_of(clip_.animations, [&](uint32_t animation) {
-                          return std::ranges::any_of(scene_.motion->animations[animation].channels, moves_emission);
-                        });
-  return may_emit && std::ranges::any_of(times_, [&](double time_s) {
-           return work::lights_itself(scene_at(scene_, {.animations = clip_.animations, .time_s = time_s}));
+  return std::ranges::any_of(scene_.materials, emits_light) ||
+         std::ranges::any_of(clip_.animations, [&](uint32_t animation) {
+           return std::ranges::any_of(scene_.motion->animations[animation].channels, moves_emission);
          });
+}
+
+Scene MovingScene::pose(double time_s) const {
+  return scene_at(scene_, {.animations = clip_.animations, .time_s = time_s});
+}
+
+bool MovingScene::lights_itself() const {
+  return may_emit() && std::ranges::any_of(times_, [&](double time_s) { return work::lights_itself(pose(time_s)); });
+}
+
+Scene MovingScene::brightest() const {
+  Scene best = pose(times_.front());
+  if (!may_emit()) return best;
+  double largest = 0.0;
+  for (const double time_s : times_) {
+    Scene posed = pose(time_s);
+    const std::optional<Glow> glow = find_glow(posed);
+    if (!glow || glow->flux <= largest) continue;
+    largest = glow->flux;
+    best = std::move(posed);
+  }
+  return best;
 }
 
 Scene MovingScene::at(double time_s) const {

@@ -37,12 +37,17 @@ class MovingScene {
   double duration_s() const { return duration_s_; }
   /// Returns whether lights_itself() is true for a pose at a time of a key.
   bool lights_itself() const;
+  /// Returns the pose at a time of a key whose surfaces emit the most light, without added light.
+  Scene brightest() const;
   /// Returns the features of pictures of all poses at the times of keys, so that all frames use the same kernels.
   const FeatureMask& features() const { return features_; }
   /// Returns the scene at a time, with its light. Throws InputError.
   Scene at(double time_s) const;
 
  private:
+  bool may_emit() const;
+  Scene pose(double time_s) const;
+
   Scene scene_;
   PoseChoice clip_;
   double duration_s_;

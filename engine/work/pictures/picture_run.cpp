@@ -105,11 +105,16 @@ PictureRun prepare_pictures(const RenderSpec& given, std::vector<PlannedFrame> f
   if (const std::string note = describe_file_camera(scene, view, *stats.view); !note.empty()) console.note(note);
   const EnvironmentChoice surroundings(view.environment);
   for (const std::string& warning : surroundings.warnings()) console.warn(warning);
-  LookOptions lit_look = view.look;
-  lit_look.light = choose_light(scene, view.look.light, integrator);
-  AssumedLight assumed = light_up(scene, lit_look, surroundings, upward_direction(scene, view));
+  // Lamps that move are boxes in the scene of a film.
+  std::optional<Scene> brightest;
+  if (moving) surroundings.replace_sky(brightest.emplace(moving->brightest()));
+  surroundings.replace_sky(scene);
+  LookOptions look = view.look;
+  settle_light(brightest ? *brightest : scene, integrator, look);
+  brightest.reset();
+  AssumedLight assumed = light_up(scene, look, surroundings, upward_direction(scene, view));
   if (options.aovs.alpha) assumed.has_background = false;  // With alpha, no picture shows a background.
-  stats.display = choose_display(scene, lit_look, view.debug_view);
+  stats.display = choose_display(scene, look, view.debug_view);
   if (stats.view->error_target) fit_to_display(*stats.view->error_target, stats.display);
   // If errors are measured as displayed, the display also affects the bits of an EXR.
   const bool is_displayed = std::ranges::any_of(options.pictures, std::not_fn(has_named_channels)) ||

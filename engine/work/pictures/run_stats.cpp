@@ -10,7 +10,6 @@
 
 #include "core/json_text.h"
 #include "image/picture_endings.h"
-#include "trace/film/refinement.h"
 
 namespace promin::work {
 namespace {
@@ -144,16 +143,13 @@ Metadata describe_picture(const RunStats& stats) {
   }
   if (stats.shutter) metadata.emplace_back("promin:shutter", fmt::format("{}", *stats.shutter));
   if (stats.shutter_fps) metadata.emplace_back("promin:fps", fmt::format("{}", *stats.shutter_fps));
-  const auto has_feature = [&](std::string_view name) { return std::ranges::count(stats.setup.features, name) > 0; };
-  const bool has_instances = has_feature("instances");
+  const bool has_instances = std::ranges::count(stats.setup.features, std::string_view("instances")) > 0;
   if (has_instances || stats.instances != Instancing::kAuto) {
     metadata.emplace_back("promin:instances", instancing_names()[static_cast<size_t>(stats.instances)]);
   }
   if (stats.errors.empty()) return metadata;
   const ErrorTarget& target = *stats.view->error_target;
-  const SampledPoints points{.any = stats.view->mode.integrator != Integrator::kWhitted,
-                             .of_many_sources = has_feature(kManySources)};
-  metadata.emplace_back("promin:min_spp", std::to_string(ClaimRule(*stats.view, points).first_samples));
+  metadata.emplace_back("promin:min_spp", std::to_string(stats.errors.back().first_samples));
   metadata.emplace_back("promin:max_spp", std::to_string(target.max_samples));
   if (target.display) metadata.emplace_back("promin:error_in", "display");
   put_error(metadata, stats.errors.back(), pixel_count(*stats.view));

@@ -50,12 +50,18 @@ bool lights_itself(const Scene& scene) {
   });
 }
 
-LightChoice choose_light(const Scene& scene, LightChoice choice, Integrator integrator) {
-  const bool has_light = !scene.lights.empty() || scene.environment.has_sky();
-  if (choice != LightChoice::kAuto || scene.is_classic || has_light) return choice;
+void settle_light(const Scene& scene, Integrator integrator, LookOptions& look) {
+  look.surface_lux = 0.0;
+  const Environment& environment = scene.environment;
+  const bool has_light = !scene.lights.empty() || environment.has_sky() || environment.ambient != vec3(0.0F);
+  const bool may_add_none =
+      look.light == LightChoice::kAuto || look.light == LightChoice::kFill || look.light == LightChoice::kNone;
+  if (!may_add_none || scene.is_classic || has_light) return;
   const std::optional<Glow> glow = find_glow(scene);
-  if (!glow || !lights_sphere(glow->flux, glow->radius, kStrongRadiance)) return choice;
-  return integrator == Integrator::kWhitted ? LightChoice::kStudio : LightChoice::kFill;
+  if (!glow || !lights_sphere(glow->flux, glow->radius, kStrongRadiance)) return;
+  const bool has_lamps = integrator != Integrator::kWhitted;
+  if (look.light == LightChoice::kAuto) look.light = has_lamps ? LightChoice::kFill : LightChoice::kStudio;
+  if (has_lamps) look.surface_lux = glow->illuminance();
 }
 
 Integrator usual_integrator(const Scene& scene, LightChoice light) {

@@ -5,6 +5,7 @@
 #include "promin/lighting.h"
 #include "promin/scene.h"
 #include "promin/view.h"
+#include "work/spec/render_spec.h"
 
 namespace promin::work {
 
@@ -15,11 +16,12 @@ namespace promin::work {
 /// triangles. Throws InputError if a mesh lacks a position.
 bool lights_itself(const Scene& scene);
 
-/// Returns the light of a scene of a file for LightChoice::kAuto; other choices are returned unchanged. A scene without
-/// lights and sky gets LightChoice::kFill if its surfaces light it strongly: they give a white surface on a sphere
-/// around the scene a radiance of at least 1/32. Emissive surfaces light nothing with Integrator::kWhitted; the result
-/// is then kStudio, and no change of the integrator changes the light. Throws as lights_itself() does.
-LightChoice choose_light(const Scene& scene, LightChoice choice, Integrator integrator);
+/// Chooses the light for LightChoice::kAuto; other choices stay. A scene without light and sky gets LightChoice::kFill
+/// if its surfaces light it strongly: they give a white surface on a sphere around the scene a radiance of at least
+/// 1/32. `surface_lux` is then their illuminance, unless the choice adds other light. Emissive surfaces light nothing
+/// with Integrator::kWhitted; the choice is then kStudio, and no change of the integrator changes the light. Call it
+/// after a panorama has replaced the sky. Throws as lights_itself() does.
+void settle_light(const Scene& scene, Integrator integrator, LookOptions& look);
 
 /// Returns the integrator of pictures whose options name none.
 Integrator usual_integrator(const Scene& scene, LightChoice light);

@@ -105,7 +105,7 @@ AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentCh
                       const std::optional<vec3>& up) {
   if (up) scene.environment.up = *up;
   surroundings.replace_sky(scene);
-  AssumedLight assumed = light_scene(scene, look.light);
+  AssumedLight assumed = light_scene(scene, look.light, look.surface_lux);
   surroundings.adjust_sky(scene);
   if (look.background) {
     assumed.has_background = false;
@@ -132,7 +132,7 @@ void show_background(const BackgroundChoice& background, Environment& environmen
 
 DisplayTransform choose_display(const Scene& scene, const LookOptions& look, DebugView debug_view) {
   if (debug_view != DebugView::kNone) return {};
-  DisplayTransform display = display_of(scene, look.light);
+  DisplayTransform display = display_of(scene, look.light, look.surface_lux);
   if (look.exposure_ev) display.exposure_ev = *look.exposure_ev;
   if (look.tone_mapping) display.tone_mapping = *look.tone_mapping;
   display.dithers = look.dithers;

@@ -55,6 +55,8 @@ struct BackgroundChoice {
 /// The user's choices of light and display. Open choices depend on the scene (promin/lighting.h).
 struct LookOptions {
   LightChoice light = LightChoice::kAuto;
+  /// The illuminance from emissive surfaces in lux, if no other light counts. No option; settle_light() sets it.
+  double surface_lux = 0.0;
   /// Whether a ground under the scene shows its shadow; if empty, it does with LightChoice::kSoft.
   std::optional<bool> has_ground = std::nullopt;
   std::optional<BackgroundChoice> background = std::nullopt;
