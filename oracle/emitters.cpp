@@ -119,6 +119,53 @@ LampPoint sample_triangle(const std::array<Vector, 3>& corners, const Vector& po
   return lamp;
 }
 
+/// Returns the solid angle of a rectangle from a corner of which the perpendicular to the point has the length z.
+Real solid_angle_of_corner(Real x, Real y, Real z) {
+  return std::atan2(x * y, z * std::sqrt(x * x + y * y + z * z));
+}
+
+/// Returns a rectangle of two triangles with a common side if they form one up to 2^-20 and turn the same way.
+std::optional<std::array<Vector, 3>> rectangle_of(const std::array<Vector, 3>& first,
+                                                  const std::array<Vector, 3>& second) {
+  constexpr Real kDoubt = 0x1p-20L;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vector& corner = first[i];
+    const Vector& next = first[(i + 1) % 3];
+    const Vector& last = first[(i + 2) % 3];
+    if (std::abs(glm::dot(next - corner, last - corner)) >
+        kDoubt * glm::distance(next, corner) * glm::distance(last, corner)) {
+      continue;
+    }
+    const auto [shorter, longer] = std::minmax({glm::distance(next, corner), glm::distance(last, corner)});
+    const Real doubt = kDoubt * std::min(longer, 16 * shorter);
+    for (size_t j = 0; j < 3; ++j) {
+      // The corner that the triangles do not share.
+      const bool shares_diagonal = second[(j + 1) % 3] == last && second[(j + 2) % 3] == next;
+      if (shares_diagonal && glm::distance(second[j] - next, last - corner) <= doubt) {
+        return std::array{corner, next, last};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+LampPoint sample_rectangle(const std::array<Vector, 3>& corners, const Vector& position, const std::array<Real, 2>& u) {
+  const Vector side1 = corners[1] - corners[0];
+  const Vector side2 = corners[2] - corners[0];
+  const Vector normal = glm::normalize(glm::cross(side1, side2));
+  const Vector right = glm::normalize(side1);
+  // It is sampled as a light that shines to the side of the point.
+  const bool is_in_front = glm::dot(normal, position - corners[0]) > 0;
+  const Vector up = glm::cross(is_in_front ? normal : -normal, right);
+  LampPoint lamp = sample_flat({.center = corners[0] + (side1 + side2) / Real(2),
+                                .right = right,
+                                .up = up,
+                                .half = {glm::length(side1) / 2, glm::length(side2) / 2}},
+                               position, u);
+  lamp.normal = normal;
+  return lamp;
+}
+
 LampPoint sample_sphere(const world::Sphere& sphere, const Vector& position, const Vector& facing,
                         const std::array<Real, 2>& u) {
   LampPoint lamp;
@@ -261,6 +308,46 @@ LampPoint sample_part(const world::Plane& /*plane*/, uint32_t /*part*/, const st
 
 }  // namespace
 
+LampPoint sample_flat(const FlatShape& shape, const Vector& position, const std::array<Real, 2>& u) {
+  constexpr Real kLeastRectAngle = 1.0L / 16;
+  LampPoint lamp;
+  const Vector to_center = shape.center - position;
+  const Vector normal = glm::cross(shape.right, shape.up);
+  lamp.normal = normal;
+  const Real z = -glm::dot(to_center, normal);
+  const std::array<Real, 2> middle{glm::dot(to_center, shape.right), glm::dot(to_center, shape.up)};
+  const auto [x0, y0] = std::array<Real, 2>{middle[0] - shape.half[0], middle[1] - shape.half[1]};
+  const auto [x1, y1] = std::array<Real, 2>{middle[0] + shape.half[0], middle[1] + shape.half[1]};
+  // The solid angle of the part of the rectangle up to x.
+  const auto angle_to = [&, x0 = x0, y0 = y0, y1 = y1](Real x) {
+    return solid_angle_of_corner(x, y1, z) - solid_angle_of_corner(x0, y1, z) - solid_angle_of_corner(x, y0, z) +
+           solid_angle_of_corner(x0, y0, z);
+  };
+  const Real whole = angle_to(x1);
+  std::array<Real, 2> at{};
+  lamp.inverse_density = whole;
+  if (whole >= kLeastRectAngle) {
+    // The shares of the solid angle increase with x, and of a strip with the sine of the angle to y.
+    Real lo = x0;
+    Real hi = x1;
+    for (int step = 0; step < 80; ++step) (angle_to((lo + hi) / 2) < u[0] * whole ? lo : hi) = (lo + hi) / 2;
+    at[0] = (lo + hi) / 2;
+    const Real apart = std::hypot(at[0], z);
+    const Real sine = y0 / std::hypot(apart, y0) * (1 - u[1]) + y1 / std::hypot(apart, y1) * u[1];
+    at[1] = apart * std::tan(std::asin(sine));
+    const Real aside = std::hypot((at[0] - middle[0]) / shape.half[0], (at[1] - middle[1]) / shape.half[1]);
+    if (shape.is_disk && aside > 1) lamp.inverse_density = 0;
+  } else {
+    const std::array<Real, 2> off = shape.is_disk ? place_on_disc(u) : std::array<Real, 2>{2 * u[0] - 1, 2 * u[1] - 1};
+    at = {middle[0] + off[0] * shape.half[0], middle[1] + off[1] * shape.half[1]};
+    const Real distance = std::hypot(std::hypot(at[0], at[1]), z);
+    lamp.inverse_density =
+        (shape.is_disk ? kLampPi : 4) * shape.half[0] * shape.half[1] * (z / distance) / (distance * distance);
+  }
+  lamp.place = position + at[0] * shape.right + at[1] * shape.up - z * normal;
+  return lamp;
+}
+
 Real solid_angle_of(const std::array<Vector, 3>& corners) {
   const Vector a = glm::normalize(corners[0]);
   const Vector b = glm::normalize(corners[1]);
@@ -315,6 +402,7 @@ Emitters::Emitters(const world::Scene& scene) : scene_(scene) {
     }
     if (!found.empty()) of_objects.push_back(found);
   }
+  join_rectangles(of_objects);
   are_lights_chosen_ = scene.lights.size() + of_objects.size() > kMostAsked;
   if (!are_lights_chosen_) {
     for (const std::vector<Emitter>& object : of_objects) tables_.push_back(make_table(object));
@@ -323,6 +411,36 @@ Emitters::Emitters(const world::Scene& scene) : scene_(scene) {
   for (const std::vector<Emitter>& object : of_objects) all.insert(all.end(), object.begin(), object.end());
   std::erase_if(all, [](const Emitter& emitter) { return !(emitter.weight > 0); });
   if (!all.empty()) tables_.push_back(make_table(all));
+}
+
+void Emitters::join_rectangles(std::vector<std::vector<Emitter>>& of_objects) const {
+  std::vector<std::vector<Emitter>> all_joined;
+  for (const std::vector<Emitter>& triangles : of_objects) {
+    std::vector<Emitter> joined;
+    for (size_t i = 0; i < triangles.size(); ++i) {
+      joined.push_back(triangles[i]);
+      const world::Object& object = scene_.objects[static_cast<size_t>(triangles[i].object)];
+      const auto* mesh = std::get_if<Mesh>(&object.shape);
+      if (mesh == nullptr) continue;
+      if (i + 1 == triangles.size() || triangles[i + 1].primitive != triangles[i].primitive + 1) return;
+      const auto material_of = [&](const Emitter& emitter) {
+        return mesh->triangle_materials.empty() ? object.material
+                                                : mesh->triangle_materials[static_cast<size_t>(emitter.primitive)];
+      };
+      const uint32_t number = material_of(triangles[i]);
+      const Material& material = scene_.materials[number];
+      const auto* model = std::get_if<MetallicRoughness>(&material.model);
+      const bool is_even = material.alpha_mode == AlphaMode::kOpaque && !material.emissive_texture.exists() &&
+                           (model == nullptr || !model->clearcoat_texture.exists());
+      if (!is_even || number != material_of(triangles[i + 1])) return;
+      joined.back().rectangle =
+          rectangle_of(lamp_corners(*mesh, triangles[i].primitive), lamp_corners(*mesh, triangles[i + 1].primitive));
+      if (!joined.back().rectangle) return;
+      joined.back().weight += triangles[++i].weight;
+    }
+    all_joined.push_back(std::move(joined));
+  }
+  of_objects = std::move(all_joined);
 }
 
 Emitters::Table Emitters::make_table(std::vector<Emitter> elements) {
@@ -354,7 +472,8 @@ LampPoint Emitters::sample(const Emitter& emitter, const Vector& position, const
   if (const auto* sphere = std::get_if<world::Sphere>(&object.shape))
     return sample_sphere(*sphere, position, facing, u);
   if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
-    return sample_triangle(lamp_corners(*mesh, emitter.primitive), position, u);
+    return emitter.rectangle ? sample_rectangle(*emitter.rectangle, position, u)
+                             : sample_triangle(lamp_corners(*mesh, emitter.primitive), position, u);
   }
   LampPoint lamp;
   Real area = 0;

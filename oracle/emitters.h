@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "oracle/oracle.h"
@@ -13,14 +14,18 @@
 /// light"), by sums and bisection.
 namespace promin::oracle {
 
-/// A triangle or a part of a shape that emits light, or a light.
+/// A triangle, a rectangle of two triangles, or a part of a shape that emits light, or a light.
 struct Emitter {
-  /// Index into the scene's objects, and the triangle; or the light's index if there is no object.
+  /// Index into the scene's objects, and the triangle, of a rectangle the first one; or the light's index if there is
+  /// no object.
   int32_t object = -1;
   int32_t primitive = 0;
   /// The part of a shape: a face of a box (x from -1 on, x to 1, y …), or the side, the bottom and the top.
   uint32_t part = 0;
   uint32_t light = 0;
+  /// A rectangle has the place at which two sides meet, and the ends of these sides. The sides and the normal are
+  /// right-handed.
+  std::optional<std::array<Vector, 3>> rectangle = std::nullopt;
   /// Its flux divided by pi.
   Real weight = 0;
 
@@ -72,12 +77,28 @@ class Emitters {
     std::vector<Real> begins;
   };
   static Table make_table(std::vector<Emitter> elements);
+  /// Replaces the triangles of all objects by rectangles if each is one half of a rectangle whose other half is next.
+  void join_rectangles(std::vector<std::vector<Emitter>>& of_objects) const;
 
   const world::Scene& scene_;
   std::vector<Table> tables_;
   bool are_lights_chosen_ = false;
   Real radiance_factor_ = 1;
 };
+
+/// A rectangle, or the ellipse in it.
+struct FlatShape {
+  Vector center{0};
+  /// Unit vectors along the width and the height. They and their product are an orthonormal frame.
+  Vector right{0};
+  Vector up{0};
+  /// Half of the width and of the height.
+  std::array<Real, 2> half{};
+  bool is_disk = false;
+};
+/// Returns the point of a flat shape for a point of the unit square, as seen from a position. It is chosen by solid
+/// angle if the rectangle has at least the solid angle 1/16, otherwise by area.
+LampPoint sample_flat(const FlatShape& shape, const Vector& position, const std::array<Real, 2>& u);
 
 /// Returns the solid angle of a triangle whose corners are at these places, seen from the origin.
 Real solid_angle_of(const std::array<Vector, 3>& corners);

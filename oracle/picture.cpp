@@ -89,52 +89,18 @@ Real spot_share(const Light& light, const Vector& to_light) {
   return ramp * ramp;
 }
 
-/// Returns the solid angle of a rectangle from a corner of which the perpendicular to the point has the length z.
-Real solid_angle_of_corner(Real x, Real y, Real z) {
-  return std::atan2(x * y, z * std::sqrt(x * x + y * y + z * z));
-}
-
-/// Returns the light of one point of a flat light. It is chosen by solid angle if the light's square or rectangle has
-/// at least this solid angle, otherwise by area.
-constexpr Real kLeastRectAngle = 1.0L / 16;
+/// Returns the light of one point of a flat light.
 Illumination illuminate_flat(const Light& light, const Vector& position, const std::array<Real, 2>& u) {
-  const Vector to_center = Vector(light.position) - position;
   const Vector normal = Vector(light.direction);
-  const Vector right = Vector(light.right);
-  const Vector up = glm::cross(normal, right);
-  const Real z = -glm::dot(to_center, normal);
-  if (z <= 0) return {normal, 0, 1};
-  const std::array<Real, 2> middle{glm::dot(to_center, right), glm::dot(to_center, up)};
-  const std::array<Real, 2> half{Real(light.size.x) / 2, Real(light.size.y) / 2};
-  const auto [x0, y0] = std::array<Real, 2>{middle[0] - half[0], middle[1] - half[1]};
-  const auto [x1, y1] = std::array<Real, 2>{middle[0] + half[0], middle[1] + half[1]};
-  // The solid angle of the part of the rectangle up to x.
-  const auto angle_to = [&, x0 = x0, y0 = y0, y1 = y1](Real x) {
-    return solid_angle_of_corner(x, y1, z) - solid_angle_of_corner(x0, y1, z) - solid_angle_of_corner(x, y0, z) +
-           solid_angle_of_corner(x0, y0, z);
-  };
-  const bool is_disk = light.kind == LightKind::kDisk;
-  const Real whole = angle_to(x1);
-  std::array<Real, 2> at{};
-  Real strength = whole;
-  if (whole >= kLeastRectAngle) {
-    // The shares of the solid angle increase with x, and of a strip with the sine of the angle to y.
-    Real lo = x0;
-    Real hi = x1;
-    for (int step = 0; step < 80; ++step) (angle_to((lo + hi) / 2) < u[0] * whole ? lo : hi) = (lo + hi) / 2;
-    at[0] = (lo + hi) / 2;
-    const Real apart = std::hypot(at[0], z);
-    const Real sine = y0 / std::hypot(apart, y0) * (1 - u[1]) + y1 / std::hypot(apart, y1) * u[1];
-    at[1] = apart * std::tan(std::asin(sine));
-    if (is_disk && std::hypot((at[0] - middle[0]) / half[0], (at[1] - middle[1]) / half[1]) > 1) strength = 0;
-  } else {
-    const std::array<Real, 2> off = is_disk ? place_on_disc(u) : std::array<Real, 2>{2 * u[0] - 1, 2 * u[1] - 1};
-    at = {middle[0] + off[0] * half[0], middle[1] + off[1] * half[1]};
-    const Real distance = std::hypot(std::hypot(at[0], at[1]), z);
-    strength = (is_disk ? std::numbers::pi_v<Real> : 4) * half[0] * half[1] * (z / distance) / (distance * distance);
-  }
-  const Vector to_point = at[0] * right + at[1] * up - z * normal;
-  return {glm::normalize(to_point), strength, glm::length(to_point)};
+  if (glm::dot(Vector(light.position) - position, normal) >= 0) return {normal, 0, 1};
+  const FlatShape shape{.center = Vector(light.position),
+                        .right = Vector(light.right),
+                        .up = glm::cross(normal, Vector(light.right)),
+                        .half = {Real(light.size.x) / 2, Real(light.size.y) / 2},
+                        .is_disk = light.kind == LightKind::kDisk};
+  const LampPoint lamp = sample_flat(shape, position, u);
+  const Vector to_point = lamp.place - position;
+  return {glm::normalize(to_point), lamp.inverse_density, glm::length(to_point)};
 }
 
 /// Returns the light of one point of a ball or of a disc in the sky. The strength is the radiance divided by the

@@ -340,7 +340,7 @@ void DeviceScene::put_direct_sources(Tail& tail, const Environment& environment)
   PackedLights& lights = tail.lights;
   lights.records.resize(lights.light_count);
   lights.numbers.resize(lights.light_count);
-  DirectSources direct = pack_direct_sources(lights_, emissive_.surfaces, materials_, constants_.tree_bounds.w);
+  DirectSources direct = pack_direct_sources(lights_, emissive_, materials_, constants_.tree_bounds.w);
   lights.first_direct = direct.are_lights_chosen ? lights.light_count : 0;
   for (const layout::LightRecord& record : direct.records) {
     lights.records.push_back(record);
@@ -362,7 +362,8 @@ void DeviceScene::put_direct_sources(Tail& tail, const Environment& environment)
   lights.tables = std::move(direct.table);
   are_lights_chosen_ = direct.are_lights_chosen;
   source_features_ = {};
-  if (direct.has_surfaces) source_features_ |= layout::FEATURE_EMITTERS;
+  if (direct.has_surfaces && !direct.are_rectangles) source_features_ |= layout::FEATURE_EMITTERS;
+  if (direct.has_surfaces && emissive_.are_rectangles) source_features_ |= layout::FEATURE_RECT_EMITTERS;
   // A light that is switched on later needs no other kernel.
   if (direct.may_choose_lights) source_features_ |= layout::FEATURE_CHOSEN_LIGHTS;
 }

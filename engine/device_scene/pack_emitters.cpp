@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <variant>
 
@@ -94,6 +95,17 @@ PartAreas areas_of(const Primitive& p) {
   return {};
 }
 
+/// The largest cosine of the angle between the sides of a rectangle, and the largest distance of its last corner from
+/// that of the parallelogram: in its longer side, or in 16 times the shorter one if that is less.
+constexpr double kRectangleDoubt = 0x1p-20;
+
+/// Returns whether all points of a material's surfaces emit the same light.
+bool emits_evenly(const Material& material) {
+  const auto* model = std::get_if<MetallicRoughness>(&material.model);
+  const bool has_even_coat = model == nullptr || !model->clearcoat_texture.exists();
+  return !material.emissive_texture.exists() && material.alpha_mode == AlphaMode::kOpaque && has_even_coat;
+}
+
 /// Collects the emissive surfaces of a scene.
 class EmissiveFinder {
  public:
@@ -123,8 +135,11 @@ class EmissiveFinder {
       const auto next = std::ranges::upper_bound(ranges.first_order, surface.order);
       surface.object = static_cast<uint32_t>(next - ranges.first_order.begin()) - 1;
     }
+    join_rectangles();
   }
-  EmissiveSurfaces take() { return {std::move(found_), leaves_out_instances_}; }
+  EmissiveSurfaces take() {
+    return {std::move(found_), leaves_out_instances_, !rectangles_.empty(), std::move(rectangles_)};
+  }
 
  private:
   uint32_t material_of(uint32_t primitive) const {
@@ -205,6 +220,57 @@ class EmissiveFinder {
     }
   }
 
+  /// Replaces triangles by rectangles if each is one half of a rectangle whose other half is next to it.
+  void join_rectangles() {
+    std::vector<EmissiveSurface> joined;
+    std::vector<EmissiveSurfaces::Rectangle> rectangles;
+    for (size_t i = 0; i < found_.size(); ++i) {
+      joined.push_back(found_[i]);
+      rectangles.emplace_back();
+      if (geometry_.primitives[found_[i].primitive].c.z != KIND_TRIANGLE) continue;
+      const std::optional<uint32_t> corner =
+          i + 1 < found_.size() ? corner_of_rectangle(found_[i], found_[i + 1]) : std::nullopt;
+      if (!corner) return;
+      const std::array<dvec3, 3> places = corners_of_record(geometry_.primitives[found_[i].primitive]);
+      const dvec3& next = places[(*corner + 1) % 3];
+      const dvec3& last = places[(*corner + 2) % 3];
+      rectangles.back() = {0.5 * (next + last), {next - places[*corner], last - places[*corner]}};
+      joined.back().corner = *corner;
+      joined.back().area += found_[++i].area;
+    }
+    if (joined.size() == found_.size()) return;
+    found_ = std::move(joined);
+    rectangles_ = std::move(rectangles);
+  }
+
+  /// Returns the number of the first triangle's corner at a right angle if two triangles form a rectangle that emits
+  /// the same light everywhere.
+  std::optional<uint32_t> corner_of_rectangle(const EmissiveSurface& first, const EmissiveSurface& second) const {
+    const bool is_pair = first.object == second.object && first.order + 1 == second.order &&
+                         first.material == second.material && first.part == 0 && second.part == 0;
+    if (!is_pair || !emits_evenly(materials_[first.material])) return std::nullopt;
+    const std::array<dvec3, 3> a = corners_of_record(geometry_.primitives[first.primitive]);
+    const std::array<dvec3, 3> b = corners_of_record(geometry_.primitives[second.primitive]);
+    for (size_t i = 0; i < 3; ++i) {
+      const dvec3& next = a[(i + 1) % 3];
+      const dvec3& last = a[(i + 2) % 3];
+      const dvec3 side1 = next - a[i];
+      const dvec3 side2 = last - a[i];
+      const double length1 = glm::length(side1);
+      const double length2 = glm::length(side2);
+      if (std::abs(glm::dot(side1, side2)) > kRectangleDoubt * length1 * length2) continue;
+      const dvec3 opposite = next + side2;
+      const double doubt = kRectangleDoubt * std::min(std::max(length1, length2), 16.0 * std::min(length1, length2));
+      for (size_t j = 0; j < 3; ++j) {
+        // The triangles share the diagonal, and run through it in opposite directions.
+        if (b[(j + 1) % 3] == last && b[(j + 2) % 3] == next && glm::distance(b[j], opposite) <= doubt) {
+          return static_cast<uint32_t>(i);
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
   const EmitterGeometry& geometry_;
   const EmitterRanges& ranges_;
   std::span<const Material> materials_;
@@ -212,6 +278,7 @@ class EmissiveFinder {
   std::vector<bool> emits_;
   std::vector<EmissiveSurface> found_;
   bool leaves_out_instances_ = false;
+  std::vector<EmissiveSurfaces::Rectangle> rectangles_;
 };
 
 /// An element of a table before it is packed.
@@ -235,6 +302,26 @@ double flux_of(const Light& light, double scene_radius) {
 
 double flux_of(const EmissiveSurface& surface, const Material& material) {
   return mean_of(material.emissive * surface.texel) * surface.area * (shows_backs(material) ? 2.0 : 1.0);
+}
+
+bool has_coat(const Material& material) {
+  const auto* model = std::get_if<MetallicRoughness>(&material.model);
+  return model != nullptr && model->clearcoat > 0.0F;
+}
+
+/// Returns the record of a source that is one rectangle.
+LightRecord record_of_rectangle(const EmissiveSurfaces::Rectangle& rectangle, const Material& material,
+                                float radiance_factor) {
+  const auto [side1, side2] = rectangle.sides;
+  const vec3 right(glm::normalize(side1));
+  const vec3 radiance = radiance_factor * material.emissive;
+  LightRecord record{};
+  record.position = vec4(vec3(rectangle.middle), 0.5 * glm::length(side2));
+  record.direction = vec4(vec3(glm::normalize(glm::cross(side1, side2))), 0.5 * glm::length(side1));
+  record.diffuse = vec4(radiance, right.x);
+  record.specular = vec4(radiance, right.y);
+  record.kind = uvec4(LIGHT_EMITTERS, shows_backs(material) ? 0 : 1, std::bit_cast<uint32_t>(right.z), 0);
+  return record;
 }
 
 /// Appends a table to `sources`, with a source that chooses from it.
@@ -306,7 +393,7 @@ std::vector<uint64_t> share_numbers(std::span<const double> weights) {
   return begins;
 }
 
-DirectSources pack_direct_sources(std::span<const Light> lights, std::span<const EmissiveSurface> surfaces,
+DirectSources pack_direct_sources(std::span<const Light> lights, const EmissiveSurfaces& emissive,
                                   std::span<const Material> materials, float scene_radius) {
   DirectSources sources;
   // In scenes of Phong materials alone, the power of lights contains the factor pi.
@@ -322,13 +409,22 @@ DirectSources pack_direct_sources(std::span<const Light> lights, std::span<const
   }
   // For each object, the end of its elements.
   std::vector<size_t> ends;
+  std::vector<LightRecord> rectangles;
+  sources.are_rectangles = emissive.are_rectangles;
   uint32_t object = ~0U;
-  for (const EmissiveSurface& surface : surfaces) {
+  for (size_t i = 0; i < emissive.surfaces.size(); ++i) {
+    const EmissiveSurface& surface = emissive.surfaces[i];
     const Material& material = materials[surface.material];
     const double flux = emits_light(material) ? flux_of(surface, material) : 0.0;
     if (!(flux > 0.0)) continue;
-    elements.push_back(
-        {flux, uvec4(surface.primitive, surface.part, 0, std::bit_cast<uint32_t>(static_cast<float>(surface.area)))});
+    // Records have no shapes. Light from below a coat depends on the angle.
+    sources.are_rectangles =
+        sources.are_rectangles && emissive.rectangles[i].sides[0] != dvec3(0.0) && !has_coat(material);
+    if (sources.are_rectangles) {
+      rectangles.push_back(record_of_rectangle(emissive.rectangles[i], material, radiance_factor));
+    }
+    elements.push_back({flux, uvec4(surface.primitive, surface.part, surface.corner,
+                                    std::bit_cast<uint32_t>(static_cast<float>(surface.area)))});
     if (ends.empty() || surface.object != object) ends.emplace_back();
     object = surface.object;
     ends.back() = elements.size();
@@ -337,9 +433,15 @@ DirectSources pack_direct_sources(std::span<const Light> lights, std::span<const
   sources.are_lights_chosen = records + ends.size() > kMostAskedSources;
   sources.may_choose_lights = lights.size() + ends.size() > kMostAskedSources;
   if (sources.are_lights_chosen) {
+    sources.are_rectangles = false;
     // A light of no power is never chosen.
     std::erase_if(elements, [](const TableEntry& element) { return !(element.weight > 0.0); });
     if (!elements.empty()) add_table(elements, radiance_factor, sources);
+    return sources;
+  }
+  sources.are_rectangles = sources.are_rectangles && rectangles.size() == ends.size();
+  if (sources.are_rectangles) {
+    sources.records = std::move(rectangles);
     return sources;
   }
   size_t first = records;

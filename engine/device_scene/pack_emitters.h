@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,9 +19,10 @@
 // light").
 namespace promin {
 
-/// A part of a primitive whose material may emit light: of a triangle, a sphere, or a face of another shape.
+/// A part of a primitive whose material may emit light: of a triangle, a sphere, or a face of another shape. With
+/// EmissiveSurfaces::are_rectangles, rectangles take the place of triangles.
 struct EmissiveSurface {
-  /// Index of the primitive on the device.
+  /// Index of the primitive on the device; of a rectangle, its first triangle.
   uint32_t primitive = 0;
   /// Hit::part of its points.
   uint32_t part = 0;
@@ -28,6 +30,8 @@ struct EmissiveSurface {
   uint32_t order = 0;
   uint32_t object = 0;
   uint32_t material = 0;
+  /// The number of the first triangle's corner at which two sides of a rectangle meet.
+  uint32_t corner = 0;
   /// The area in the world.
   double area = 0.0;
   /// The mean of the emission's texture on the triangle; 1 without a texture.
@@ -77,6 +81,16 @@ struct EmissiveSurfaces {
   std::vector<EmissiveSurface> surfaces;
   /// True if instances have more than kMostInstancedEmitters emissive triangles. None of these is in `surfaces`.
   bool leaves_out_instances = false;
+  /// True if the triangles form rectangles, each of two triangles that follow one another in a mesh. `surfaces` then
+  /// has the rectangles instead.
+  bool are_rectangles = false;
+  /// The middle of each surface that is a rectangle, and two sides that are right-handed with the normal. Shapes have
+  /// sides of length 0. Empty without rectangles.
+  struct Rectangle {
+    dvec3 middle{0.0};
+    std::array<dvec3, 2> sides{};
+  };
+  std::vector<Rectangle> rectangles;
 };
 EmissiveSurfaces find_emissive_surfaces(const EmitterGeometry& geometry, const EmitterRanges& ranges,
                                         std::span<const Material> materials, const EmissionTextures& textures);
@@ -95,11 +109,13 @@ struct DirectSources {
   /// True if they would be if all lights were on.
   bool may_choose_lights = false;
   bool has_surfaces = false;
+  /// True if each object with such surfaces is one rectangle, which its record has instead of a table.
+  bool are_rectangles = false;
 };
 
 /// Returns the sources for surfaces that emit light. If there are too many sources, all lights become elements of one
 /// table. `scene_radius` is the size of the region in which lights without a position shine.
-DirectSources pack_direct_sources(std::span<const Light> lights, std::span<const EmissiveSurface> surfaces,
+DirectSources pack_direct_sources(std::span<const Light> lights, const EmissiveSurfaces& emissive,
                                   std::span<const Material> materials, float scene_radius);
 
 /// Returns the elements' ranges for these weights, which are positive: the first number in 0...2^32 - 1 of each, and

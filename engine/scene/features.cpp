@@ -46,7 +46,7 @@ constexpr bool are_bits_distinct() {
 #define PROMIN_FEATURE(FEATURE, BIT, NAME) ++uses[BIT];
 #define PROMIN_REQUEST(FEATURE, BIT, NAME) ++uses[BIT];
 #include "shared/features.def"
-  for (uint bit = 0; bit < 8; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
+  for (uint bit = 0; bit < 7; ++bit) uses[32 + DEBUG_VIEW_SHIFT + bit] += 1;
   return std::ranges::all_of(uses, [](int count) { return count <= 1; });
 }
 static_assert(are_bits_distinct(), "two rows of the tables, or a row and the debug view, have the same feature bit");

@@ -324,7 +324,7 @@ uint shade(uint number, inout Path path, vec3 seen, Ray ray, Hit hit) {
   float coverage = coverage_of(path, point);
   vec3 own = own_light(point, path.direction, coverage == 1.0 && leads_on(point, bounces));
   // Planes and unlit surfaces are no sources, so their light arrives by rays alone.
-  if (has(FEATURE_SCATTERING) && has(FEATURE_EMITTERS) && model_of(point) != MATERIAL_UNLIT &&
+  if (has(FEATURE_SCATTERING) && LAMP_FEATURES != 0u && model_of(point) != MATERIAL_UNLIT &&
       hit.primitive < first_unbounded()) {
     own = share_of_ray(own);
   }

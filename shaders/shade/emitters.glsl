@@ -14,6 +14,7 @@ uvec4 load_emitter_words(uint texel) {
 struct Emitter {
   uint index;    // the primitive; for a light, its record, counted from the first source
   uint part;     // Hit::part of points on the primitive, or EMITTER_IS_LIGHT
+  uint corner;   // of a triangle: that of its rectangle, with FEATURE_RECT_EMITTERS
   float area;    // of the part in the world
   float chance;  // the probability that a sample chooses it
 };
@@ -41,7 +42,7 @@ Emitter choose_emitter(LightRecord light, uvec2 bits, out vec2 u) {
   float chance = uintBitsToFloat(range.y);
   precise float place = (float(bits.x - range.x) + 0.5) * 2.3283064365386963e-10 / chance;
   u = vec2(min(place, LARGEST_BELOW_ONE), unit_square_point(bits).y);
-  return Emitter(element.x, element.y, uintBitsToFloat(element.w), chance);
+  return Emitter(element.x, element.y, element.z, uintBitsToFloat(element.w), chance);
 }
 
 // The smallest and the largest solid angle of a triangle for which directions are chosen by solid angle. For a smaller
@@ -56,7 +57,7 @@ struct SeenTriangle {
   vec3 a;  // the first corner, relative to the point
   vec3 edge1;
   vec3 edge2;
-  vec3 normal;  // product of the edges: twice the area times the unit normal
+  vec3 normal;   // product of the edges: twice the area times the unit normal
   float height;  // dot product of `normal` and the way from the corner to the point; positive in front
   float solid_angle;
   float unit;
@@ -265,8 +266,8 @@ ShapePoint point_of_frustum(Frustum f, uint part, vec2 u) {
   precise float of_side = sqrt(bottom * bottom + u.x * (top * top - bottom * bottom));
   precise float of_end = end * sqrt(u.x);
   precise float share = u.x * (bottom + top) / max(of_side + bottom, SMALLEST_NORMAL);
-  precise float height = part == PART_SIDE ? (2.0 * share - 1.0) * f.half_height
-                                           : (part == PART_TOP ? f.half_height : -f.half_height);
+  precise float height =
+      part == PART_SIDE ? (2.0 * share - 1.0) * f.half_height : (part == PART_TOP ? f.half_height : -f.half_height);
   precise vec3 offset = height * f.axis + (part == PART_SIDE ? of_side : of_end) * around;
   precise vec3 outward = around - f.slope * f.axis;
   vec3 of_cap = part == PART_TOP ? f.axis : -f.axis;
@@ -395,6 +396,77 @@ Primitive triangle_of_emitter(Primitive p, uint part, out vec3 origin, out float
   return p;
 }
 
+// Returns a corner of a triangle; `corner` may be up to 4.
+vec3 corner_of(Primitive p, uint corner) {
+  uint number = corner < 3u ? corner : corner - 3u;
+  return number == 0u ? corner0(p) : (number == 1u ? corner1(p) : corner2(p));
+}
+
+// Returns the rectangle two of whose sides are those of the triangle p at a corner. It is a rectangular light that
+// shines to the triangle's front.
+LightRecord rectangle_of(Primitive p, uint corner) {
+  vec3 a = corner_of(p, corner);
+  precise vec3 side1 = corner_of(p, corner + 1u) - a;
+  precise vec3 side2 = corner_of(p, corner + 2u) - a;
+  precise vec3 middle = a + 0.5 * (side1 + side2);
+  float unit = power_of_two_inverse(max(max(max_abs(side1), max_abs(side2)), SMALLEST_NORMAL));
+  precise vec3 scaled1 = side1 * unit;
+  precise vec3 scaled2 = side2 * unit;
+  precise float half_width = 0.5 * length3(scaled1) / unit;
+  precise float half_height = 0.5 * length3(scaled2) / unit;
+  vec3 right = normalize3(side1);
+  LightRecord rect;
+  rect.position = vec4(middle, half_height);
+  rect.direction = vec4(triangle_normal(p), half_width);
+  rect.diffuse = vec4(vec3(0.0), right.x);
+  rect.specular = vec4(vec3(0.0), right.y);
+  rect.kind = uvec4(LIGHT_RECT, 0u, floatBitsToUint(right.z), 0u);
+  return rect;
+}
+
+// Sets the point of a rectangle and the size of the rectangle. Returns 1 / the density per solid angle of the point, as
+// for a rectangular light that shines to the side of `position`.
+float sample_rectangle(LightRecord rect, vec3 position, vec2 u, out SurfacePoint lamp, out float size) {
+  vec3 normal = rect.direction.xyz;
+  precise vec3 from_middle = position - rect.position.xyz;
+  float height = dot3(normal, from_middle);
+  precise float reach = 2.0 * (rect.direction.w + rect.position.w);
+  size = reach;
+  LightRecord seen = rect;
+  seen.direction.xyz = height < 0.0 ? -normal : normal;
+  sample_u = u;
+  LightSample sampled = sample_rect(seen, position);
+  precise vec3 place = position + sampled.direction;
+  precise float lift = 8.0 * UNIT_ROUNDOFF * (max_abs(place) + reach);
+  lamp = SurfacePoint(place, normal, lift);
+  // A point in the plane of a rectangle receives no light from it.
+  precise float doubt = lift + 8.0 * UNIT_ROUNDOFF * (max_abs(position) + reach);
+  return abs(height) > doubt ? sampled.strength : 0.0;
+}
+
+// Returns a point of a lamp as a source of light. The shadow ray ends at this height above it.
+LightSample light_of_lamp(SurfacePoint lamp, vec3 to_point, float height, float strength, bool is_dark) {
+  float front = -dot3(lamp.normal, to_point);
+  precise vec3 to_end = to_point + (front < 0.0 ? -height : height) * lamp.normal;
+  // A point in the tangent plane of the lamp's point, up to rounding, receives no light: it may be the same point.
+  bool is_lit = abs(front) > height && !is_dark;
+  return LightSample(to_end, 1.0, is_lit ? strength : 0.0);
+}
+
+// Returns a point of a source that is an emissive rectangle. Its record is that of a rectangular light which shines to
+// the front, except that kind.y is 1 if the back is dark.
+LightSample sample_rectangle_source(LightRecord light, uvec2 bits, vec3 position) {
+  precise float x = (float(bits.x) + 0.5) * 2.3283064365386963e-10;
+  vec2 u = vec2(min(x, LARGEST_BELOW_ONE), unit_square_point(bits).y);
+  SurfacePoint lamp;
+  float size;
+  float inverse_density = sample_rectangle(light, position, u, lamp, size);
+  precise vec3 to_point = lamp.position - position;
+  bool is_of_back = dot3(lamp.normal, to_point) > 0.0;
+  float height = height_of_end(lamp, to_point, size, PART_SIDE);
+  return light_of_lamp(lamp, to_point, height, inverse_density, is_of_back && light.kind.y != 0u);
+}
+
 // Returns a point of an emissive surface as a source of light at `position`, where the geometric normal is `facing`.
 // Sets the powers of the source to the radiance of the surface. The shadow ray ends just before the surface.
 LightSample sample_emitter(Emitter emitter, vec2 u, vec3 position, vec3 facing, inout LightRecord light) {
@@ -431,6 +503,8 @@ LightSample sample_emitter(Emitter emitter, vec2 u, vec3 position, vec3 facing, 
     lamp.lift = lift;
     precise vec3 way = on_shape - position;
     inverse_density = inverse_density_by_area(emitter.area, point.normal, way);
+  } else if (has(FEATURE_RECT_EMITTERS)) {
+    inverse_density = sample_rectangle(rectangle_of(p, emitter.corner), position, u, lamp, size);
   } else if (has(FEATURE_TRIANGLES)) {
     vec3 origin;
     Primitive corners = triangle_of_emitter(p, emitter.part, origin, size);
@@ -458,13 +532,10 @@ LightSample sample_emitter(Emitter emitter, vec2 u, vec3 position, vec3 facing, 
   bool is_solid = !has(FEATURE_TRIANGLES) || kind_of(p) != KIND_TRIANGLE;
   bool is_dark = is_of_back && !is_solid && (flags_of(material_of(surface)) & MATERIAL_IS_ONE_SIDED) != 0u;
   float height = height_of_end(lamp, to_point, size, emitter.part);
-  precise vec3 to_end = to_point + (is_of_back ? -height : height) * lamp.normal;
   precise float cosine = abs(front) / max(length3(to_point), SMALLEST_NORMAL);
   vec3 radiance = emission_of(p, surface, hit, cosine);
   light.diffuse.xyz = radiance;
   light.specular.xyz = radiance;
   precise float strength = light.position.w * inverse_density / emitter.chance;
-  // A point in the tangent plane of the lamp's point, up to rounding, receives no light: it may be the same point.
-  bool is_lit = abs(front) > height && !is_dark;
-  return LightSample(to_end, 1.0, is_lit ? strength : 0.0);
+  return light_of_lamp(lamp, to_point, height, strength, is_dark);
 }

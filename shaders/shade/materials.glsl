@@ -22,7 +22,12 @@ float coat_share;
 // bend rays.
 float least_roughness = 0.0;
 // Features of sources with tables (emitters.glsl).
-const uint TABLE_FEATURES = FEATURE_BIT(FEATURE_EMITTERS) | FEATURE_BIT(FEATURE_CHOSEN_LIGHTS);
+const uint TABLE_FEATURES = FEATURE_BIT(FEATURE_EMITTERS) | FEATURE_BIT(FEATURE_CHOSEN_LIGHTS) |
+                            FEATURE_BIT(FEATURE_RECT_EMITTERS);
+// Features of sources that emissive surfaces are. If each object with such surfaces is one rectangle, the records of
+// sources have the rectangles.
+const uint LAMP_FEATURES = FEATURE_BIT(FEATURE_EMITTERS) | FEATURE_BIT(FEATURE_RECT_EMITTERS);
+const bool ARE_LAMPS_RECTANGLES = FEATURE_BIT(FEATURE_RECT_EMITTERS) > FEATURE_BIT(FEATURE_EMITTERS);
 
 bool has_table(LightRecord light) { return TABLE_FEATURES != 0u && light.kind.x == LIGHT_EMITTERS; }
 

@@ -596,7 +596,12 @@ LightSample sample_light_or_lobe(ShadingPoint point, vec3 to_eye, inout LightRec
     uvec2 bits = sample_pair_bits();
     vec2 u = unit_square_point(bits);
     float chance = 1.0;
-    if (has_table(light)) {
+    if (ARE_LAMPS_RECTANGLES && has_table(light)) {
+      // The rest of a lobe is that of the mirror ray.
+      sky_shares(point);
+      return sample_rectangle_source(light, bits, point.position);
+    }
+    if (!ARE_LAMPS_RECTANGLES && has_table(light)) {
       Emitter emitter = choose_emitter(light, bits, u);
       bool is_light = has(FEATURE_CHOSEN_LIGHTS) && emitter.part == EMITTER_IS_LIGHT;
       if (has(FEATURE_EMITTERS) && !is_light) {

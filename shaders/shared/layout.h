@@ -52,7 +52,7 @@ LAYOUT_CONSTANT DEBUG_VIEW_NONE = 0u;
   LAYOUT_CONSTANT DEBUG_VIEW_##KIND = NUMBER;
 #include "promin/kinds/debug_views.def"
 LAYOUT_CONSTANT DEBUG_VIEW_SHIFT = 24u;
-LAYOUT_CONSTANT DEBUG_VIEW_MASK = 0xFFu;
+LAYOUT_CONSTANT DEBUG_VIEW_MASK = 0x7Fu;
 // The number of steps at which the heat map of DEBUG_VIEW_STEPS is white.
 LAYOUT_CONSTANT HEAT_STEPS = 64u;
 
@@ -263,8 +263,10 @@ LAYOUT_CONSTANT LIGHT_TEXELS = 5u;
 // sources. An element takes two texels. In the first, x is the first number of the element's range in 0...2^32 - 1, y
 // has the bits of its chance, and z is the element that contains the first number of the cell with this index. The
 // second texel has an index of a primitive, or of a light's record counted from that of the first source. Its y is
-// Hit::part of points on the primitive, or EMITTER_IS_LIGHT. Its w has the bits of the area.
-LAYOUT_CONSTANT LIGHT_EMITTERS = 7u;
+// Hit::part of points on the primitive, or EMITTER_IS_LIGHT. Its w has the bits of the area. With
+// FEATURE_RECT_EMITTERS each triangle is one half of a rectangle, which is the element. Its z is the number of the
+// triangle's corner at which sides of the rectangle meet.
+LAYOUT_CONSTANT LIGHT_EMITTERS = 7u;  // with FEATURE_RECT_EMITTERS alone, one rectangle (emitters.glsl)
 LAYOUT_CONSTANT EMITTER_TEXELS = 2u;
 LAYOUT_CONSTANT EMITTER_IS_LIGHT = 0xFFFFFFFFu;
 

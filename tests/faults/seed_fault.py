@@ -142,6 +142,9 @@ FAULTS = {
     "lamp_area_off": {"shade/emitters.glsl": [(r"0\.5 \* abs\(seen\.height\)", "0.51 * abs(seen.height)")]},
     "lamp_chance_off": {"shade/emitters.glsl": [(r"/ emitter\.chance;", "/ (1.02 * emitter.chance);")]},
     "lamp_ball_off": {"shade/emitters.glsl": [(r"6\.28318531 \* cap;", "6.4 * cap;")]},
+    "lamp_rect_off": {
+        "shade/emitters.glsl": [(r"> doubt \? sampled\.strength", "> doubt ? 1.02 * sampled.strength")]
+    },
     "lamp_back_shines": {"shade/emitters.glsl": [(r" && !is_dark", "")]},
     "lens_turned": {"picture/camera.glsl": [(r"disc\.x \* CAMERA\.right", "disc.y * CAMERA.right")]},
     # These are faults of glass (tests/gpu/oracle_picture_test.cpp).

@@ -77,9 +77,33 @@ world::Scene make_lamps() {
   return scene;
 }
 
-/// The same lamps over metals, a coat and Phong's mirrors.
-world::Scene make_glossy_lamps() {
+/// The same with lamps whose triangles all form rectangles: a tilted one that is large for points below it, two of two
+/// sides in one object, a small one, and one that nearly touches the floor.
+world::Scene make_rectangles() {
   world::Scene scene = make_lamps();
+  // Sides at right angles, of exact coordinates.
+  scene.objects[2].shape = make_sheet(vec3(-0.4F, 1.7F, 0.2F), vec3(0.0F, 0.1875F, -0.75F), vec3(0.8F, 0.0F, 0.0F));
+  Mesh screens = make_sheet(vec3(1.5F, 0.75F, -0.5F), vec3(0.25F, 0.0F, 0.5F), vec3(-0.25F, 0.5F, 0.125F));
+  // The corner of the right angle is another one in each triangle.
+  screens.triangles = {{1, 2, 0}, {2, 3, 0}};
+  const Mesh other = make_sheet(vec3(-2.0F, 0.5F, -0.5F), vec3(0.0F, 0.0F, 0.25F), vec3(0.0F, 0.375F, 0.0F));
+  screens.positions.insert(screens.positions.end(), other.positions.begin(), other.positions.end());
+  screens.triangles.insert(screens.triangles.end(), {{4, 5, 7}, {7, 5, 6}});
+  scene.objects[3].shape = screens;
+  scene.objects[5].shape = make_sheet(vec3(-2.0F, 2.5F, 1.0F), vec3(0.0625F, 0.0F, 0.0F), vec3(0.0F, 0.0F, 0.03125F));
+  return scene;
+}
+
+/// The same with lamps of which each is one rectangle.
+world::Scene make_lone_rectangles() {
+  world::Scene scene = make_rectangles();
+  std::get<Mesh>(scene.objects[3].shape).triangles.resize(2);
+  scene.objects[4].shape = world::NotDrawn{};
+  return scene;
+}
+
+/// Makes the floor, the balls and a lamp of make_lamps() of metals and coats.
+world::Scene make_glossy(world::Scene scene) {
   MetallicRoughness metal;
   metal.base_color = vec3(0.9F, 0.7F, 0.4F);
   metal.metallic = 1.0F;
@@ -128,11 +152,31 @@ world::Scene make_lit_floor(const world::Shape& lamp, const Material& material) 
   return scene;
 }
 
+/// Returns the emissive surfaces of a scene.
+EmissiveSurfaces surfaces_of(const world::Scene& scene) {
+  const PackedScene packed = pack_scene(scene, "sah");
+  const EmissionMaps maps(scene.images.size());
+  return find_emissive_surfaces({packed.primitives, packed.surfaces.surfaces, {}, packed.surfaces.vertices.uvs},
+                                EmitterRanges(packed), scene.materials, {scene.textures, maps});
+}
+
+DirectSources sources_of(const world::Scene& scene) {
+  return pack_direct_sources(scene.lights, surfaces_of(scene), scene.materials, 1.0F);
+}
+
 class EmittersTest : public test::SampledLightTest {
  protected:
   static oracle::PictureReport compare(const world::Scene& scene, const oracle::Picture& truth, const Image& image) {
     // Densities that are off by 2 % change few pixels of smooth surfaces.
     return report_of(scene, truth, image, {.color_mean = 2e-6L});
+  }
+  static void expect_fault_is_seen(const world::Scene& scene, const char* fault) {
+    const View view = make_lamp_view();
+    const test::FaultyShaders faulty(fault);
+    TunedRendererOptions options;
+    options.shaders = faulty.shaders();
+    const Image image = renderer_of(scene, options).render(view).image;
+    EXPECT_FALSE(compare(scene, oracle::render(scene, view), image).passes()) << fault;
   }
   /// Compares the first sample of each pixel, for several seeds.
   static void expect_samples(const world::Scene& scene, View view) {
@@ -149,7 +193,35 @@ TEST_F(EmittersTest, EachSampleIsTheOracles) {
 }
 
 TEST_F(EmittersTest, EachSampleOnGlossySurfacesIsTheOracles) {
-  expect_samples(make_glossy_lamps(), make_lamp_view());
+  expect_samples(make_glossy(make_lamps()), make_lamp_view());
+}
+
+// If all triangles of lamps form rectangles, points of these are chosen.
+TEST_F(EmittersTest, EachSampleOfRectanglesIsTheOracles) {
+  const world::Scene scene = make_rectangles();
+  ASSERT_TRUE(surfaces_of(scene).are_rectangles);
+  ASSERT_FALSE(sources_of(scene).are_rectangles);
+  expect_samples(scene, make_lamp_view());
+}
+
+TEST_F(EmittersTest, EachSampleOfLoneRectanglesIsTheOracles) {
+  const world::Scene scene = make_lone_rectangles();
+  ASSERT_TRUE(sources_of(scene).are_rectangles);
+  View view = make_lamp_view();
+  expect_samples(scene, view);
+  // Scattered rays that hit a lamp do not count its light twice.
+  view.mode.integrator = Integrator::kPath;
+  expect_samples(scene, view);
+}
+
+TEST_F(EmittersTest, EachSampleOfRectanglesOnGlossySurfacesIsTheOracles) {
+  expect_samples(make_glossy(make_rectangles()), make_lamp_view());
+  world::Scene scene = make_glossy(make_lone_rectangles());
+  // Light from below a coat depends on the angle, so records of sources have no such lamps.
+  ASSERT_FALSE(sources_of(scene).are_rectangles);
+  std::get<MetallicRoughness>(scene.materials[3].model).clearcoat = 0.0F;
+  ASSERT_TRUE(sources_of(scene).are_rectangles);
+  expect_samples(scene, make_lamp_view());
 }
 
 // Boxes, cylinders, cones and capsules are sampled by area, and lights of shapes reach their own insides.
@@ -187,50 +259,51 @@ TEST_F(EmittersTest, EachSampleOfShapesIsTheOracles) {
 
 // In a scene of Phong materials alone, lights have another power than surfaces.
 TEST_F(EmittersTest, EachSampleOnPhongsMaterialsIsTheOracles) {
-  world::Scene scene = make_lamps();
-  for (Material& material : scene.materials) {
-    Phong phong;
-    phong.diffuse = std::get<MetallicRoughness>(material.model).base_color;
-    phong.ambient = vec3(0.0F);
-    phong.specular = vec3(0.4F);
-    phong.shininess = 20.0F;
-    material.model = phong;
+  for (world::Scene scene : {make_lamps(), make_lone_rectangles()}) {
+    for (Material& material : scene.materials) {
+      Phong phong;
+      phong.diffuse = std::get<MetallicRoughness>(material.model).base_color;
+      phong.ambient = vec3(0.0F);
+      phong.specular = vec3(0.4F);
+      phong.shininess = 20.0F;
+      material.model = phong;
+    }
+    std::get<Phong>(scene.materials[1].model).reflection = vec3(0.5F);
+    expect_samples(scene, make_lamp_view());
   }
-  std::get<Phong>(scene.materials[1].model).reflection = vec3(0.5F);
-  expect_samples(scene, make_lamp_view());
 }
 
 // With more than 16 sources, each sample asks one of them.
 TEST_F(EmittersTest, EachSampleOfManySourcesIsTheOracles) {
-  world::Scene scene = make_lamps();
-  for (int i = 0; i < 14; ++i) {
-    Light light = scene.lights[0];
-    light.position = vec3(-1.5F + 0.25F * static_cast<float>(i), 1.2F + 0.1F * static_cast<float>(i % 3), 0.8F);
-    light.diffuse = light.specular = vec3(0.05F * static_cast<float>(i + 1));
-    if (i % 4 == 1) light.radius = 0.1F;
-    if (i % 4 == 2) {
-      light.kind = LightKind::kSpot;
-      light.direction = vec3(0, -1, 0);
+  for (world::Scene scene : {make_lamps(), make_lone_rectangles()}) {
+    for (int i = 0; i < 14; ++i) {
+      Light light = scene.lights[0];
+      light.position = vec3(-1.5F + 0.25F * static_cast<float>(i), 1.2F + 0.1F * static_cast<float>(i % 3), 0.8F);
+      light.diffuse = light.specular = vec3(0.05F * static_cast<float>(i + 1));
+      if (i % 4 == 1) light.radius = 0.1F;
+      if (i % 4 == 2) {
+        light.kind = LightKind::kSpot;
+        light.direction = vec3(0, -1, 0);
+      }
+      if (i % 4 == 3) light = test::make_sun(vec3(0.1F * static_cast<float>(i), -1.0F, 0.2F), 0.2F);
+      scene.lights.push_back(light);
     }
-    if (i % 4 == 3) light = test::make_sun(vec3(0.1F * static_cast<float>(i), -1.0F, 0.2F), 0.2F);
-    scene.lights.push_back(light);
+    scene.environment.ambient = vec3(0.1F, 0.2F, 0.15F);
+    expect_samples(scene, make_lamp_view());
   }
-  scene.environment.ambient = vec3(0.1F, 0.2F, 0.15F);
-  expect_samples(scene, make_lamp_view());
 }
 
 // A density that is off by 2 % is seen, and so are other faults.
 TEST_F(EmittersTest, FaultsAreSeen) {
   for (const char* fault : test::cases_of<const char*>(
            {"lamp_angle_off", "lamp_area_off", "lamp_chance_off", "lamp_ball_off", "lamp_back_shines"}, 1)) {
-    const world::Scene scene = make_lamps();
-    const View view = make_lamp_view();
-    const test::FaultyShaders faulty(fault);
-    TunedRendererOptions options;
-    options.shaders = faulty.shaders();
-    const Image image = renderer_of(scene, options).render(view).image;
-    EXPECT_FALSE(compare(scene, oracle::render(scene, view), image).passes()) << fault;
+    expect_fault_is_seen(make_lamps(), fault);
   }
+}
+
+TEST_F(EmittersTest, FaultsOfRectanglesAreSeen) {
+  expect_fault_is_seen(make_rectangles(), "lamp_rect_off");
+  expect_fault_is_seen(make_lone_rectangles(), "lamp_rect_off");
 }
 
 // A floor of albedo 1 has the radiance E / pi, with Lambert's formula for a polygon of radiance L.
@@ -249,11 +322,34 @@ TEST_F(EmittersTest, TrianglesHaveTheirClosedForm) {
   }
 }
 
+TEST_F(EmittersTest, RectanglesHaveTheirClosedForm) {
+  // The middle and the halves of the sides.
+  const std::vector<std::array<vec3, 3>> sheets = {
+      {vec3(0.1F, 0.7F, -0.2F), vec3(1.0F, 0.125F, 0.0F), vec3(0.0F, 0.0F, 0.75F)},  // large
+      {vec3(0.02F, 0.6F, 0.0F), vec3(0.02F, 0.0F, 0.0F), vec3(0.0F, 0.0F, 0.025F)},  // small
+      {vec3(0.3F, 0.02F, 0.1F), vec3(4.0F, 0.0F, 0.0F), vec3(0.0F, 0.0F, 5.0F)},     // nearly a half space
+      {vec3(-0.5F, 0.5F, 0.1F), vec3(0.0F, 0.48F, 0.0F), vec3(0.0F, 0.0F, 0.5F)}};   // upright
+  for (const auto& [middle, right, up] : sheets) {
+    const Mesh sheet = make_sheet(middle, right, up);
+    const world::Scene scene = make_lit_floor(sheet, make_glow(vec3(2.0F), true));
+    const std::vector<dvec3> corners(sheet.positions.begin(), sheet.positions.end());
+    for (const vec3& at : {vec3(0.0F), vec3(0.6F, 0.0F, 0.3F)}) {
+      const double expected = 2.0 / std::numbers::pi * test::irradiance_of(corners, dvec3(at));
+      EXPECT_NEAR(mean_of(scene, make_point_view(at, 0.005F)).x / expected, 1.0, 0.002) << middle.y << " " << at.x;
+    }
+  }
+}
+
 // Two triangles light a floor like the light of EXT_lights_area of the same shape, and a sphere like the ball of light:
 // E = pi L (R / d)^2 cos above the horizon.
 TEST_F(EmittersTest, LampsLightLikeLightsOfTheirShape) {
   const Mesh sheet = make_sheet(vec3(0.1F, 0.8F, -0.2F), vec3(0.0F, 0.0F, 0.35F), vec3(0.6F, 0.0F, 0.0F));
   const world::Scene as_mesh = make_lit_floor(sheet, make_glow(vec3(2.0F), true));
+  // Four triangles around the middle are no rectangle of two.
+  Mesh parts = sheet;
+  parts.positions.push_back(vec3(0.1F, 0.8F, -0.2F));
+  parts.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  const world::Scene as_triangles = make_lit_floor(parts, make_glow(vec3(2.0F), true));
   world::Scene as_light = make_lit_floor(world::NotDrawn{}, make_glow(vec3(0.0F)));
   Light rect;
   rect.kind = LightKind::kRect;
@@ -265,6 +361,7 @@ TEST_F(EmittersTest, LampsLightLikeLightsOfTheirShape) {
   for (const vec3& at : {vec3(0.0F), vec3(0.9F, 0.0F, 0.4F), vec3(-2.0F, 0.0F, 1.5F)}) {
     const View view = make_point_view(at);
     EXPECT_NEAR(mean_of(as_mesh, view).x / mean_of(as_light, view).x, 1.0, 0.004) << at.x;
+    EXPECT_NEAR(mean_of(as_triangles, view).x / mean_of(as_light, view).x, 1.0, 0.004) << at.x;
   }
   const world::Scene ball = make_lit_floor(world::Sphere{vec3(0.2F, 1.5F, -0.3F), 0.9F}, make_glow(vec3(3.0F)));
   for (const vec3& at : {vec3(0.2F, 0.0F, -0.3F), vec3(1.0F, 0.0F, 0.4F)}) {
@@ -361,10 +458,10 @@ TEST_F(EmittersTest, DensitiesIntegrateToOne) {
 }
 
 TEST_F(EmittersTest, EveryWayOfTracingHasTheSameBits) {
-  const world::Scene scene = make_glossy_lamps();
   View view = make_lamp_view();
   view.samples_per_pixel = 3;
-  expect_same_bits(scene, view);
+  expect_same_bits(make_glossy(make_lamps()), view);
+  expect_same_bits(make_lone_rectangles(), view);
 }
 
 // Lights, materials and environments can change: the picture is that of a new renderer.
@@ -541,7 +638,7 @@ TEST_F(EmittersTest, GlassInFrontOfALampTintsItsLight) {
 // Each sample agrees for lamps with textures, holes, alpha and coats behind panes of glass. An object has one triangle,
 // because the oracle does not know the mean of a texture, which decides between triangles.
 TEST_F(EmittersTest, EachSampleOfTexturedLampsBehindGlassIsTheOracles) {
-  world::Scene scene = make_glossy_lamps();
+  world::Scene scene = make_glossy(make_lamps());
   Mesh ceiling = make_triangle(vec3(-1.2F, 1.7F, -0.5F), vec3(0.9F, 1.8F, -0.4F), vec3(-0.3F, 1.6F, 0.9F));
   ceiling.uvs = {vec4(0.0F), vec4(1.7F, 0, 0, 0), vec4(0.3F, 2.4F, 0, 0)};
   std::swap(ceiling.triangles[0].y, ceiling.triangles[0].z);
@@ -618,6 +715,45 @@ TEST_F(EmittersTest, SidesAndRadianceHaveTheirClosedForm) {
   EXPECT_EQ(mean_of(scene, view), dvec3(0.0));
   scene.materials[1].is_double_sided = true;
   expect_near_by_channel(mean_of(scene, view), light * dvec3(1.0, 1e14, 1e-14), "two sides");
+}
+
+// Two triangles are joined only if they are the halves of a rectangle that emits the same light everywhere, and only if
+// no triangle is left.
+TEST_F(EmittersTest, TrianglesFormRectangles) {
+  const Mesh sheet = make_sheet(vec3(0, 1, 0), vec3(0.5F, 0, 0), vec3(0, 0, 0.25F));
+  const auto surfaces = [](const Mesh& mesh, const Material& material = make_glow(vec3(1.0F))) {
+    return surfaces_of(make_lit_floor(mesh, material));
+  };
+  const EmissiveSurfaces whole = surfaces(sheet);
+  ASSERT_EQ(whole.surfaces.size(), 1U);
+  EXPECT_TRUE(whole.are_rectangles);
+  EXPECT_EQ(whole.surfaces[0].area, 0.5);
+  EXPECT_EQ(whole.surfaces[0].corner, 1U);
+  const auto expect_apart = [&](const EmissiveSurfaces& found, const char* why) {
+    EXPECT_FALSE(found.are_rectangles) << why;
+    EXPECT_EQ(found.surfaces.size(), 2U) << why;
+  };
+  Mesh changed = sheet;
+  changed.positions[3].x += 0.001F;
+  expect_apart(surfaces(changed), "a corner is moved");
+  changed = make_sheet(vec3(0, 1, 0), vec3(0.5F, 0, 0.001F), vec3(0, 0, 0.25F));
+  expect_apart(surfaces(changed), "the angles are not right");
+  changed = sheet;
+  std::swap(changed.triangles[1].x, changed.triangles[1].y);
+  expect_apart(surfaces(changed), "a half is turned over");
+  Material cut = make_glow(vec3(1.0F));
+  cut.alpha_mode = AlphaMode::kBlend;
+  expect_apart(surfaces(sheet, cut), "alpha");
+  Material shown = make_glow(vec3(1.0F));
+  shown.emissive_texture.texture = 0;
+  expect_apart(surfaces(sheet, shown), "a texture");
+  world::Scene scene = make_lit_floor(sheet, make_glow(vec3(1.0F)));
+  scene.objects.push_back({"triangle", make_triangle(vec3(0, 2, 0), vec3(1, 2, 0), vec3(0, 2, 1)), 1});
+  EXPECT_EQ(surfaces_of(scene).surfaces.size(), 3U);
+  // Shapes may be beside rectangles.
+  scene.objects.back().shape = world::Sphere{vec3(0, 3, 0), 0.5F};
+  EXPECT_EQ(surfaces_of(scene).surfaces.size(), 2U);
+  EXPECT_TRUE(surfaces_of(scene).are_rectangles);
 }
 
 TEST_F(EmittersTest, NumbersAreSharedByWeight) {
