@@ -17,3 +17,7 @@ Emitter choose_emitter(LightRecord light, uvec2 bits, out vec2 u) {
 LightSample sample_emitter(Emitter emitter, vec2 u, vec3 position, vec3 facing, inout LightRecord light) {
   return LightSample(vec3(0.0), 0.0, 0.0);
 }
+
+LightSample sample_rectangle_source(LightRecord light, uvec2 bits, vec3 position) {
+  return LightSample(vec3(0.0), 0.0, 0.0);
+}
