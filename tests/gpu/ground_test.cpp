@@ -129,6 +129,7 @@ TEST_F(GroundTest, TheGroundBlocksNoLight) {
   }
   // The ground occludes what is above it nevertheless.
   view.mode = {.debug_view = DebugView::kOcclusion};
+  view.samples_per_pixel = 64;
   const Image occluded = make_renderer(device(), scene).render(view).image;
   EXPECT_LT(occluded.pixels[15 * 16 + 8].x, occluded.pixels[8].x - 0.1F);
 }
