@@ -21,7 +21,11 @@ namespace promin::work {
 namespace {
 
 jobs::Manifest make_manifest(const RenderSpec& spec, const PictureRun& run, std::vector<std::string> pieces) {
-  jobs::Manifest manifest = begin_manifest(kPictureJob, list_bits(spec));
+  RenderSpec named = spec;
+  // The default depends on the integrator.
+  std::optional<uint32_t>& samples = named.view.samples_per_pixel;
+  if (samples == samples_of(Quality::kNormal, run.stats.view->mode)) samples.reset();
+  jobs::Manifest manifest = begin_manifest(kPictureJob, list_bits(named));
   const uvec2& size = run.stats.view->size;
   manifest.options.emplace_back("size", fmt::format("{}x{}", size.x, size.y));
   const Integrator integrator = run.stats.view->mode.integrator;
