@@ -226,6 +226,7 @@ void add_warnings_of_pictures(Scene& scene, const EnvironmentChoice& surrounding
 /// A scene as `promin render` renders it, with added lights.
 struct LitScene {
   AssumedLight assumed;
+  Integrator integrator;
   DisplayTransform display;
   FeatureMask features;
   /// The packed scene, without texels.
@@ -235,8 +236,10 @@ struct LitScene {
 LitScene light_and_pack(Scene& scene, const EnvironmentChoice& surroundings) {
   surroundings.replace_sky(scene);
   LookOptions look;
-  settle_light(scene, usual_integrator(scene, look.light), look);
+  const Integrator integrator = usual_integrator(scene, look.light);
+  settle_light(scene, integrator, look);
   LitScene lit{.assumed = light_up(scene, look, surroundings),
+               .integrator = integrator,
                .display = choose_display(scene, look, DebugView::kNone),
                .features = {},
                .packed = {}};
@@ -256,7 +259,7 @@ void print_scene_json(Scene scene, const EnvironmentChoice& surroundings) {
   json["counts"]["degenerate_triangles"] = lit.packed.degenerate_count;
   json["environment"] = json_of(scene.environment);
   json["display"] = json_of(lit.display);
-  json["assumed"] = list_assumptions(scene, {}, lit.assumed, usual_integrator(scene, LightChoice::kAuto), lit.display);
+  json["assumed"] = list_assumptions(scene, {}, lit.assumed, lit.integrator, lit.display);
   json["counts"]["instances"] = lit.packed.instance_count;
   json["features"] = feature_names(lit.features);
   json["warnings"] = scene.warnings;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <tuple>
 
+#include "scene/facets.h"
 #include "scene/glass.h"
 #include "shapes/shapes.h"
 
@@ -115,7 +116,7 @@ Mesh make_corners(std::vector<vec3> positions, std::vector<uvec3> triangles) {
 /// solid.
 uint32_t material_of(const world::Object& object) {
   const auto* mesh = std::get_if<Mesh>(&object.shape);
-  return mesh == nullptr || mesh->triangle_materials.empty() ? object.material : mesh->triangle_materials.front();
+  return mesh == nullptr ? object.material : triangle_material(*mesh, 0, object.material);
 }
 
 /// Returns whether a shape is open. No point is inside an open shape.
@@ -151,8 +152,7 @@ void GlassSolids::add_instances(const world::Scene& scene) {
   for (const world::Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.triangles.empty()) continue;
-    const uint32_t material =
-        mesh.triangle_materials.empty() ? scene.objects[instance.object].material : mesh.triangle_materials.front();
+    const uint32_t material = triangle_material(mesh, 0, scene.objects[instance.object].material);
     if (!bounds_volume(scene.materials[material])) continue;
     std::shared_ptr<const Mesh>& shared = meshes[instance.mesh];
     if (shared == nullptr) {

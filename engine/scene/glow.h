@@ -37,7 +37,7 @@ struct Glow {
 };
 
 /// Returns the lamps of a scene: the objects whose surfaces have a radiance above 1 in a channel. nullopt if they light
-/// nothing: if there are none, if there is no other object, or if they have more than 4 million triangles. Throws
+/// nothing: if no object shines so, if there is no other object, or if they have more than 4 million triangles. Throws
 /// InputError if a mesh lacks a position.
 std::optional<Glow> find_glow(const Scene& scene);
 

@@ -196,8 +196,8 @@ class ScenePreparer {
   std::shared_ptr<ShownScene> put_on_device(std::shared_ptr<const Scene> scene, const PictureRequest& request,
                                             std::shared_ptr<const gpu::Device> device);
   TunedRendererOptions options_for(const PictureRequest& request);
-  /// Puts a scene of an earlier pose, which nothing shows any more, into another pose. Returns null if there is none,
-  /// or if the picture needs a new scene.
+  /// Puts a scene of an earlier pose, which nothing shows any more, into another pose. Returns null without such
+  /// a scene, or if the picture needs a new one.
   std::shared_ptr<ShownScene> reuse(const std::shared_ptr<const Scene>& scene, const PictureRequest& request,
                                     const std::shared_ptr<const gpu::Device>& device);
   std::shared_ptr<ShownScene> find_unused(const PictureRequest& request, const gpu::Device& device);

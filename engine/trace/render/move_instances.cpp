@@ -17,7 +17,7 @@ namespace {
 
 using Transform = std::pair<uint32_t, dmat4>;
 
-/// Returns the problem of a transform, whatever the size of the mesh; nullopt if there is none.
+/// Returns the problem of a transform, whatever the size of the mesh; nullopt without one.
 std::optional<Problem> find_problem(const Transform& transform, const std::string& where,
                                     const PrimitiveNumbers& numbers) {
   const auto& [object, matrix] = transform;

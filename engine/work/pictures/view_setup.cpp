@@ -104,7 +104,6 @@ std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& opti
 AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings,
                       const std::optional<vec3>& up) {
   if (up) scene.environment.up = *up;
-  surroundings.replace_sky(scene);
   AssumedLight assumed = light_scene(scene, look.light, look.surface_lux);
   surroundings.adjust_sky(scene);
   if (look.background) {

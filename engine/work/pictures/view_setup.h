@@ -41,7 +41,8 @@ void put_lens(const ViewOptions& options, Camera& camera);
 /// direction is zero or not finite.
 std::optional<vec3> upward_direction(const Scene& scene, const ViewOptions& options);
 
-/// Sets the scene's environment, lights and background from the options. If `up` is given, the light and the ground
+/// Sets the scene's environment, lights and background from the options. EnvironmentChoice::replace_sky() and
+/// settle_light() have chosen the sky and `look` before. If `up` is given, the light and the ground
 /// stand on it. Throws the same errors as light_scene().
 AssumedLight light_up(Scene& scene, const LookOptions& look, const EnvironmentChoice& surroundings = {},
                       const std::optional<vec3>& up = {});
